@@ -1,0 +1,62 @@
+# Everything here works on a fresh machine with Python 3.11 or newer and make; the first target makes .venv by itself.
+.DEFAULT_GOAL := help
+SHELL := /bin/sh
+
+PYTHON ?= $(shell command -v python3.11 || command -v python3 || echo python3)
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+ARGS ?=
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+# Rebuilt from nothing when the locked versions change, so that no leftover package hides a missing one.
+$(READY): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed: make PYTHON=/path/to/python3.11" >&2; exit 1; }
+	$(PYTHON) -m venv --clear $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@touch $(READY)
+
+install: $(READY) ## make .venv with the locked versions
+
+run: $(READY) ## drive 20 episodes at the intersection and print the table
+	$(BIN)/codriving run scenario=intersection $(ARGS)
+
+test: $(READY) ## run the tests
+	$(BIN)/python -m pytest $(ARGS)
+
+ablate: $(READY) ## each reasoning sub-module removed in turn
+	$(BIN)/codriving ablate $(ARGS)
+
+compare: $(READY) ## the comparison methods (not there yet)
+	$(BIN)/codriving compare baselines $(ARGS)
+
+bench: $(READY) ## measure speed
+	@test -f benchmarks/__main__.py || { echo "there are no benchmarks yet" >&2; exit 2; }
+	$(BIN)/python -m benchmarks $(ARGS)
+
+lint: $(READY) ## style, layers and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+types: $(READY) ## types alone
+	$(BIN)/mypy
+
+format: $(READY) ## put the code into house style
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+lock: $(READY) ## renew requirements.lock within the ranges of pyproject.toml
+	$(BIN)/pip-compile --quiet --upgrade --extra dev --strip-extras --no-annotate --no-header --no-emit-index-url \
+	    --no-emit-find-links --no-emit-trusted-host --output-file $(VENV)/lock pyproject.toml
+	{ echo '# Exact versions of everything that codriving[dev] needs, for Python 3.11. Made by: make lock'; \
+	    grep -v '^#' $(VENV)/lock | grep .; } > requirements.lock
+
+clean: ## remove .venv and what the tools left behind; outputs/ stays
+	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+.PHONY: help install run test ablate compare bench lint types format lock clean

@@ -1,0 +1,1 @@
+"""Overrides to config to objects: the only door to Hydra and OmegaConf."""

@@ -1,0 +1,84 @@
+"""What can be chosen: the YAML files of each group, read without Hydra so that completion is quick."""
+
+import re
+from pathlib import Path
+
+from codriving.config.locate import conf_dir, experiments_root
+from codriving.config.schema import GROUPS
+from codriving.errors import ConfigError
+
+EXPERIMENTS = "experiments"
+"""The group of deltas that reproduce one table or figure each."""
+
+LISTED = (*GROUPS, EXPERIMENTS)
+"""Every group that has choices."""
+
+_LINE = re.compile(r"^(\w+):\s*([^#\n]*)")
+_DEFAULT = re.compile(r"^\s*-\s*(\w+):\s*\"?(\w+)")
+
+
+def _folders(group: str, config_dir: Path | None) -> list[Path]:
+    own = experiments_root() if group == EXPERIMENTS else conf_dir()
+    return [root / group for root in (own, config_dir) if root is not None]
+
+
+def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
+    """List what a group offers.
+
+    Args:
+        group: Name of the group, for instance ``scenario``.
+        config_dir: The user's own configs, if any.
+
+    Returns:
+        The YAML file of each choice, by name, in alphabetical order.
+
+    Raises:
+        ConfigError: If there is no such group.
+    """
+    if group not in LISTED:
+        raise ConfigError(f"unknown group {group}; groups: {', '.join(LISTED)}")
+    found = {file.stem: file for folder in _folders(group, config_dir) for file in sorted(folder.glob("*.yaml"))}
+    return dict(sorted(found.items()))
+
+
+def describe(file: Path) -> str:
+    """Return the sentence that a YAML begins with, or nothing."""
+    for line in file.read_text(encoding="utf-8").splitlines():
+        if line.startswith("# @package") or not line.strip():
+            continue
+        return line.removeprefix("#").strip() if line.startswith("#") else ""
+    return ""
+
+
+def values(file: Path) -> dict[str, str]:
+    """Return the keys of the top level of a YAML and the text of their values; without ``_target_``."""
+    lines = (_LINE.match(line) for line in file.read_text(encoding="utf-8").splitlines())
+    return {m[1]: m[2].strip() for m in lines if m and not m[1].startswith("_")}
+
+
+def default_choice(group: str) -> str | None:
+    """Return what a group is set to when nothing is said."""
+    for line in (conf_dir() / "config.yaml").read_text(encoding="utf-8").splitlines():
+        found = _DEFAULT.match(line)
+        if found and found[1] == group:
+            return None if found[2] == "null" else found[2]
+    return None
+
+
+def check_config_dir(config_dir: Path) -> None:
+    """Refuse a folder of the user's that would be read otherwise than it looks.
+
+    Raises:
+        ConfigError: If the folder is missing, or one of its files has the name of one of ours.
+    """
+    if not config_dir.is_dir():
+        raise ConfigError(f"--config-dir {config_dir} is not a folder")
+    if (config_dir / "config.yaml").exists():
+        raise ConfigError(
+            f"{config_dir / 'config.yaml'} would never be read; put your YAML into {config_dir}/scenario/, ..."
+        )
+    for group in LISTED:
+        ours = choices(group)
+        for name, file in choices(group, config_dir).items():
+            if name in ours and file != ours[name] and file.resolve() != ours[name].resolve():
+                raise ConfigError(f"{file} has the name of a built-in {group}; give it another name")

@@ -1,0 +1,94 @@
+"""Overrides to one resolved config, as a plain dict; in the parent process only, since Hydra's state is global."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from codriving.config.choices import check_config_dir
+from codriving.config.locate import conf_dir, experiments_root
+from codriving.config.overrides import prepare
+from codriving.config.rules import check_rules
+from codriving.config.schema import check_root
+from codriving.errors import ConfigError
+
+_ENVIRONMENT = re.compile(r"\$\{\s*oc\.env\b")
+
+
+def compose(overrides: Sequence[str], config_dir: Path | None = None) -> dict[str, Any]:
+    """Compose the config that the overrides ask for.
+
+    The keys, types and ranges of the root and the rules between keys are checked here; those of each node are checked
+    by ``validate``, which builds it.
+
+    Args:
+        overrides: ``key=value`` tokens; groups take the name of one of their YAML files.
+        config_dir: A folder of the user's with the same groups.
+
+    Returns:
+        The config with every reference resolved, made of dicts, lists, texts, numbers, booleans and None.
+
+    Raises:
+        ConfigError: If anything in the overrides or in a YAML file cannot be used.
+    """
+    from hydra import compose as hydra_compose
+    from hydra import initialize_config_dir
+    from hydra.errors import HydraException
+    from omegaconf import OmegaConf
+    from omegaconf.errors import OmegaConfBaseException
+    from yaml import YAMLError
+
+    if config_dir is not None:
+        config_dir = config_dir.absolute()
+        check_config_dir(config_dir)
+    tokens = [_search_path(config_dir), *prepare(overrides, config_dir)]
+    try:
+        with initialize_config_dir(str(conf_dir()), version_base="1.3"):
+            config = hydra_compose("config", overrides=tokens)
+        _refuse_environment(OmegaConf.to_container(config, resolve=False))
+        resolved = OmegaConf.to_container(config, resolve=True)
+    except (HydraException, OmegaConfBaseException, YAMLError) as err:
+        raise ConfigError(_one_line(err)) from err
+    if not isinstance(resolved, dict):
+        raise ConfigError("the config must be a mapping")
+    plain = {str(key): value for key, value in resolved.items()}
+    check_root(plain)
+    check_rules(plain)
+    return plain
+
+
+def _search_path(config_dir: Path | None) -> str:
+    """Write Hydra's list of further folders; quoted, for a path may hold blanks, commas and quotes."""
+    roots = [experiments_root(), *([config_dir] if config_dir else [])]
+    escaped = [str(root).replace("\\", "\\\\").replace("'", "\\'") for root in roots]
+    return "hydra.searchpath=[" + ",".join(f"'file://{root}'" for root in escaped) + "]"
+
+
+def _texts(node: object, key: str = "") -> Iterator[tuple[str, str]]:
+    """Yield every text of the config with its key."""
+    if isinstance(node, Mapping):
+        for name, value in node.items():
+            yield from _texts(value, f"{key}.{name}" if key else str(name))
+    elif isinstance(node, list):
+        for index, value in enumerate(node):
+            yield from _texts(value, f"{key}.{index}")
+    elif isinstance(node, str):
+        yield key, node
+
+
+def _refuse_environment(raw: object) -> None:
+    """Keep environment variables out: what is resolved is written to the run folder, and they may be secrets."""
+    for key, text in _texts(raw):
+        if _ENVIRONMENT.search(text):
+            raise ConfigError(
+                f"{key} reads an environment variable, which would be written to the run folder; "
+                f"a secret is given by the name of its variable, anything else by its value ({key}=$NAME)"
+            )
+
+
+def _one_line(err: BaseException) -> str:
+    """Join what a library says in several lines; the useful half is often in the cause."""
+    texts = [str(err), *([str(err.__cause__)] if err.__cause__ else [])]
+    lines = [line.strip() for text in texts for line in text.splitlines()]
+    noise = ("full_key:", "object_type=", "See https:", "Config search path", "provider=", "Set the environment")
+    return " ".join(line for line in dict.fromkeys(lines) if line and not line.startswith(noise))

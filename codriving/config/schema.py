@@ -1,0 +1,142 @@
+"""The root of the config as a table: which keys there are, what they mean and which values they take."""
+
+import difflib
+import math
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from codriving.errors import ConfigError
+
+GROUPS = ("scenario", "method", "cda", "llm", "memory", "metrics", "launcher")
+"""The choices that the command line names; one YAML a choice."""
+
+NODES = (*GROUPS, "environment")
+"""The keys of the root that hold a constructor call."""
+
+OPTIONAL = ("memory",)
+"""Those of them that may be null."""
+
+LARGEST_SEED = 2**31 - 1
+"""Seeds beyond this are refused by some of the generators below us."""
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """One plain key of the root.
+
+    Attributes:
+        name: The key.
+        meaning: What it sets, with its unit.
+        kind: Type of the value.
+        low: Smallest number allowed.
+        high: Largest number allowed.
+        words: Words that are allowed instead of the type, for instance ``auto``.
+        pattern: Regular expression that a text must match as a whole.
+        optional: Whether ``null`` is allowed.
+    """
+
+    name: str
+    meaning: str
+    kind: type
+    low: int | None = None
+    high: int | None = None
+    words: tuple[str, ...] = ()
+    pattern: str | None = None
+    optional: bool = False
+
+    @property
+    def rule(self) -> str:
+        """The rule in words, as it stands in messages and in the docs."""
+        if self.kind is int:
+            upper = f"to {self.high}" if self.high is not None else "or more"
+            rule = f"a whole number, {self.low} {upper}"
+        elif self.kind is list:
+            rule = "a list of package names, for instance [my_package]"
+        elif self.pattern:
+            rule = "a name of letters, digits, dots, dashes and underscores"
+        else:
+            rule = "a text"
+        return " or ".join([rule, *self.words, *(["null"] if self.optional else [])])
+
+    def allows(self, value: object) -> bool:
+        """Tell whether a value follows the rule."""
+        if value is None:
+            return self.optional
+        if isinstance(value, str) and value in self.words:
+            return True
+        if self.kind is list:
+            return isinstance(value, list) and all(isinstance(v, str) and _PACKAGE.fullmatch(v) for v in value)
+        if not isinstance(value, self.kind) or isinstance(value, bool):
+            return False
+        if self.kind is int:
+            return (self.low or 0) <= value <= (math.inf if self.high is None else self.high)  # type: ignore[operator]
+        return bool(value) and (self.pattern is None or re.fullmatch(self.pattern, str(value)) is not None)
+
+
+_NAME = r"[A-Za-z0-9_-][A-Za-z0-9._-]*"
+_PACKAGE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*")
+
+KEYS = (
+    Key("episodes", "number of episodes a cell", int, 1, 100_000),
+    Key("seed", "seed of the first episode; the others follow it one by one", int, 0, LARGEST_SEED),
+    Key("workers", "processes that drive episodes; auto takes one a core", int, 1, 256, words=("auto",)),
+    Key("run", "name of the run folder; the same name resumes; null takes the time", str, pattern=_NAME, optional=True),
+    Key("output", "folder under which the run folders are written", str),
+    Key("experiment", "folder below output, one an experiment", str, pattern=_NAME),
+    Key("plugins", "packages of yours whose classes a config may name", list),
+)
+
+ROOT = {key.name: key for key in KEYS}
+
+
+def unknown(key: str, known: Iterable[str], where: str) -> ConfigError:
+    """Make the error for a key that nobody reads.
+
+    Args:
+        key: The full key that was given, for instance ``scenario.typo``.
+        known: The keys that would have been allowed at that place.
+        where: What they belong to, for messages.
+
+    Returns:
+        The error; the value is left out, since it may be a secret that was put in the wrong place.
+    """
+    names = sorted(known)
+    last = key.rpartition(".")[2]
+    close = difflib.get_close_matches(last, names, n=1)
+    prefix = key[: len(key) - len(last)]
+    hint = f"did you mean {prefix}{close[0]}? " if close else ""
+    return ConfigError(f"unknown key {key}; {hint}keys of {where}: {', '.join(names)}")
+
+
+def check_root(resolved: Mapping[str, Any]) -> None:
+    """Check the keys, types and ranges of the root.
+
+    Args:
+        resolved: The composed config as a plain dict.
+
+    Raises:
+        ConfigError: If a key is unknown or missing, or a value breaks its rule.
+    """
+    known = (*ROOT, *NODES)
+    for name in resolved:
+        if name not in known:
+            raise unknown(str(name), known, "the config")
+    for name in known:
+        if name not in resolved:
+            raise ConfigError(f"{name} is missing from the config")
+    for name, key in ROOT.items():
+        if not key.allows(resolved[name]):
+            raise ConfigError(f"{name} must be {key.rule}, got {resolved[name]!r}")
+    for name in NODES:
+        _check_node(name, resolved[name])
+
+
+def _check_node(name: str, node: object) -> None:
+    if node is None and name in OPTIONAL:
+        return
+    if isinstance(node, Mapping) and "_target_" not in node:
+        raise ConfigError(f"{name} has no _target_, so nobody would read {', '.join(map(str, node)) or 'it'}")
+    if not isinstance(node, Mapping):
+        raise ConfigError(f"{name} must name one of its YAML files or hold a _target_, got {node!r}")

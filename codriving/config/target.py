@@ -1,0 +1,48 @@
+"""A `_target_` to the class it names, and nothing but classes of ours and of the user's plugins."""
+
+import importlib
+from collections.abc import Sequence
+
+from codriving.errors import ConfigError
+
+OURS = "codriving"
+
+
+def find_class(target: object, key: str, plugins: Sequence[str] = ()) -> type:
+    """Import the class that a config node names.
+
+    Args:
+        target: Full name of the class, for instance ``codriving.metrics.standard.StandardMetrics``.
+        key: Key of the node, for messages.
+        plugins: Packages whose classes may be named besides our own.
+
+    Returns:
+        The class.
+
+    Raises:
+        ConfigError: If the package is not allowed, or there is no such class in it.
+    """
+    if not isinstance(target, str) or "." not in target:
+        raise ConfigError(f"{key}._target_ must be the full name of a class, got {target!r}")
+    allowed = (OURS, *plugins)
+    if not _within(target, allowed):
+        raise ConfigError(
+            f"{key}._target_ may name classes of {', '.join(allowed)}, got {target}; list other packages under plugins"
+        )
+    module_name, _, class_name = target.rpartition(".")
+    try:
+        module = importlib.import_module(module_name)
+    except ModuleNotFoundError as err:
+        # A package that the user has not installed is for them to mend; one that is missing inside it is a bug there.
+        if err.name is None or not (module_name == err.name or module_name.startswith(f"{err.name}.")):
+            raise
+        raise ConfigError(f"{key}._target_ is {target}, but there is no module {err.name}; install or mend it") from err
+    found = getattr(module, class_name, None)
+    # A name that a module merely imported (a function of the standard library, say) is not one that it offers.
+    if not isinstance(found, type) or not _within(found.__module__, allowed):
+        raise ConfigError(f"{key}._target_ is {target}, but {module_name} has no class {class_name}")
+    return found
+
+
+def _within(name: str, packages: Sequence[str]) -> bool:
+    return any(name == package or name.startswith(f"{package}.") for package in packages)

@@ -1,0 +1,54 @@
+"""How an episode ends."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Ending(StrEnum):
+    """The ways in which an episode ends; ``error`` is never counted as driving."""
+
+    SUCCESS = "success"
+    COLLISION = "collision"
+    TIMEOUT = "timeout"
+    OFF_ROAD = "off_road"
+    ERROR = "error"
+
+
+@dataclass(frozen=True, slots=True)
+class Collision:
+    """A true overlap of two footprints.
+
+    Attributes:
+        time: When the footprints first overlapped [s].
+        striker: Id of the vehicle whose front ran into the other.
+        struck: Id of the vehicle that was hit.
+        pair: ``CAV-CAV``, ``CAV-HDV`` or ``HDV-HDV``.
+    """
+
+    time: float
+    striker: str
+    struck: str
+    pair: str
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """The one end of an episode.
+
+    Attributes:
+        ending: How it ended.
+        time: Simulated time at the end [s].
+        arrivals: Arrival time of each CAV that arrived [s], by id.
+        collision: The collision that ended the episode, if one did.
+        bystander_collisions: Collisions among human drivers; they are towed away and counted apart.
+        off_road: Ids of the vehicles that left the road, if that ended the episode.
+        message: What went wrong, for ``error``.
+    """
+
+    ending: Ending
+    time: float
+    arrivals: dict[str, float]
+    collision: Collision | None = None
+    bystander_collisions: tuple[Collision, ...] = ()
+    off_road: tuple[str, ...] = ()
+    message: str = ""

@@ -1,0 +1,52 @@
+"""What is kept of an episode: one record that every table is made from."""
+
+from dataclasses import dataclass
+
+from codriving.datatypes.outcome import Outcome
+from codriving.datatypes.score import Score
+
+
+@dataclass(frozen=True, slots=True)
+class Participant:
+    """A vehicle that took part in an episode.
+
+    Attributes:
+        id: Vehicle id.
+        kind: ``CAV`` or ``HDV``.
+        route: Id of the route driven.
+        arrived: Time of arrival [s], or None.
+    """
+
+    id: str
+    kind: str
+    route: str
+    arrived: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeRecord:
+    """The result of one episode; free of anything that depends on the machine or its clock.
+
+    Attributes:
+        scenario: Name of the scenario.
+        method: Name of the method.
+        variant: Name of the CDA variant, for instance ``full`` or ``no_negotiation/own_view``.
+        reasoner: Who reasoned: ``rules`` or the name of a model.
+        seed: Seed of the episode.
+        outcome: How it ended.
+        score: What it is judged by; None for ``error``.
+        participants: Who took part, in order of id.
+        decisions: Number of decision steps.
+        counts: Further counters a method reports (fallbacks, repaired orders, ...), summed over the episode.
+    """
+
+    scenario: str
+    method: str
+    variant: str
+    reasoner: str
+    seed: int
+    outcome: Outcome
+    score: Score | None
+    participants: tuple[Participant, ...]
+    decisions: int
+    counts: dict[str, int]

@@ -1,0 +1,140 @@
+"""A road as data: lanes, the routes along them, and nothing that moves."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+LaneId = tuple[str, str, int]
+"""Start node, end node and index from the left of a lane."""
+
+Point = tuple[float, float]
+"""x and y [m]; y grows to the right of an observer who looks along x, as in highway-env."""
+
+
+class Turn(StrEnum):
+    """What a route does at the junction; drives the rule that turning yields to straight."""
+
+    LEFT = "left"
+    STRAIGHT = "straight"
+    RIGHT = "right"
+
+
+@dataclass(frozen=True, slots=True)
+class Straight:
+    """A straight centre line.
+
+    Attributes:
+        start: First point of the centre line [m].
+        end: Last point of the centre line [m].
+    """
+
+    start: Point
+    end: Point
+
+
+@dataclass(frozen=True, slots=True)
+class Arc:
+    """A circular centre line.
+
+    Attributes:
+        center: Centre of the circle [m].
+        radius: Radius of the centre line [m].
+        start_phase: Angle of the first point seen from the centre [rad].
+        end_phase: Angle of the last point seen from the centre [rad].
+        clockwise: Whether the phase grows along the lane (clockwise on screen, where y points down).
+    """
+
+    center: Point
+    radius: float
+    start_phase: float
+    end_phase: float
+    clockwise: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Sine:
+    """A straight line plus a sinusoidal lateral offset, for tapers.
+
+    Attributes:
+        start: First point of the base line [m].
+        end: Last point of the base line [m].
+        amplitude: Lateral amplitude [m].
+        pulsation: Spatial frequency [rad/m].
+        phase: Phase at the start [rad].
+    """
+
+    start: Point
+    end: Point
+    amplitude: float
+    pulsation: float
+    phase: float
+
+
+LaneShape = Straight | Arc | Sine
+
+
+class Line(StrEnum):
+    """How one side of a lane is painted."""
+
+    NONE = "none"
+    STRIPED = "striped"
+    CONTINUOUS = "continuous"
+    CONTINUOUS_LINE = "continuous_line"
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """One directed lane between two nodes of the road network.
+
+    Attributes:
+        id: Start node, end node and index from the left.
+        shape: Centre line.
+        width: Lane width [m].
+        speed_limit: Highest legal speed [m/s].
+        priority: Rank of the right of way; the higher goes first.
+        lines: Painted lines on the left and on the right.
+        forbidden: Whether changing onto this lane is forbidden.
+    """
+
+    id: LaneId
+    shape: LaneShape
+    width: float = 4.0
+    speed_limit: float = 10.0
+    priority: int = 0
+    lines: tuple[Line, Line] = (Line.STRIPED, Line.STRIPED)
+    forbidden: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """A way through the road from a source to a destination.
+
+    Attributes:
+        id: Name that is unique on the road, for instance ``south-north``.
+        lanes: The lanes followed, in order.
+        turn: What the route does at the junction.
+        entry: Arc length at which the shared part of the road (junction, ring, merge) begins [m].
+        goal: Arc length at which a vehicle has arrived [m].
+    """
+
+    id: str
+    lanes: tuple[LaneId, ...]
+    turn: Turn
+    entry: float
+    goal: float
+
+
+@dataclass(frozen=True, slots=True)
+class Road:
+    """All lanes and routes of one scenario.
+
+    Attributes:
+        name: Name for messages.
+        lanes: Every lane, each id once.
+        routes: Every route, each id once.
+        regulated: Whether human drivers give way by lane priority before the shared part.
+    """
+
+    name: str
+    lanes: tuple[Lane, ...]
+    routes: tuple[Route, ...]
+    regulated: bool = False

@@ -1,0 +1,78 @@
+"""What one CAV knows of the world around it (paper Section III-C, state sharing and intent sharing)."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from codriving.datatypes.road import LaneId
+from codriving.datatypes.vehicle import Intent, VehicleState
+
+
+class Role(StrEnum):
+    """What a neighbour is to the ego vehicle."""
+
+    LEADING = "leading"
+    REARING = "rearing"
+    CONFLICT = "conflict"
+    OTHER = "other"
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbour:
+    """Another vehicle as far as the ego vehicle knows it; what it does not know is None.
+
+    Attributes:
+        id: Vehicle id.
+        kind: ``CAV``, ``HDV``, or None if it cannot tell.
+        x: Position [m].
+        y: Position [m].
+        speed: Speed [m/s].
+        heading: Heading [rad].
+        acceleration: Acceleration [m/s2].
+        lane: Lane that it drives on.
+        length: Vehicle length [m].
+        routes: Each route that it may be on, with its arc length there [m]; one entry if it shared its route.
+        intent: Route, target speed and target lane, if it shared them.
+        standing: How long it has been standing [s].
+        role: What it is to the ego vehicle.
+        gap: Free distance along the ego lane for a leading or rearing vehicle [m].
+    """
+
+    id: str
+    kind: str | None
+    x: float
+    y: float
+    speed: float
+    heading: float | None
+    acceleration: float | None
+    lane: LaneId | None
+    length: float
+    routes: tuple[tuple[str, float], ...]
+    intent: Intent | None
+    standing: float
+    role: Role
+    gap: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class SceneDescription:
+    """The surroundings of one CAV, by lane and by relation.
+
+    Attributes:
+        ego: Its own state.
+        intent: Its own intent.
+        place: Its arc length along its route [m].
+        adjacent_lanes: Lanes to the left and right that run its way.
+        conflict_lanes: Lanes that its lanes ahead intersect.
+        neighbours: Everybody it knows of, in order of id.
+    """
+
+    ego: VehicleState
+    intent: Intent
+    place: float
+    adjacent_lanes: tuple[LaneId, ...]
+    conflict_lanes: tuple[LaneId, ...]
+    neighbours: tuple[Neighbour, ...]
+
+    def neighbour(self, name: str) -> Neighbour | None:
+        """Return a neighbour by id, or None if the ego vehicle does not know of it."""
+        return next((n for n in self.neighbours if n.id == name), None)

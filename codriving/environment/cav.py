@@ -1,0 +1,77 @@
+"""A connected automated vehicle: highway-env's semantic actions, driven with the paper's gains."""
+
+from highway_env.road.road import Road
+from highway_env.vehicle.controller import MDPVehicle
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.scene import Start
+from codriving.environment.control import ControlGains
+from codriving.environment.corrections import Corrections
+from codriving.environment.on_way import OnWay
+from codriving.environment.way import Way
+
+
+class ConnectedVehicle(OnWay, MDPVehicle):
+    """A vehicle that takes one of the five actions a decision (paper Section II and Eq. 1)."""
+
+    @classmethod
+    def start(
+        cls,
+        road: Road,
+        start: Start,
+        way: Way,
+        target_speeds: tuple[float, ...],
+        gains: ControlGains,
+        corrections: Corrections,
+    ) -> "ConnectedVehicle":
+        """Put a CAV on the road.
+
+        Args:
+            road: The road of highway-env.
+            start: Where it starts.
+            way: The route that it follows, laid out.
+            target_speeds: Speeds that FASTER and SLOWER step through [m/s].
+            gains: Gains of its controllers.
+            corrections: Which faults of the simulator are corrected.
+        """
+        x, y = way.path.position(start.position)
+        heading = float(way.path.heading(start.position))
+        vehicle = cls(road, [float(x), float(y)], heading, start.speed, target_speeds=list(target_speeds))
+        vehicle.take_way(start.id, way, start.position, corrections)
+        gains.apply(vehicle)
+        return vehicle
+
+    def act(self, action: str | None = None) -> None:
+        """Take a decision, or go on with the last one.
+
+        Args:
+            action: Name of the action; None lets the controllers work towards the last one.
+        """
+        if action in (Action.LANE_LEFT, Action.LANE_RIGHT):
+            super().act(action)
+            return
+        if action in (Action.FASTER, Action.SLOWER):
+            # From the speed at which it drives, not from the target that it had; so does highway-env's MDPVehicle.
+            self.speed_index = self.speed_to_index(self.speed) + (1 if action == Action.FASTER else -1)
+            self.speed_index = min(max(self.speed_index, 0), len(self.target_speeds) - 1)
+            self.target_speed = float(self.target_speeds[self.speed_index])
+        self.action = {"steering": self.keep_lane(), "acceleration": self.speed_control(self.target_speed)}
+
+    def speed_to_index(self, speed: float) -> int:
+        """Return the number of the target speed that is closest to a speed; target speeds are evenly spaced.
+
+        Args:
+            speed: A speed [m/s].
+        """
+        low, high, top = float(self.target_speeds[0]), float(self.target_speeds[-1]), len(self.target_speeds) - 1
+        return min(max(round((speed - low) / (high - low) * top), 0), top)
+
+    def available(self) -> tuple[Action, ...]:
+        """Return the actions that the road allows now; speed can always be asked for."""
+        actions = [Action.SLOWER, Action.IDLE, Action.FASTER]
+        start, end, index = self.target_lane_index
+        lanes = self.road.network.graph[start][end]
+        for action, other in ((Action.LANE_LEFT, index - 1), (Action.LANE_RIGHT, index + 1)):
+            if 0 <= other < len(lanes) and lanes[other].is_reachable_from(self.position) and self.speed > 0:
+                actions.append(action)
+        return tuple(actions)

@@ -1,0 +1,54 @@
+"""Collisions by the true footprints, and who struck whom."""
+
+from itertools import combinations
+
+from codriving.datatypes.outcome import Collision
+from codriving.environment.cav import ConnectedVehicle
+from codriving.environment.on_way import OnWay
+from codriving.environment.striker import who_struck
+from codriving.geometry.box import corners, overlap
+
+PUSHED = 3.0
+"""How far highway-env pushes two crashed cars apart at most [m]."""
+
+
+def kind(vehicle: OnWay) -> str:
+    """Return ``CAV`` or ``HDV``.
+
+    Args:
+        vehicle: A vehicle on the road.
+    """
+    return "CAV" if isinstance(vehicle, ConnectedVehicle) else "HDV"
+
+
+def find_collisions(
+    vehicles: list[OnWay], time: float, dt: float, by_footprint: bool
+) -> list[tuple[OnWay, OnWay, Collision]]:
+    """Find every pair of vehicles that have collided.
+
+    Args:
+        vehicles: Vehicles on the road.
+        time: Present time, for the record [s].
+        dt: Time since this was last asked [s].
+        by_footprint: Whether a collision is an overlap of two footprints; else it is what highway-env declares.
+
+    Returns:
+        The striker, the struck and the record of each collision.
+    """
+    found = []
+    pushed = 0.0 if by_footprint else PUSHED
+    placed = [(vehicle, *vehicle.position.tolist(), float(vehicle.diagonal) / 2) for vehicle in vehicles]
+    for (one, x, y, half), (other, x2, y2, half2) in combinations(placed, 2):
+        dx, dy, reach = x - x2, y - y2, half + half2 + pushed
+        if dx * dx + dy * dy > reach * reach:
+            continue
+        if _overlap(one, other) if by_footprint else one.crashed and other.crashed:
+            striker, struck = who_struck(one, other, dt)
+            pair = "-".join(sorted((kind(one), kind(other))))
+            found.append((striker, struck, Collision(time, striker.id, struck.id, pair)))
+    return found
+
+
+def _overlap(one: OnWay, other: OnWay) -> bool:
+    boxes = [corners(v.position[0], v.position[1], v.heading, v.LENGTH, v.WIDTH) for v in (one, other)]
+    return overlap(*boxes)

@@ -1,0 +1,141 @@
+"""The environment module of the paper: a scene becomes a world that answers to decisions."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.outcome import Outcome
+from codriving.datatypes.trajectory import Trajectory
+from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import WorldState
+from codriving.environment.cav import ConnectedVehicle
+from codriving.environment.control import ControlGains
+from codriving.environment.corrections import Corrections
+from codriving.environment.driver_profile import DriverProfile
+from codriving.environment.judge import Judge
+from codriving.environment.network import build_network
+from codriving.environment.recorder import Recorder
+from codriving.environment.snapshot import snapshot
+from codriving.environment.spawn import spawn
+from codriving.environment.traffic import Traffic
+from codriving.environment.way import Way, way
+from codriving.errors import EpisodeError
+from codriving.geometry.road_map import road_map
+from codriving.scenarios.protocol import Scenario
+
+
+class Environment:
+    """Several CAVs and human drivers on one road, on highway-env's physics.
+
+    Args:
+        scenario: The road and who starts where.
+        control: Gains of the CAVs' controllers.
+        drivers: Parameters of the human drivers.
+        corrections: Which faults of the simulator are corrected.
+
+    Raises:
+        ScenarioError: If the road is not consistent in itself.
+    """
+
+    def __init__(
+        self, scenario: Scenario, control: ControlGains, drivers: DriverProfile, corrections: Corrections
+    ) -> None:
+        self.scenario, self.control, self.drivers, self.corrections = scenario, control, drivers, corrections
+        pace = scenario.pace
+        self.driving_model = DrivingModel(
+            target_speeds=pace.target_speeds,
+            speed_gain=control.speed,
+            step=1 / pace.simulation_frequency,
+            decision_interval=1 / pace.decision_frequency,
+            detection_range=pace.detection_range,
+        )
+        self.road_map = road_map(scenario.road)
+        self._network = build_network(scenario.road)
+        self._ways: dict[str, Way] = {route.id: way(self.road_map, route.id) for route in scenario.road.routes}
+        self._world: WorldState | None = None
+        self._outcome: Outcome | None = None
+
+    def reset(self, seed: int) -> WorldState:
+        """Begin an episode.
+
+        Args:
+            seed: Seed of the scene and of the drivers' individual differences.
+
+        Raises:
+            ScenarioError: If the vehicles cannot be placed.
+        """
+        self._world = self._outcome = None
+        scene = self.scenario.scene(seed)
+        rng = np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(1,)))
+        self._traffic = Traffic(self._network, rng, self.road_map, self.corrections)
+        spawn(self._traffic, scene, self._ways, self.driving_model.target_speeds, self.control, self.drivers)
+        cavs = [start.id for start in scene.starts if start.kind is Kind.CAV]
+        self._judge = Judge(cavs, self.scenario.pace.time_limit, self.driving_model.step)
+        self._steps = self._decisions = 0
+        self._recorder = Recorder()
+        self._recorder.record(0, self._traffic.vehicles, {})
+        return self._look()
+
+    def step(self, actions: Mapping[str, Action]) -> WorldState:
+        """Let every CAV carry out its decision until the next one is due, or until the episode ends.
+
+        Args:
+            actions: One action for every CAV on the road, by id.
+
+        Raises:
+            EpisodeError: If no episode is going on, or an action is missing, for nobody, or not available.
+        """
+        self._check(actions)
+        for vehicle in self._traffic.vehicles:
+            if isinstance(vehicle, ConnectedVehicle):
+                vehicle.act(str(actions[vehicle.id]))
+        in_force = {name: str(action) for name, action in actions.items()}
+        for _ in range(self.driving_model.substeps):
+            self._traffic.act()
+            self._traffic.step(self.driving_model.step)
+            self._steps += 1
+            self._recorder.record(self._steps, self._traffic.vehicles, in_force)
+            self._outcome = self._judge.judge(self._traffic, self._time)
+            if self._outcome is not None:
+                break
+        self._decisions += 1
+        return self._look()
+
+    @property
+    def outcome(self) -> Outcome | None:
+        """How the episode ended; None while it goes on."""
+        return self._outcome
+
+    def trajectory(self) -> Trajectory:
+        """Return what everybody has driven so far.
+
+        Raises:
+            EpisodeError: If no episode has begun.
+        """
+        if self._world is None:
+            raise EpisodeError("no episode has begun; call reset(seed) before trajectory()")
+        return self._recorder.trajectory(self.driving_model.step, self._judge.arrivals)
+
+    @property
+    def _time(self) -> float:
+        return round(self._steps * self.driving_model.step, 9)
+
+    def _look(self) -> WorldState:
+        self._world = snapshot(self._traffic, self._time, self._decisions)
+        return self._world
+
+    def _check(self, actions: Mapping[str, Action]) -> None:
+        """Refuse actions that the CAVs on the road cannot carry out."""
+        if self._world is None:
+            raise EpisodeError("no episode has begun; call reset(seed) before step(actions)")
+        if self._outcome is not None:
+            raise EpisodeError("the episode is over; call reset(seed) before step(actions)")
+        available = self._world.available
+        if set(actions) != set(available):
+            raise EpisodeError(f"one action for each of {sorted(available)} is needed, got {sorted(actions)}")
+        for name, action in actions.items():
+            if action not in available[name]:
+                can = ", ".join(available[name])
+                raise EpisodeError(f"{name} cannot do {action} here; it can do {can}")

@@ -1,0 +1,92 @@
+"""Who has arrived, who has crashed, and whether the episode is over: the exact outcome."""
+
+from collections.abc import Iterable
+
+from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.environment.cav import ConnectedVehicle
+from codriving.environment.collisions import find_collisions
+from codriving.environment.on_way import OnWay
+from codriving.environment.traffic import Traffic
+
+
+class Judge:
+    """Watches one episode and takes off the road who has arrived, left or been towed away.
+
+    Args:
+        cavs: Ids of the CAVs; the episode is a success when all of them have arrived.
+        time_limit: Longest duration [s].
+        dt: Simulation step [s].
+
+    Attributes:
+        arrivals: Arrival time of each CAV that has arrived [s], by id. An arrival is latched: nothing takes it back.
+    """
+
+    def __init__(self, cavs: Iterable[str], time_limit: float, dt: float) -> None:
+        self.arrivals: dict[str, float] = {}
+        self._waiting = set(cavs)
+        self._time_limit, self._dt = time_limit, dt
+        self._bystanders: list[Collision] = []
+
+    def judge(self, traffic: Traffic, time: float) -> Outcome | None:
+        """Look at the road after a simulation step.
+
+        Args:
+            traffic: All bodies on the road; whoever is done is taken off.
+            time: Present time [s].
+
+        Returns:
+            The outcome if the episode is over, else None.
+        """
+        collision = self._collide(traffic, time)
+        crashed = () if collision is None else (collision.striker, collision.struck)
+        gone = []
+        for vehicle in traffic.vehicles:
+            if vehicle.s >= vehicle.way.route.goal and vehicle.id in self._waiting:
+                if vehicle.id in crashed:
+                    continue
+                self.arrivals[vehicle.id] = time
+                self._waiting.discard(vehicle.id)
+                gone.append(vehicle)
+            elif vehicle.s >= vehicle.way.end and traffic.corrections.remove_at_sink:
+                gone.append(vehicle)
+        lost = tuple(v.id for v in traffic.vehicles if v.id in self._waiting and _is_off_road(v))
+        if gone:
+            traffic.vehicles = [v for v in traffic.vehicles if v not in gone]
+        if collision is not None:
+            return self._end(Ending.COLLISION, time, collision=collision)
+        if lost:
+            return self._end(Ending.OFF_ROAD, time, off_road=lost)
+        if not self._waiting:
+            return self._end(Ending.SUCCESS, time)
+        if time >= self._time_limit - 1e-9:
+            return self._end(Ending.TIMEOUT, time)
+        return None
+
+    def _collide(self, traffic: Traffic, time: float) -> Collision | None:
+        """Tow away human drivers who hit each other; return the first collision of a CAV."""
+        first = None
+        exact = traffic.corrections.true_collisions
+        for striker, struck, collision in find_collisions(traffic.vehicles, time, self._dt, exact):
+            if isinstance(striker, ConnectedVehicle) or isinstance(struck, ConnectedVehicle):
+                first = first or collision
+            else:
+                self._bystanders.append(collision)
+                traffic.vehicles = [v for v in traffic.vehicles if v not in (striker, struck)]
+        return first
+
+    def _end(
+        self, ending: Ending, time: float, collision: Collision | None = None, off_road: tuple[str, ...] = ()
+    ) -> Outcome:
+        return Outcome(
+            ending=ending,
+            time=time,
+            arrivals=dict(sorted(self.arrivals.items())),
+            collision=collision,
+            bystander_collisions=tuple(self._bystanders),
+            off_road=off_road,
+        )
+
+
+def _is_off_road(vehicle: OnWay) -> bool:
+    """Whether the centre of a vehicle has left its lane by more than half a lane."""
+    return bool(abs(vehicle.offset - vehicle.shift) > vehicle.lane.width)

@@ -1,0 +1,92 @@
+"""highway-env's bicycle model and steering law in plain numbers: the same bits, without arrays of one element."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from highway_env.road.lane import AbstractLane
+from numpy.typing import NDArray
+
+from codriving.datatypes.road import LaneId
+
+if TYPE_CHECKING:
+    from highway_env.vehicle.controller import ControlledVehicle as _Base
+else:
+    _Base = object
+
+STANDSTILL = 1e-2
+"""Speeds are taken at least this large where something is divided by them, as highway-env does [m/s]."""
+
+
+class PlainMotion(_Base):
+    """Mixin over highway-env's controlled vehicles: how they steer and how they move.
+
+    The trigonometry stays numpy's, since ``math`` rounds differently on some machines.
+    """
+
+    speed: float
+    heading: float
+    impact: NDArray[np.float64] | None
+
+    def steering_control(self, target_lane_index: LaneId) -> float:
+        """Steer back to the centre of a lane (paper Eq. 1: delta = arcsin(K_h (phi_r - phi) l / 2v)).
+
+        Args:
+            target_lane_index: The lane to follow.
+
+        Returns:
+            Angle of the front wheels [rad].
+        """
+        lane = self.road.network.get_lane(target_lane_index)
+        return self._steer(lane, *lane.local_coordinates(self.position))
+
+    def keep_lane(self) -> float:
+        """Go on to the next lane where it is time to, and steer; `follow_road` and `steering_control` in one.
+
+        Returns:
+            Angle of the front wheels [rad].
+        """
+        lane = self.road.network.get_lane(self.target_lane_index)
+        s, lateral = lane.local_coordinates(self.position)
+        if s > lane.length - lane.VEHICLE_LENGTH / 2:
+            self.follow_road()
+            return self.steering_control(self.target_lane_index)
+        return self._steer(lane, s, lateral)
+
+    def _steer(self, lane: AbstractLane, s: float, lateral: float) -> float:
+        speed = self.speed if abs(self.speed) > STANDSTILL else math.copysign(STANDSTILL, self.speed + 0.0)
+        ahead = float(lane.heading_at(s + self.speed * self.TAU_PURSUIT))
+        sideways = float(np.arcsin(clip(-self.KP_LATERAL * float(lateral) / speed, 1.0)))
+        turn = ahead + clip(sideways, math.pi / 4) - self.heading
+        rate = self.KP_HEADING * (((turn + math.pi) % (2 * math.pi)) - math.pi)
+        slip = np.arcsin(clip(self.LENGTH / 2 / speed * rate, 1.0))
+        return clip(float(np.arctan(2 * float(np.tan(slip)))), self.MAX_STEERING_ANGLE)
+
+    def move(self, dt: float) -> None:
+        """Integrate the bicycle model, the place before heading and speed (paper Eq. 1: beta = arctan(tan(delta) / 2)).
+
+        Args:
+            dt: Simulation step [s].
+        """
+        self.clip_actions()
+        beta = float(np.arctan(1 / 2 * float(np.tan(self.action["steering"]))))
+        course = self.heading + beta
+        self.position[0] += self.speed * float(np.cos(course)) * dt
+        self.position[1] += self.speed * float(np.sin(course)) * dt
+        if self.impact is not None:
+            self.position += self.impact
+            self.crashed = True
+            self.impact = None
+        self.heading += self.speed * float(np.sin(beta)) / (self.LENGTH / 2) * dt
+        self.speed += self.action["acceleration"] * dt
+        self.on_state_update()
+
+
+def clip(value: float, most: float) -> float:
+    """Keep a number within [-most, most].
+
+    Args:
+        value: The number.
+        most: Its largest size.
+    """
+    return min(max(value, -most), most)

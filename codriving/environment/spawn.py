@@ -1,0 +1,41 @@
+"""A scene becomes vehicles on the road."""
+
+from collections.abc import Mapping
+
+from codriving.datatypes.scene import Scene
+from codriving.datatypes.vehicle import Kind
+from codriving.environment.cav import ConnectedVehicle
+from codriving.environment.control import ControlGains
+from codriving.environment.driver_profile import DriverProfile
+from codriving.environment.human_driver import HumanDriver
+from codriving.environment.traffic import Traffic
+from codriving.environment.way import Way
+
+
+def spawn(
+    traffic: Traffic,
+    scene: Scene,
+    ways: Mapping[str, Way],
+    target_speeds: tuple[float, ...],
+    control: ControlGains,
+    drivers: DriverProfile,
+) -> None:
+    """Put everybody on the road, in the order of the scene.
+
+    Args:
+        traffic: The empty road.
+        scene: Who starts where.
+        ways: Every route, laid out.
+        target_speeds: Speeds that a CAV's FASTER and SLOWER step through [m/s].
+        control: Gains of the CAVs' controllers.
+        drivers: Parameters of the human drivers.
+    """
+    corrections = traffic.corrections
+    for start in scene.starts:
+        way = ways[start.route]
+        vehicle = (
+            ConnectedVehicle.start(traffic, start, way, target_speeds, control, corrections)
+            if start.kind is Kind.CAV
+            else HumanDriver.start(traffic, start, way, drivers, corrections)
+        )
+        traffic.vehicles.append(vehicle)

@@ -1,0 +1,115 @@
+"""Who struck whom: the one whose front was in the contact at the moment when the two first touched."""
+
+import math
+
+from codriving.environment.on_way import OnWay
+from codriving.geometry.box import corners, overlap
+
+HALVINGS = 20
+"""Bisections of a simulation step; finds the first touch to a micrometre."""
+
+CORNER = 0.1
+"""A contact this close to the front edge is at the front, even at the very corner [m]."""
+
+MOVING = 0.1
+"""Slower vehicles do not strike anybody [m/s]."""
+
+Point = tuple[float, float]
+
+
+def who_struck(one: OnWay, other: OnWay, dt: float) -> tuple[OnWay, OnWay]:
+    """Tell the striker from the struck.
+
+    A vehicle strikes if its front is in the contact and the other one's front is not. Else, as when two meet head-on or
+    scrape along each other, it is the one that moved faster towards the other.
+
+    Args:
+        one: A vehicle.
+        other: A vehicle whose footprint overlaps that of the first.
+        dt: Time since they were last known not to overlap [s].
+
+    Returns:
+        The striker and the struck.
+    """
+    back = _since_touch(one, other, dt)
+    contact = _contact(one, other, back)
+    fronts = [_at_front(vehicle, contact, back) and vehicle.speed > MOVING for vehicle in (one, other)]
+    if fronts[0] != fronts[1]:
+        return (one, other) if fronts[0] else (other, one)
+    (x, y), (x2, y2) = _centre(one, back), _centre(other, back)
+    dx, dy = x2 - x, y2 - y
+    towards_other = one.speed * (math.cos(one.heading) * dx + math.sin(one.heading) * dy)
+    towards_one = -other.speed * (math.cos(other.heading) * dx + math.sin(other.heading) * dy)
+    return (one, other) if towards_other >= towards_one else (other, one)
+
+
+def _centre(vehicle: OnWay, back: float) -> Point:
+    """Where a vehicle was some time ago [s], at its present velocity."""
+    way = vehicle.speed * back
+    x, y = vehicle.position.tolist()
+    return x - way * math.cos(vehicle.heading), y - way * math.sin(vehicle.heading)
+
+
+def _box(vehicle: OnWay, back: float) -> list[Point]:
+    x, y = _centre(vehicle, back)
+    return [(px, py) for px, py in corners(x, y, vehicle.heading, vehicle.LENGTH, vehicle.WIDTH).tolist()]
+
+
+def _since_touch(one: OnWay, other: OnWay, dt: float) -> float:
+    """How long ago the two began to overlap [s]; 0 if that cannot be told from their velocities."""
+
+    def overlapped(back: float) -> bool:
+        boxes = (
+            corners(*_centre(vehicle, back), vehicle.heading, vehicle.LENGTH, vehicle.WIDTH) for vehicle in (one, other)
+        )
+        return overlap(*boxes)
+
+    if overlapped(dt):
+        return 0.0
+    touching, apart = 0.0, dt
+    for _ in range(HALVINGS):
+        middle = (touching + apart) / 2
+        if overlapped(middle):
+            touching = middle
+        else:
+            apart = middle
+    return touching
+
+
+def _contact(one: OnWay, other: OnWay, back: float) -> Point:
+    """The middle of the ground that both cover."""
+    polygon = _box(one, back)
+    box = _box(other, back)
+    for k in range(4):
+        polygon = _cut(polygon, box[k], box[(k + 1) % 4])
+    if not polygon:
+        polygon = [_centre(one, back), _centre(other, back)]
+    return sum(x for x, _ in polygon) / len(polygon), sum(y for _, y in polygon) / len(polygon)
+
+
+def _cut(polygon: list[Point], a: Point, b: Point) -> list[Point]:
+    """Keep the part of a polygon on the inner side of the edge from a to b (Sutherland and Hodgman, 1974)."""
+
+    def side(p: Point) -> float:
+        # Corners run from front right to front left, against the clock where y grows to the right.
+        return (b[1] - a[1]) * (p[0] - a[0]) - (b[0] - a[0]) * (p[1] - a[1])
+
+    kept = []
+    for k, p in enumerate(polygon):
+        q = polygon[k - 1]
+        at_p, at_q = side(p), side(q)
+        if (at_p > 0) != (at_q > 0):
+            t = at_q / (at_q - at_p)
+            kept.append((q[0] + t * (p[0] - q[0]), q[1] + t * (p[1] - q[1])))
+        if at_p > 0:
+            kept.append(p)
+    return kept
+
+
+def _at_front(vehicle: OnWay, contact: Point, back: float) -> bool:
+    """Whether a point on the ground lies at the front of a vehicle rather than at its sides or rear."""
+    x, y = _centre(vehicle, back)
+    dx, dy = contact[0] - x, contact[1] - y
+    along = dx * math.cos(vehicle.heading) + dy * math.sin(vehicle.heading)
+    across = abs(dy * math.cos(vehicle.heading) - dx * math.sin(vehicle.heading))
+    return bool(vehicle.LENGTH / 2 - along <= max(vehicle.WIDTH / 2 - across, 0.0) + CORNER)

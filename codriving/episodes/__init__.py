@@ -1,0 +1,1 @@
+"""Episodes and batches of them: the only loop, and the processes that it runs in."""

@@ -1,0 +1,61 @@
+"""A batch: many units, wherever they are driven, counted as they end."""
+
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass
+
+from codriving.datatypes.outcome import Ending
+from codriving.episodes.job import Job, Report
+from codriving.episodes.launcher import Launcher
+from codriving.episodes.progress import Progress, Silent
+from codriving.episodes.unit import Unit
+
+
+@dataclass(frozen=True, slots=True)
+class BatchReport:
+    """What became of a batch.
+
+    Attributes:
+        done: Units that have ended, failed ones included.
+        failed: Reports of those that ended in an error, by cell and seed.
+    """
+
+    done: int
+    failed: tuple[Report, ...]
+
+
+def run_batch(
+    units: Sequence[Unit],
+    job: Job,
+    launcher: Launcher,
+    workers: int | str = 1,
+    preload: Sequence[str] = (),
+    progress: Progress | None = None,
+) -> BatchReport:
+    """Drive a batch; results are kept by the job, this only counts.
+
+    Args:
+        units: What to drive.
+        job: What to do with each; picklable if there are several workers.
+        launcher: Where to drive it.
+        workers: Number of processes, or ``auto`` for one a core.
+        preload: Modules that all workers need.
+        progress: Who is told of each unit.
+
+    Returns:
+        The counts.
+
+    Raises:
+        UserError: If the config cannot be built or a result cannot be saved.
+        KeyboardInterrupt: After the processes have been ended; what was saved stays.
+    """
+    progress = progress or Silent()
+    failed: list[Report] = []
+    done = 0
+    with closing(launcher.launch(units, job, workers, preload)) as reports:
+        for report in reports:
+            done += 1
+            if report.ending is Ending.ERROR:
+                failed.append(report)
+            progress.update(done, len(failed))
+    return BatchReport(done, tuple(sorted(failed, key=lambda r: (r.unit.cell, r.unit.seed))))

@@ -1,0 +1,105 @@
+"""What a worker does with one unit: build its objects once, drive, save."""
+
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from codriving.datatypes.outcome import Ending
+from codriving.episodes.episode import EpisodeResult, failed_result, run_episode
+from codriving.episodes.unit import Labels, Objects, Unit
+from codriving.errors import UserError
+
+
+@dataclass(frozen=True)
+class Job:
+    """All that a process needs for any unit of a batch; it is pickled to the workers.
+
+    Attributes:
+        labels: Labels of each cell, by name.
+        build: Builds the objects of a cell from its name.
+        save: Keeps a result; must be atomic, and raise a UserError where the user can mend what is wrong.
+    """
+
+    labels: Mapping[str, Labels]
+    build: Callable[[str], Objects]
+    save: Callable[[Unit, EpisodeResult], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What the parent is told of a unit.
+
+    Attributes:
+        unit: The unit.
+        ending: How it ended.
+        message: What went wrong, for ``error``.
+    """
+
+    unit: Unit
+    ending: Ending
+    message: str = ""
+
+
+class Worker:
+    """Drives the units of one process."""
+
+    def __init__(self, job: Job) -> None:
+        """Prepare; objects are built when the first unit of their cell comes.
+
+        Args:
+            job: What to do.
+        """
+        self._job = job
+        self._objects: dict[str, Objects] = {}
+
+    def run(self, unit: Unit) -> Report:
+        """Drive one unit and save it.
+
+        Args:
+            unit: Cell and seed.
+
+        Returns:
+            How it ended; an episode that fails is saved as a record that says so.
+
+        Raises:
+            UserError: If the config cannot be built or the result cannot be saved: the whole batch has to stop.
+        """
+        result = self._drive(unit)
+        try:
+            self._job.save(unit, result)
+        except UserError:
+            raise
+        except Exception as error:
+            # A result that cannot be written (a NaN in the score, say) is a fault of the episode, not of the batch.
+            result = failed_result(self._job.labels[unit.cell], unit.seed, error, traceback.format_exc())
+            self._job.save(unit, result)
+        outcome = result.record.outcome
+        return Report(unit, outcome.ending, outcome.message)
+
+    def abandon(self, unit: Unit, error: Exception) -> Report:
+        """Save a unit as failed without driving it.
+
+        Args:
+            unit: Cell and seed.
+            error: Why.
+
+        Returns:
+            The report of it.
+
+        Raises:
+            UserError: If the record cannot be saved.
+        """
+        result = failed_result(self._job.labels[unit.cell], unit.seed, error)
+        self._job.save(unit, result)
+        return Report(unit, Ending.ERROR, result.record.outcome.message)
+
+    def _drive(self, unit: Unit) -> EpisodeResult:
+        labels = self._job.labels[unit.cell]
+        try:
+            if unit.cell not in self._objects:
+                self._objects[unit.cell] = self._job.build(unit.cell)
+        except UserError:
+            raise
+        except Exception as error:
+            return failed_result(labels, unit.seed, error, traceback.format_exc())
+        return run_episode(*self._objects[unit.cell], seed=unit.seed, labels=labels)

@@ -1,0 +1,50 @@
+"""The unit of a batch: one seed of one cell, and what all units of a cell are labelled with."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from codriving.episodes.protocols import Environment, Method, Metrics
+
+
+@dataclass(frozen=True, slots=True)
+class Labels:
+    """What the records of a cell are labelled with.
+
+    Attributes:
+        scenario: Name of the scenario.
+        method: Name of the method.
+        variant: Name of the CDA variant.
+        reasoner: Who reasons: ``rules`` or the name of a model.
+    """
+
+    scenario: str
+    method: str
+    variant: str
+    reasoner: str
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """One episode to drive.
+
+    Attributes:
+        cell: Name of the cell.
+        seed: Seed of the episode.
+    """
+
+    cell: str
+    seed: int
+
+
+class Objects(NamedTuple):
+    """What the episodes of one cell are driven with, built once a process.
+
+    Attributes:
+        environment: The world.
+        method: Who decides.
+        metrics: What is judged by.
+    """
+
+    environment: Environment
+    method: Method
+    metrics: Metrics

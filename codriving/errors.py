@@ -1,0 +1,33 @@
+"""Everything that can go wrong, as one tree.
+
+CodrivingError                      anything this program raises on purpose
+├── UserError                       the user can mend it: one line, exit code 2, no traceback
+│   ├── ConfigError                 a key, value, range or cross-field rule of the config
+│   │   └── ScenarioError           a scenario whose vehicles cannot be placed or whose road is broken
+│   └── RunFolderError              a run folder that is unwritable, of another config, or damaged
+└── EpisodeError                    an episode could not go on; it becomes a record and the batch continues
+"""
+
+
+class CodrivingError(Exception):
+    """Base of every error that this program raises on purpose."""
+
+
+class UserError(CodrivingError):
+    """Raised when the user can mend what is wrong; the message says what, why and what to do."""
+
+
+class ConfigError(UserError):
+    """Raised when a config key, type, range or cross-field rule is broken."""
+
+
+class ScenarioError(ConfigError):
+    """Raised when a scenario's vehicles cannot be placed or its road is inconsistent."""
+
+
+class RunFolderError(UserError):
+    """Raised when a run folder cannot be written, belongs to another config, or is damaged."""
+
+
+class EpisodeError(CodrivingError):
+    """Raised when an episode cannot go on; the batch records it and continues."""

@@ -1,0 +1,41 @@
+"""What becomes of a result: its folder in the run folder; done by the process that drove the episode."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from codriving.episodes.episode import EpisodeResult
+from codriving.episodes.unit import Unit
+from codriving.storage.episode_folder import write_episode
+from codriving.storage.run_folder import EPISODES
+from codriving.storage.timing import timing_of
+
+
+@dataclass(frozen=True)
+class KeepEpisode:
+    """Writes episodes under a run folder.
+
+    Attributes:
+        folder: The run folder.
+    """
+
+    folder: Path
+
+    def __call__(self, unit: Unit, result: EpisodeResult) -> None:
+        """Write one episode, whole or not at all.
+
+        Args:
+            unit: Cell and seed.
+            result: What it left.
+
+        Raises:
+            RunFolderError: If the disk refuses.
+            ValueError: If the result cannot be written as it is.
+        """
+        write_episode(
+            self.folder / EPISODES / unit.cell / str(unit.seed),
+            result.record,
+            result.trajectory,
+            result.decisions,
+            timing_of(result.seconds, result.decision_seconds),
+            result.traceback,
+        )

@@ -1,0 +1,155 @@
+"""The faces of an experiment: for the command line, which prints, and for Python, which gets data frames."""
+
+import shlex
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from codriving.config.locate import experiments_dir
+from codriving.episodes.progress import show_progress
+from codriving.errors import ConfigError
+from codriving.experiment.ablation import ablation_variations
+from codriving.experiment.execute import Finished, Interrupted, execute
+from codriving.experiment.objects import BuildObjects, modules_to_preload
+from codriving.experiment.plan import Plan, make_plan
+from codriving.reports.console import print_table
+from codriving.reports.paper import read_paper
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+INTERRUPTED = 130
+"""Exit code of a process that the user stopped (128 + SIGINT)."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """What a run gives to Python.
+
+    Attributes:
+        episodes: One row an episode.
+        summary: One row a cell.
+        folder: The run folder.
+    """
+
+    episodes: "DataFrame"
+    summary: "DataFrame"
+    folder: Path
+
+
+def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> int:
+    """Run one cell and print its table: ``codriving run``.
+
+    Args:
+        overrides: ``key=value`` tokens.
+        config_dir: A folder of the user's own configs.
+
+    Returns:
+        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
+
+    Raises:
+        UserError: If the config or the run folder cannot be used.
+    """
+    return _command("run", [overrides], overrides, config_dir)
+
+
+def run_ablation(overrides: Sequence[str], config_dir: Path | None = None) -> int:
+    """Run the full method and each sub-module removed, and print one table: ``codriving ablate``.
+
+    Args:
+        overrides: ``key=value`` tokens that hold for every cell.
+        config_dir: A folder of the user's own configs.
+
+    Returns:
+        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
+
+    Raises:
+        UserError: If the config or the run folder cannot be used.
+    """
+    return _command("ablate", ablation_variations(overrides), overrides, config_dir)
+
+
+def _refuse_alike(plan: Plan) -> None:
+    """A method that does not reason has nothing to remove; its ablation would be one row many times over."""
+    labels = {cell.labels for cell in plan.cells}
+    if len(plan.cells) > 1 and len(labels) == 1:
+        method = plan.cells[0].labels.method
+        raise ConfigError(
+            f"method {method!r} has no reasoning sub-modules to remove; choose one that has, method=codriving"
+        )
+
+
+def run_frames(*overrides: str, config_dir: Path | None = None) -> Results:
+    """Run one cell and give its tables as data frames; prints no table.
+
+    Args:
+        *overrides: ``key=value`` tokens.
+        config_dir: A folder of the user's own configs.
+
+    Returns:
+        Episodes, summary and the run folder.
+
+    Raises:
+        UserError: If the config or the run folder cannot be used.
+        KeyboardInterrupt: If the user stops it; finished episodes are kept.
+    """
+    finished = _run(make_plan([overrides], config_dir))
+    return Results(finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
+
+
+def _run(plan: Plan) -> Finished:
+    configs = plan.configs
+    return execute(
+        plan, BuildObjects(configs), modules_to_preload(configs.values()), read_paper(experiments_dir()), show_progress
+    )
+
+
+def _command(name: str, variations: Sequence[Sequence[str]], overrides: Sequence[str], config_dir: Path | None) -> int:
+    plan = make_plan(variations, config_dir)
+    _refuse_alike(plan)
+    try:
+        finished = _run(plan)
+    except Interrupted as stop:
+        again = resume_command(name, overrides, config_dir, stop.folder.name)
+        print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)
+        print(f"Go on with: {again}", file=sys.stderr)
+        return INTERRUPTED
+    report(finished, resume_command(name, overrides, config_dir, finished.folder.name))
+    return 1 if finished.failed else 0
+
+
+def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None, run: str) -> str:
+    """Give the command that goes on with a run.
+
+    Args:
+        name: The command.
+        overrides: What the user gave.
+        config_dir: The user's own configs, if any.
+        run: Name of the run.
+
+    Returns:
+        The command, quoted for a shell.
+    """
+    kept = [override for override in overrides if not override.lstrip("+").startswith("run=")]
+    folder = ["--config-dir", str(config_dir)] if config_dir else []
+    return shlex.join(["codriving", name, *kept, f"run={run}", *folder])
+
+
+def report(finished: Finished, again: str) -> None:
+    """Print what a finished run has to say; the last line tells its folder.
+
+    Args:
+        finished: The run.
+        again: The command that repeats failed episodes.
+    """
+    if not finished.driven:
+        print(f"Nothing to do: all {finished.kept} episodes of this run are finished already.")
+    print_table(finished.tables.display)
+    if finished.failed:
+        first = finished.failed[0]
+        where = f"{finished.folder}/episodes/{first.unit.cell}/{first.unit.seed}/error.txt"
+        print(f"{len(finished.failed)} episodes ended in an error, the first with {first.message} (see {where}).")
+        print(f"Repeat them with: {again}")
+    print(f"Run folder: {finished.folder}")

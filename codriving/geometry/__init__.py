@@ -1,0 +1,1 @@
+"""Shapes: paths by arc length, oriented boxes, and the conflict zones between routes."""

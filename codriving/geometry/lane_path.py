@@ -1,0 +1,82 @@
+"""From lanes to paths: one lane, or the lanes of a route joined into one."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from codriving.datatypes.road import Lane
+from codriving.geometry.curve import Curve, FloatArray, bridge, lane_curve
+from codriving.geometry.path import Path
+
+SPACING = 0.5
+"""Nominal distance between two path points [m]."""
+
+JOINED = 1e-3
+"""Lanes whose ends are closer than this are joined without a bridge [m]."""
+
+
+def lane_path(lane: Lane, spacing: float = SPACING) -> Path:
+    """Sample the centre line of one lane.
+
+    Args:
+        lane: The lane.
+        spacing: Nominal distance between two points [m]; the exact one divides the length evenly.
+    """
+    return _sample([lane_curve(lane.shape)], spacing)
+
+
+def route_path(lanes: Sequence[Lane], spacing: float = SPACING) -> Path:
+    """Join lanes into one path; a gap between two of them is bridged smoothly.
+
+    Args:
+        lanes: The lanes in the order of travel, at least one.
+        spacing: Nominal distance between two points [m].
+    """
+    return _sample([curve for _, curve in joined_curves(lanes)], spacing)
+
+
+def lane_starts(lanes: Sequence[Lane]) -> tuple[float, ...]:
+    """Return the arc length at which each lane begins on the path that joins them [m]."""
+    starts, s = [], 0.0
+    for is_lane, curve in joined_curves(lanes):
+        if is_lane:
+            starts.append(s)
+        s += curve.length
+    return tuple(starts)
+
+
+def joined_curves(lanes: Sequence[Lane]) -> list[tuple[bool, Curve]]:
+    """Return the curves of lanes and of the bridges between them, each with whether it is a lane."""
+    curves: list[tuple[bool, Curve]] = []
+    for lane in lanes:
+        curve = lane_curve(lane.shape)
+        if curves:
+            x, y, heading = end_of(curves[-1][1], at_start=False)
+            x2, y2, heading2 = end_of(curve, at_start=True)
+            if math.hypot(x2 - x, y2 - y) > JOINED:
+                curves.append((False, bridge((x, y), heading, (x2, y2), heading2)))
+        curves.append((True, curve))
+    return curves
+
+
+def end_of(curve: Curve, at_start: bool) -> tuple[float, float, float]:
+    """Return x, y [m] and heading [rad] at one end of a curve."""
+    points, headings = curve.at(np.array([0.0 if at_start else curve.length]))
+    return float(points[0, 0]), float(points[0, 1]), float(headings[0])
+
+
+def _sample(curves: Sequence[Curve], spacing: float) -> Path:
+    starts = np.concatenate(([0.0], np.cumsum([curve.length for curve in curves])))
+    length = float(starts[-1])
+    grid = np.linspace(0.0, length, max(2, round(length / spacing) + 1))
+    piece = np.clip(np.searchsorted(starts, grid, side="right") - 1, 0, len(curves) - 1)
+    points: FloatArray = np.empty((len(grid), 2))
+    headings: FloatArray = np.empty(len(grid))
+    for k, curve in enumerate(curves):
+        mine = piece == k
+        points[mine], headings[mine] = curve.at(grid[mine] - starts[k])
+    # Lanes may state the same heading a whole turn apart; without unwrapping, interpolation would spin there.
+    headings = np.unwrap(headings)
+    points.flags.writeable = headings.flags.writeable = False
+    return Path(points, headings, length)

@@ -1,0 +1,99 @@
+"""What a road must fulfil before anything can drive on it."""
+
+import math
+from collections import Counter
+from collections.abc import Iterable
+from itertools import pairwise
+
+from codriving.datatypes.road import Arc, Lane, Road, Route
+from codriving.errors import ScenarioError
+from codriving.geometry.curve import lane_curve
+from codriving.geometry.lane_path import end_of, route_path
+
+_LONGEST_GAP = 15.0
+"""Longest gap between two lanes that is bridged [m]."""
+
+_SIDEWAYS = math.radians(60.0)
+"""Steepest direction over a gap against the heading of either lane [rad]."""
+
+_ROUGH = 0.5
+"""Gaps shorter than this may lie in any direction [m]."""
+
+
+def check_road(road: Road) -> None:
+    """Refuse a road that is not consistent in itself.
+
+    Args:
+        road: The road.
+
+    Raises:
+        ScenarioError: If there is no route, an id is used twice, a lane has no length, a route names a lane that does
+            not exist or two lanes that are not connected, or its entry and goal are not on it in this order.
+    """
+    if not road.routes:
+        raise ScenarioError(f"road {road.name!r} has no routes; nobody could drive on it")
+    _unique(road, "lane", (lane.id for lane in road.lanes))
+    _unique(road, "route", (route.id for route in road.routes))
+    for lane in road.lanes:
+        _check_lane(road, lane)
+    lanes = {lane.id: lane for lane in road.lanes}
+    for route in road.routes:
+        if not route.lanes:
+            raise ScenarioError(f"route {route.id!r} of road {road.name!r} has no lanes; give it at least one")
+        for lane_id in route.lanes:
+            if lane_id not in lanes:
+                raise ScenarioError(
+                    f"route {route.id!r} of road {road.name!r} uses lane {lane_id}, which does not exist; "
+                    f"add the lane or correct the route"
+                )
+        for lane_id, next_id in pairwise(route.lanes):
+            _check_joint(road, route, lanes[lane_id], lanes[next_id])
+        length = route_path([lanes[lane_id] for lane_id in route.lanes]).length
+        if not 0 <= route.entry <= route.goal <= length + 1e-6:
+            raise ScenarioError(
+                f"route {route.id!r} of road {road.name!r} must have 0 <= entry <= goal <= its length of "
+                f"{length:.2f} m, got entry {route.entry:g} m and goal {route.goal:g} m"
+            )
+
+
+def _unique(road: Road, what: str, ids: Iterable[object]) -> None:
+    for name, times in Counter(ids).items():
+        if times > 1:
+            raise ScenarioError(f"{what} id {name!r} is used {times} times on road {road.name!r}; ids must be unique")
+
+
+def _check_lane(road: Road, lane: Lane) -> None:
+    if isinstance(lane.shape, Arc) and not lane.shape.radius > 0:
+        raise ScenarioError(f"lane {lane.id} of road {road.name!r} must have a radius > 0 m, got {lane.shape.radius:g}")
+    if not isinstance(lane.shape, Arc) and lane.shape.start == lane.shape.end:
+        raise ScenarioError(
+            f"lane {lane.id} of road {road.name!r} starts and ends at {lane.shape.start}; give it a length"
+        )
+    if isinstance(lane.shape, Arc) and not lane_curve(lane.shape).length > 0:
+        raise ScenarioError(
+            f"lane {lane.id} of road {road.name!r} turns against its direction; "
+            f"end_phase must be greater than start_phase if clockwise, else smaller"
+        )
+    if not lane.width > 0 or not lane.speed_limit > 0:
+        raise ScenarioError(
+            f"lane {lane.id} of road {road.name!r} must have a width and a speed limit > 0, "
+            f"got {lane.width:g} m and {lane.speed_limit:g} m/s"
+        )
+
+
+def _check_joint(road: Road, route: Route, lane: Lane, following: Lane) -> None:
+    where = f"route {route.id!r} of road {road.name!r} goes from lane {lane.id} to lane {following.id}"
+    if lane.id[1] != following.id[0]:
+        raise ScenarioError(f"{where}, but the first ends at node {lane.id[1]!r} and the second begins elsewhere")
+    x, y, heading = end_of(lane_curve(lane.shape), at_start=False)
+    x2, y2, heading2 = end_of(lane_curve(following.shape), at_start=True)
+    gap = math.hypot(x2 - x, y2 - y)
+    if gap > _LONGEST_GAP:
+        raise ScenarioError(f"{where} over a gap of {gap:.1f} m; at most {_LONGEST_GAP:g} m can be bridged")
+    direction = math.atan2(y2 - y, x2 - x)
+    turns = [abs(math.remainder(direction - h, math.tau)) for h in (heading, heading2)]
+    if gap > _ROUGH and max(turns) > _SIDEWAYS:
+        raise ScenarioError(
+            f"{where}, which begins {gap:.1f} m away at an angle of {math.degrees(max(turns)):.0f} deg to the way of "
+            f"travel; at most {math.degrees(_SIDEWAYS):.0f} deg can be driven"
+        )

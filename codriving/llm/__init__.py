@@ -1,0 +1,1 @@
+"""Who reasons: the built-in rules, or a language model."""

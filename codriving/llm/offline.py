@@ -1,0 +1,7 @@
+"""``llm=offline``: no model at all; the built-in rules reason, and every table says so."""
+
+
+class Offline:
+    """The built-in rule reasoner; no network, no key, deterministic."""
+
+    name = "rules"

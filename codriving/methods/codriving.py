@@ -1,0 +1,88 @@
+"""CoDrivingLLM: the paper's method, with its CDA level, its reasoner and its memory put into the slots."""
+
+from typing import Protocol
+
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.world import WorldState
+from codriving.errors import ConfigError
+from codriving.geometry.road_map import RoadMap
+from codriving.methods.deliberation import Deliberation
+from codriving.methods.pipeline import Pipeline
+from codriving.prediction.forecast import Forecast
+from codriving.reasoning.cda import CdaLevel
+from codriving.reasoning.decision.rules import RuleDecider
+from codriving.reasoning.intent_sharing import HiddenIntents, SharedIntents
+from codriving.reasoning.negotiation.coordinator import RuleCoordinator
+from codriving.reasoning.negotiation.negotiation import AgreedOrder, Negotiation
+from codriving.reasoning.negotiation.own_order import OwnOrders
+from codriving.reasoning.plans import PLANS
+from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
+from codriving.reasoning.safety.outlook import CONTINUATIONS
+from codriving.reasoning.state_sharing import SensedStates, SharedStates
+from codriving.reasoning.tracking import Tracking
+
+
+class Reasoner(Protocol):
+    """Who stands behind the two ports, Coordinator and Decider.
+
+    Attributes:
+        name: Name for tables: ``rules``, or that of a model.
+    """
+
+    name: str
+
+
+class CoDriving:
+    """The framework of the paper.
+
+    Args:
+        cda: Which sub-modules of the reasoning are there.
+        llm: Who reasons.
+        memory: Experiences to recall; None for the framework without its memory module.
+        margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
+
+    Raises:
+        ConfigError: If the margin is out of range.
+    """
+
+    name = "codriving"
+
+    def __init__(self, cda: CdaLevel, llm: Reasoner, memory: object | None, margin: float) -> None:
+        if not 0 <= margin <= 5:
+            raise ConfigError(f"margin must be 0 to 5 s, got {margin:g}")
+        self.cda, self.memory, self.margin = cda, memory, margin
+        self.variant, self.reasoner = cda.variant, llm.name
+
+    def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
+        """Fill the slots for a new episode.
+
+        Args:
+            road_map: The precomputed road.
+            model: How CAVs answer to actions.
+            seed: Seed of the episode.
+        """
+        forecast = Forecast(model, (*CONTINUATIONS, *PLANS))
+        negotiation: Negotiation
+        if self.cda.negotiation:
+            negotiation = AgreedOrder(RuleCoordinator(road_map, forecast, self.cda.binding))
+        else:
+            negotiation = OwnOrders(road_map, forecast, self.cda.own_order, seed)
+        self._pipeline = Pipeline(
+            road_map=road_map,
+            forecast=forecast,
+            tracking=Tracking(road_map),
+            state_sharing=SharedStates() if self.cda.state_sharing else SensedStates(),
+            intent_sharing=SharedIntents() if self.cda.intent_sharing else HiddenIntents(),
+            negotiation=negotiation,
+            safety=ThreeLayers() if self.cda.safety_check else NoCheck(),
+            decider=RuleDecider(),
+            margin=self.margin,
+        )
+
+    def act(self, world: WorldState) -> Deliberation:
+        """Decide for every CAV on the road.
+
+        Args:
+            world: The world.
+        """
+        return self._pipeline.act(world)

@@ -1,0 +1,119 @@
+"""The paper's algorithm: share states, share intents, negotiate, check, recall, decide (Algorithm 1)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.scene_description import SceneDescription
+from codriving.datatypes.situation import Situation
+from codriving.datatypes.world import WorldState
+from codriving.geometry.road_map import RoadMap
+from codriving.methods.deliberation import Deliberation
+from codriving.prediction.forecast import Forecast
+from codriving.reasoning.clear_times import clear_time
+from codriving.reasoning.conflicts import find_conflicts
+from codriving.reasoning.decision.decider import Decider
+from codriving.reasoning.expectation import Expected, expect
+from codriving.reasoning.intent_sharing import IntentSharing
+from codriving.reasoning.movers import Mover, movers
+from codriving.reasoning.negotiation.negotiation import Negotiation
+from codriving.reasoning.safety.assessment import SafetyCheck
+from codriving.reasoning.safety.outlook import Outlook, motions
+from codriving.reasoning.scenes import describe_scenes, with_conflicts
+from codriving.reasoning.state_sharing import StateSharing
+from codriving.reasoning.tracking import Tracking
+
+
+@dataclass(slots=True)
+class Pipeline:
+    """One episode of the paper's reasoning; an ablation puts another object into a slot.
+
+    Attributes:
+        road_map: The precomputed road.
+        forecast: Predictions of the present step.
+        tracking: What each CAV remembers of the others.
+        state_sharing: Class A.
+        intent_sharing: Class B.
+        negotiation: Class C or D, or each CAV's own order.
+        safety: The three-layer check, or none.
+        decider: Rules or a language model.
+        margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
+    """
+
+    road_map: RoadMap
+    forecast: Forecast
+    tracking: Tracking
+    state_sharing: StateSharing
+    intent_sharing: IntentSharing
+    negotiation: Negotiation
+    safety: SafetyCheck
+    decider: Decider
+    margin: float
+
+    def act(self, world: WorldState) -> Deliberation:
+        """Decide for every CAV on the road.
+
+        Args:
+            world: The world.
+        """
+        self.forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
+        views = self.state_sharing.views(world, self.forecast.model)
+        intents = self.intent_sharing.intents(world)
+        scenes = describe_scenes(world, views, intents, self.tracking)
+        conflicts: dict[str, tuple[Conflict, ...]] = dict.fromkeys(scenes, ())
+        if self.intent_sharing.finds_conflicts:
+            conflicts = {ego: find_conflicts(scene, self.road_map) for ego, scene in scenes.items()}
+            scenes = {ego: with_conflicts(scene, conflicts[ego], self.road_map) for ego, scene in scenes.items()}
+        known = {ego: movers(scene) for ego, scene in scenes.items()}
+        orders = self.negotiation.orders(scenes, conflicts)
+        expectations = self._expectations(known, orders)
+        situations = tuple(
+            self._situation(scenes[ego], conflicts[ego], orders[ego], known[ego], expectations[ego], world.available[ego])
+            for ego in scenes
+        )
+        decisions = tuple(self.decider.decide(situations))
+        return Deliberation(world.time, world.step, situations, decisions, {})
+
+    @property
+    def _lag(self) -> int:
+        return round(self.margin / self.forecast.sample)
+
+    def _expectations(
+        self, known: dict[str, dict[str, Mover]], orders: Mapping[str, PassingOrder]
+    ) -> dict[str, dict[str, tuple[Expected, ...]]]:
+        """Expect what follows from each CAV's knowledge and order; those who agree in both share one expectation."""
+        done: list[tuple[dict[str, Mover], PassingOrder, dict[str, tuple[Expected, ...]]]] = []
+        found = {}
+        for ego, vehicles in known.items():
+            order = orders[ego]
+            for seen, went, expected in done:
+                if order is went and vehicles == seen:
+                    found[ego] = expected
+                    break
+            else:
+                found[ego] = expect(vehicles, order, self.road_map, self.forecast, self._lag)
+                done.append((vehicles, order, found[ego]))
+        return found
+
+    def _situation(
+        self,
+        scene: SceneDescription,
+        conflicts: tuple[Conflict, ...],
+        order: PassingOrder,
+        known: dict[str, Mover],
+        expected: dict[str, tuple[Expected, ...]],
+        actions: tuple[Action, ...],
+    ) -> Situation:
+        stops, goes = motions(scene, actions, self.forecast)
+        outlook = Outlook(
+            scene, conflicts, order, known, expected, actions, stops, goes, self.road_map, self.forecast, self._lag
+        )
+        return Situation(
+            scene=scene,
+            conflicts=conflicts,
+            order=order,
+            clear_times=tuple(clear_time(outlook, c) for c in conflicts),
+            assessments=self.safety.assess(outlook),
+        )

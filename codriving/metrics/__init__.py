@@ -1,0 +1,1 @@
+"""From a driven trajectory to its score: success, post-encroachment time, travel velocity."""

@@ -1,0 +1,100 @@
+"""Post-encroachment time: how long the conflict area stayed empty between two vehicles."""
+
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from codriving.datatypes.conflict import Relation
+from codriving.datatypes.score import Pet
+from codriving.datatypes.trajectory import Track, Trajectory
+from codriving.datatypes.vehicle import Kind
+from codriving.geometry.box import TRUE
+from codriving.geometry.curve import FloatArray
+from codriving.geometry.progress import progress
+from codriving.geometry.road_map import RoadMap
+from codriving.geometry.zone import ConflictZone
+
+
+class Passage(NamedTuple):
+    """When a vehicle was in a conflict area.
+
+    Attributes:
+        entry: Time of entering [s].
+        exit: Time of leaving [s].
+        id: Vehicle id; last, so that passages sort by time.
+    """
+
+    entry: float
+    exit: float
+    id: str
+
+
+def post_encroachment_times(trajectory: Trajectory, road: RoadMap) -> tuple[Pet, ...]:
+    """Return the time between the first leaving and the second entering of every conflict area that two passed.
+
+    Counted are pairs with at least one CAV whose routes cross or merge; each conflict area of a pair, first pass only.
+    A pair of which one did not pass the area is absent. The value is negative if both were in the area at once.
+
+    Args:
+        trajectory: What was driven.
+        road: Where it was driven.
+    """
+    places = {track.id: _progress(track, road) for track in trajectory.tracks}
+    pets = []
+    for one, other in combinations(trajectory.tracks, 2):
+        if Kind.CAV not in (one.kind, other.kind):
+            continue
+        for zone in road.zones(one.route, other.route, TRUE):
+            areas = _areas(zone, one.length, other.length)
+            if areas is None:
+                continue
+            passages = [
+                _passage(track, places[track.id], area, trajectory.step)
+                for track, area in zip((one, other), areas, strict=True)
+            ]
+            complete = sorted(passage for passage in passages if passage is not None)
+            if len(complete) == 2:
+                first, second = complete
+                pets.append(Pet(first.id, second.id, str(zone.relation), second.entry - first.exit))
+    return tuple(pets)
+
+
+def _progress(track: Track, road: RoadMap) -> FloatArray:
+    return progress(road.paths[track.route], track.x, track.y, track.heading)
+
+
+def _areas(
+    zone: ConflictZone, length_i: float, length_j: float
+) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """Return the stretch of each route [m] on which a centre is while the vehicle is in the conflict area.
+
+    Where routes cross, this is the whole zone. Where they merge they stay together, so that the zone has no end; the
+    conflict area is the merge point, occupied from nose to tail.
+    """
+    if zone.relation is Relation.CROSSING:
+        return (zone.entry_i, zone.exit_i), (zone.entry_j, zone.exit_j)
+    # Only routes that converge or weave have a merge point.
+    if zone.merge_i is not None and zone.merge_j is not None:
+        return (
+            (zone.merge_i - length_i / 2, zone.merge_i + length_i / 2),
+            (zone.merge_j - length_j / 2, zone.merge_j + length_j / 2),
+        )
+    return None
+
+
+def _passage(track: Track, s: FloatArray, area: tuple[float, float], step: float) -> Passage | None:
+    """Return when a track passed through a stretch of its route, or None if it did not come from before to beyond."""
+    start, end = area
+    if not (s[0] <= start and s[-1] >= end):
+        return None
+    return Passage(_time_at(track, s, start, step), _time_at(track, s, end, step), track.id)
+
+
+def _time_at(track: Track, s: FloatArray, place: float, step: float) -> float:
+    """Return when a track first reached a place on its route [s], interpolated between two rows."""
+    row = int(np.searchsorted(s, place))
+    if row == 0:
+        return track.first_step * step
+    share = (place - s[row - 1]) / (s[row] - s[row - 1])
+    return float((track.first_step + row - 1 + share) * step)

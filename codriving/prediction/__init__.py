@@ -1,0 +1,1 @@
+"""The near future without the simulator."""

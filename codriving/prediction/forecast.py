@@ -1,0 +1,135 @@
+"""Bounds and expectations of how far everybody comes: the shared predictor of all reasoning."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.prediction.human import fastest, slowest
+from codriving.prediction.rollout import Plan, rollout
+
+Array = NDArray[np.float64]
+
+HORIZON = 10.0
+"""How far ahead everybody is predicted [s]; a stop from top speed and a crossing both fit in."""
+
+SAMPLE = 0.2
+"""Time between two samples of a prediction, rounded to whole simulation steps [s]."""
+
+SPEEDING = 1.0
+"""How much faster than the CAVs' top speed a human driver may become [m/s]."""
+
+BRAKE: Plan = (Action.SLOWER,)
+GO: Plan = (Action.FASTER,)
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """How far a vehicle may come from now on.
+
+    Attributes:
+        least: Distance if it brakes as hard as it can (steps + 1,) [m].
+        steady: Distance if it keeps its speed (steps + 1,) [m].
+        most: Distance if it accelerates as hard as it can (steps + 1,) [m].
+    """
+
+    least: Array
+    steady: Array
+    most: Array
+
+
+class Forecast:
+    """Predictions, each worked out once a decision step.
+
+    Args:
+        model: The vehicle model of CAVs.
+        library: Plans that will be asked for; they are worked out together.
+
+    Attributes:
+        sample: Time between two samples of a prediction [s].
+        steps: Samples of a prediction after the present.
+        times: Time of each sample from now (steps + 1,) [s].
+    """
+
+    def __init__(self, model: DrivingModel, library: tuple[Plan, ...] = ()) -> None:
+        self.model = model
+        self._stride = max(1, round(SAMPLE / model.step))
+        self.sample = self._stride * model.step
+        self.steps = round(HORIZON / self.sample)
+        self.times = np.arange(self.steps + 1) * self.sample
+        self._library = tuple(dict.fromkeys((BRAKE, GO, *library)))
+        self._index = {plan: k for k, plan in enumerate(self._library)}
+        self._travel: dict[tuple[float, float], Array] = {}
+        self._reach: dict[tuple[bool, float], Reach] = {}
+
+    def begin_step(self, states: Sequence[tuple[float, float]] = ()) -> None:
+        """Forget the predictions of the step before, and predict the CAVs of this one.
+
+        Args:
+            states: Speed and target speed of each CAV [m/s].
+        """
+        self._travel.clear()
+        self._reach.clear()
+        self._predict(states)
+
+    def _predict(self, states: Sequence[tuple[float, float]]) -> None:
+        new = list(dict.fromkeys(state for state in states if state not in self._travel))
+        if new:
+            speeds, targets = zip(*new, strict=True)
+            distances, _ = rollout(self.model, speeds, targets, self._library, self.steps * self._stride)
+            self._travel.update(zip(new, distances[..., :: self._stride], strict=True))
+
+    def travel(self, speed: float, target: float, plans: Sequence[Plan]) -> Array:
+        """Distances of a CAV for several plans of the library.
+
+        Args:
+            speed: Speed now [m/s].
+            target: Target speed now [m/s].
+            plans: Plans, each a list of actions of which the last one is repeated.
+
+        Returns:
+            Distance travelled (len(plans), steps + 1) [m].
+        """
+        self._predict([(speed, target)])
+        return self._travel[speed, target][[self._index[plan] for plan in plans]]
+
+    def reach(self, speed: float, is_cav: bool) -> Reach:
+        """Bounds of how far a vehicle comes.
+
+        Args:
+            speed: Speed now [m/s].
+            is_cav: Whether it is known to be a CAV, which cannot brake or accelerate beyond its actions.
+        """
+        key = (is_cav, speed)
+        if key not in self._reach:
+            if is_cav:
+                # Neither depends on the present target, so that of any state with this speed will do.
+                target = next((goal for v, goal in self._travel if v == speed), speed)
+                least, most = self.travel(speed, target, (BRAKE, GO))
+            else:
+                least = slowest(speed, self.times)
+                most = fastest(speed, self.times, self.model.target_speeds[-1] + SPEEDING)
+            self._reach[key] = Reach(least, speed * self.times, most)
+        return self._reach[key]
+
+    def time_to(self, distance: float, travel: Array) -> float:
+        """Return when a distance has been covered.
+
+        Args:
+            distance: Distance [m].
+            travel: Distance travelled (steps + 1,) [m].
+
+        Returns:
+            Time from now, going on at the last speed past the horizon; inf if the vehicle stands then [s].
+        """
+        if distance <= 0:
+            return 0.0
+        index = int(np.searchsorted(travel, distance))
+        if index <= self.steps:
+            pace = (travel[index] - travel[index - 1]) / self.sample
+            return float(self.times[index] - (travel[index] - distance) / pace)
+        pace = (travel[-1] - travel[-2]) / self.sample
+        return float(self.times[-1] + (distance - travel[-1]) / pace) if pace > 0.05 else float("inf")

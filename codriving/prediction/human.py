@@ -1,0 +1,44 @@
+"""How far a human driver can and must have come: bounds that hold whatever the driver decides."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+HARD_BRAKING = 6.0
+"""Hardest braking expected of a human driver [m/s2]."""
+
+HARD_ACCELERATION = 3.0
+"""Hardest acceleration expected of a human driver [m/s2]."""
+
+
+def slowest(speed: float, times: Array) -> Array:
+    """Distance of a driver who brakes hard at once.
+
+    Args:
+        speed: Speed now [m/s].
+        times: Times from now (n,) [s].
+
+    Returns:
+        Distance travelled (n,) [m].
+    """
+    braking = np.minimum(times, speed / HARD_BRAKING)
+    return np.asarray(speed * braking - HARD_BRAKING * braking**2 / 2)
+
+
+def fastest(speed: float, times: Array, limit: float) -> Array:
+    """Distance of a driver who accelerates hard up to the speed limit.
+
+    Args:
+        speed: Speed now [m/s].
+        times: Times from now (n,) [s].
+        limit: Speed limit [m/s]; a driver who is faster keeps the speed.
+
+    Returns:
+        Distance travelled (n,) [m].
+    """
+    gain = max(limit - speed, 0.0)
+    rising = np.minimum(times, gain / HARD_ACCELERATION)
+    return np.asarray(
+        speed * times + HARD_ACCELERATION * rising**2 / 2 + HARD_ACCELERATION * rising * (times - rising)
+    )

@@ -1,0 +1,1 @@
+"""The paper's reasoning module: share states, share intents, negotiate, check, decide."""

@@ -1,0 +1,71 @@
+"""The conflict description: everybody whose way ahead shares a zone with the ego vehicle's (Section III-C.3)."""
+
+from codriving.datatypes.conflict import Conflict, Relation
+from codriving.datatypes.scene_description import Neighbour, SceneDescription
+from codriving.geometry.road_map import RoadMap
+from codriving.geometry.zone import ConflictZone
+from codriving.reasoning.severity import severity, ttcp
+
+OPEN = (Relation.CROSSING, Relation.CONVERGING, Relation.WEAVING)
+"""Relations in which it is open who goes first."""
+
+
+def find_conflicts(scene: SceneDescription, road_map: RoadMap) -> tuple[Conflict, ...]:
+    """Find the conflicts of one CAV, most urgent first.
+
+    Args:
+        scene: What the CAV knows.
+        road_map: The precomputed road.
+    """
+    found = []
+    for neighbour in scene.neighbours:
+        certain = len(neighbour.routes) == 1
+        for route, place in neighbour.routes:
+            for index, zone in enumerate(road_map.zones(scene.intent.route, route)):
+                if is_open(zone, scene.place, place):
+                    found.append(_conflict(scene, neighbour, route, place, index, zone, certain))
+    return tuple(sorted(found, key=lambda c: (c.dttcp + 0.2 * min(c.ttcp), c.other, c.routes[1], c.zone)))
+
+
+def is_open(zone: ConflictZone, place_i: float, place_j: float) -> bool:
+    """Whether two vehicles still have a zone ahead of which it is open, or matters, who goes first.
+
+    Vehicles that have already merged follow one another, whatever the map says.
+
+    Args:
+        zone: The zone, seen from i.
+        place_i: Arc length of i on its route [m].
+        place_j: Arc length of j on its route [m].
+    """
+    if zone.relation not in OPEN or place_i > zone.exit_i or place_j > zone.exit_j:
+        return False
+    if zone.merge_i is None or zone.merge_j is None:
+        return True
+    return place_i < zone.merge_i or place_j < zone.merge_j
+
+
+def _conflict(
+    scene: SceneDescription,
+    neighbour: Neighbour,
+    route: str,
+    place: float,
+    index: int,
+    zone: ConflictZone,
+    certain: bool,
+) -> Conflict:
+    distances = (max(zone.entry_i - scene.place, 0.0), max(zone.entry_j - place, 0.0))
+    times = (ttcp(distances[0], scene.ego.speed), ttcp(distances[1], neighbour.speed))
+    return Conflict(
+        ego=scene.ego.id,
+        other=neighbour.id,
+        relation=zone.relation,
+        routes=(scene.intent.route, route),
+        zone=index,
+        places=(scene.place, place),
+        distances=distances,
+        exits=(zone.exit_i - scene.place, zone.exit_j - place),
+        ttcp=times,
+        dttcp=abs(times[0] - times[1]),
+        severity=severity(abs(times[0] - times[1])),
+        certain=certain,
+    )

@@ -1,0 +1,45 @@
+"""Whether a human driver has to give way, and can: the traffic rules that everybody knows (Section III-C.3)."""
+
+from codriving.datatypes.conflict import Conflict
+from codriving.geometry.road_map import RoadMap
+from codriving.reasoning.scenes import lane_at
+
+STANDS = 2.0
+"""A human driver who has been standing before the zone for this long is taken to give way [s]."""
+
+COMFORT = 2.5
+"""Braking up to which a driver who has to give way is expected to do so [m/s2]."""
+
+FRONT = 2.5
+"""Distance from the centre of a vehicle to its front [m]."""
+
+
+def gives_way(c: Conflict, speed: float, standing: float, road_map: RoadMap) -> str:
+    """Say why a human driver is expected to let the CAV pass first.
+
+    A driver who stands before the zone does; so does one who can still stop comfortably before the junction and has
+    the lower lane priority, or finds the CAV in the junction already. Everybody else is not relied on.
+
+    Args:
+        c: The conflict, seen from the CAV.
+        speed: Speed of the human driver [m/s].
+        standing: How long it has been standing [s].
+        road_map: The precomputed road.
+
+    Returns:
+        The reason in words; empty if it is not expected to give way.
+    """
+    if standing >= STANDS:
+        return "the human driver has been standing and gives way"
+    if c.distances[1] <= 0:
+        return ""
+    room = road_map.routes[c.routes[1]].entry - c.places[1] - FRONT
+    if not road_map.road.regulated or room <= 0 or speed**2 / (2 * room) > COMFORT:
+        return ""
+    if c.places[0] > road_map.routes[c.routes[0]].entry:
+        return "the CAV is in the junction already, and the human driver can still wait before it"
+    mine = road_map.lanes[lane_at(road_map, c.routes[0], c.places[0])].priority
+    theirs = road_map.lanes[lane_at(road_map, c.routes[1], c.places[1])].priority
+    if mine > theirs:
+        return "the CAV has the right of way, and the human driver can still wait before the junction"
+    return ""

@@ -1,0 +1,144 @@
+"""Third layer: no action may intensify a conflict with a vehicle of a conflict lane (Section III-C.4)."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.conflict import Conflict
+from codriving.geometry.box import TRUE, Footprint
+from codriving.geometry.zone import ConflictZone
+from codriving.reasoning.clearance import first_overlap, follows_after_merge, stays_ahead, stays_behind
+from codriving.reasoning.movers import Mover
+from codriving.reasoning.right_of_way import gives_way
+from codriving.reasoning.safety.outlook import Outlook
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+NOBOX = False
+PAD = 0.5
+"""Room along the route beyond the planning footprint [m]."""
+
+BODY = Footprint(5.2, 2.3)
+"""A vehicle's body with the room for cutting a corner, beside a vehicle that gives way [m]."""
+
+BOUND_LAG = 0.2
+"""Time between the least that the other vehicle can do and the CAV's entering [s]."""
+
+AHEAD_LAG = 0.4
+"""Time between the CAV's leaving and the earliest moment at which the other vehicle can be there [s]."""
+
+
+def check_conflicts(outlook: Outlook) -> dict[Action, list[str]]:
+    """Remove actions after which the CAV could neither stop before a zone that is not its turn, nor pass it in time.
+
+    Args:
+        outlook: The CAV's view.
+
+    Returns:
+        Reasons by action; no entry where the action is safe.
+    """
+    found: dict[Action, list[str]] = {}
+    through = np.ones(len(outlook.actions), dtype=np.bool_)
+    for c in outlook.conflicts:
+        goes, stops = passes_and_stops(outlook, c)
+        through &= goes
+        for action, fine in zip(outlook.actions, goes | stops, strict=True):
+            if not fine:
+                add(found, action, f"{action} intensifies the {c.relation} conflict with {c.other} ({c.severity})")
+    # A CAV that waits for this one is only delayed; a human driver in between may never get out of a gridlock.
+    for c in (c for c in outlook.conflicts if not outlook.others[c.other].is_cav and not NOBOX):
+        zone = outlook.road_map.zones(*c.routes)[c.zone]
+        if leaves_in_time(outlook, c, zone):
+            continue
+        for k, action in enumerate(outlook.actions):
+            if not through[k] and outlook.scene.place < zone.entry_i < outlook.stops[k, -1] + PAD < zone.exit_i:
+                add(found, action, f"after {action} the CAV might have to stop in the way of {c.other}")
+    return found
+
+
+def leaves_in_time(outlook: Outlook, c: Conflict, zone: ConflictZone) -> bool:
+    """Whether the CAV, as it is expected to move, will be out of a zone before a human driver can be there.
+
+    Args:
+        outlook: The CAV's view.
+        c: The conflict with the human driver.
+        zone: Its zone, seen from the CAV.
+    """
+    (own,) = outlook.expected[c.ego]
+    most = c.places[1] + outlook.forecast.reach(outlook.others[c.other].speed, False).most
+    return bool(stays_ahead(zone, own.places[None], most, 0, 0.0)[0])
+
+
+def add(found: dict[Action, list[str]], action: Action, reason: str) -> None:
+    """Note a reason once.
+
+    Args:
+        found: Reasons by action.
+        action: The action.
+        reason: The reason.
+    """
+    reasons = found.setdefault(action, [])
+    if f"conflict lane: {reason}" not in reasons:
+        reasons.append(f"conflict lane: {reason}")
+
+
+def passes_and_stops(outlook: Outlook, c: Conflict) -> tuple[Flags, Flags]:
+    """Judge every action in one conflict: can the CAV then pass, and can it then stop?
+
+    It can pass if it comes behind whatever the other one does at the least, or ahead of the earliest moment at which
+    the other one can be there; it can stop if braking keeps it out of the way. A vehicle that gives way need not be
+    feared as long as the bodies keep clear when it brakes.
+
+    Args:
+        outlook: The CAV's view.
+        c: The conflict.
+
+    Returns:
+        Whether it can pass and whether it can stop, one flag an action each (actions,).
+    """
+    zone, other = outlook.road_map.zones(*c.routes)[c.zone], outlook.others[c.other]
+    reach, place = outlook.forecast.reach(other.speed, other.is_cav), c.places[1]
+    relied_on = _goes_on(outlook, other)
+    least = place + (reach.steady if relied_on else reach.least)
+    # A bound on what the other one can do is a margin in itself; an expectation needs one.
+    lag = outlook.lag if relied_on else round(BOUND_LAG / outlook.forecast.sample)
+    goes = stays_behind(zone, outlook.goes, least, lag, PAD)
+    stops = stays_behind(zone, outlook.stops, least, lag, PAD)
+    goes_first = outlook.order.first_of(c.ego, c.other) == c.ego
+    if goes_first and (other.is_cav or gives_way(c, other.speed, other.standing, outlook.road_map)):
+        goes |= keeps_clear(outlook, c, outlook.goes, place + reach.least)
+        stops |= keeps_clear(outlook, c, outlook.stops, place + reach.least)
+    if (goes_first or not (outlook.order.binding and other.is_cav)) and c.distances[1] > 0:
+        ahead = round(AHEAD_LAG / outlook.forecast.sample)
+        for k, motion in enumerate(outlook.goes):
+            if not goes[k]:
+                most = follows_after_merge(zone, motion, place + reach.most, other.speed, outlook.forecast.sample)
+                goes[k] = stays_ahead(zone, motion[None], most, ahead, PAD)[0]
+    return goes, stops
+
+
+def keeps_clear(outlook: Outlook, c: Conflict, motions: Array, other: Array) -> Flags:
+    """Whether the CAV and another vehicle that gives way would not touch, the bodies a little larger than they are.
+
+    Args:
+        outlook: The CAV's view.
+        c: The conflict.
+        motions: Arc length of the CAV over time (actions, n) [m].
+        other: Arc length of the other vehicle over time (n,) [m].
+
+    Returns:
+        One flag an action (actions,).
+    """
+    for footprint in (BODY, TRUE):
+        zones = outlook.road_map.zones(*c.routes, footprint)
+        overlaps = [first_overlap(z, motions, other) for z in zones]
+        if not any(steps[0] == 0 for steps in overlaps):
+            return np.all([steps == motions.shape[1] for steps in overlaps] or [[True] * len(motions)], axis=0)
+    return np.zeros(len(motions), dtype=np.bool_)
+
+
+def _goes_on(outlook: Outlook, other: Mover) -> bool:
+    """Whether a CAV can be relied on to go on: it waits for nobody and has said that it wants to keep its speed."""
+    expected = outlook.expected.get(other.id, ())
+    return other.is_cav and len(expected) == 1 and expected[0].free and other.target >= other.speed - 0.5

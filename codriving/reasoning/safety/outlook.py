@@ -1,0 +1,83 @@
+"""What the safety layers look at: where one CAV would go after each action, and what it knows of the others."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.scene_description import SceneDescription
+from codriving.geometry.road_map import RoadMap
+from codriving.prediction.forecast import Forecast
+from codriving.prediction.rollout import Plan
+from codriving.reasoning.expectation import Expected
+from codriving.reasoning.movers import Mover
+
+Array = NDArray[np.float64]
+
+LONGITUDINAL = (Action.SLOWER, Action.IDLE, Action.FASTER)
+
+
+def then_stop(action: Action) -> Plan:
+    """Carry out an action once, then brake to a stop."""
+    return (action, Action.SLOWER)
+
+
+def then_go(action: Action) -> Plan:
+    """Carry out an action once, then accelerate."""
+    return (action, Action.FASTER)
+
+
+CONTINUATIONS: tuple[Plan, ...] = tuple(f(a) for f in (then_stop, then_go) for a in LONGITUDINAL)
+"""Every plan that the safety layers look at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """One CAV's view of the near future.
+
+    Attributes:
+        scene: What it knows.
+        conflicts: Conflicts that it is part of.
+        order: The passing order that it goes by.
+        others: Everybody it knows of, as movers, by id.
+        expected: Expected motion of each of them, by id.
+        actions: Actions that are available.
+        stops: Arc length if it brakes after each action (actions, n) [m].
+        goes: Arc length if it accelerates after each action (actions, n) [m].
+        road_map: The precomputed road.
+        forecast: Predictions of this step.
+        lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
+    """
+
+    scene: SceneDescription
+    conflicts: tuple[Conflict, ...]
+    order: PassingOrder
+    others: dict[str, Mover]
+    expected: dict[str, tuple[Expected, ...]]
+    actions: tuple[Action, ...]
+    stops: Array
+    goes: Array
+    road_map: RoadMap
+    forecast: Forecast
+    lag: int
+
+
+def motions(scene: SceneDescription, actions: tuple[Action, ...], forecast: Forecast) -> tuple[Array, Array]:
+    """Predict one CAV for every action, braking and accelerating afterwards; a lane change keeps the speed.
+
+    Args:
+        scene: What the CAV knows.
+        actions: Actions that are available.
+        forecast: Predictions of this step.
+
+    Returns:
+        Arc length if it brakes and if it accelerates after each action, each (actions, n) [m].
+    """
+    speed, target = scene.ego.speed, scene.intent.target_speed
+    plain = [a if a in LONGITUDINAL else Action.IDLE for a in actions]
+    stops = forecast.travel(speed, target, [then_stop(a) for a in plain])
+    goes = forecast.travel(speed, target, [then_go(a) for a in plain])
+    return scene.place + stops, scene.place + goes

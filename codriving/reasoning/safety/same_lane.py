@@ -1,0 +1,86 @@
+"""First layer: no collision with the vehicles of the same lane, ahead or behind (Section III-C.4)."""
+
+import numpy as np
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.scene_description import Neighbour, Role
+from codriving.reasoning.clearance import stays_behind
+from codriving.reasoning.expectation import is_behind
+from codriving.reasoning.safety.outlook import Outlook
+
+STANDSTILL_GAP = 1.0
+"""Free distance that must be left to the leading vehicle when both have stopped [m]."""
+
+ABRUPT = 4.0
+"""Braking that must not be forced on the rearing vehicle [m/s2]."""
+
+REACTION = 0.5
+"""Time after which the rearing vehicle begins to brake [s]."""
+
+
+def check_ahead(outlook: Outlook) -> dict[Action, list[str]]:
+    """Remove actions after which the CAV could not stop behind whoever is ahead, if that one brakes hard.
+
+    Args:
+        outlook: The CAV's view.
+
+    Returns:
+        Reasons by action; no entry where the action is safe.
+    """
+    found: dict[Action, list[str]] = {}
+    for n in outlook.scene.neighbours:
+        least = outlook.forecast.reach(n.speed, outlook.others[n.id].is_cav).least
+        keeps = np.ones(len(outlook.actions), dtype=np.bool_)
+        if n.role is Role.LEADING and n.gap is not None:
+            travelled = outlook.stops - outlook.scene.place
+            keeps &= (n.gap + least - travelled >= min(STANDSTILL_GAP, n.gap)).all(axis=1)
+        for route, place in outlook.others[n.id].routes:
+            for zone in outlook.road_map.zones(outlook.scene.intent.route, route):
+                if is_behind(zone, outlook.scene.place, place):
+                    keeps &= stays_behind(zone, outlook.stops, place + least, 0, 0.0)
+        for action, safe in zip(outlook.actions, keeps, strict=True):
+            if not safe:
+                found.setdefault(action, []).append(
+                    f"same lane: {action} leaves too little room to stop behind {n.id} at {n.speed:.1f} m/s"
+                )
+    return found
+
+
+def check_behind(outlook: Outlook) -> dict[Action, list[str]]:
+    """Remove actions that force the rearing vehicle to brake abruptly.
+
+    Args:
+        outlook: The CAV's view.
+
+    Returns:
+        Reasons by action; no entry where the action is safe.
+    """
+    behind = next((n for n in outlook.scene.neighbours if n.role is Role.REARING), None)
+    if behind is None or behind.gap is None:
+        return {}
+    found: dict[Action, list[str]] = {}
+    for action, goes in zip(outlook.actions, outlook.goes, strict=True):
+        braking = forced_braking(outlook, behind, goes)
+        if braking > ABRUPT:
+            found[action] = [f"same lane: {action} would force {behind.id} behind to brake at {braking:.1f} m/s2"]
+    return found
+
+
+def forced_braking(outlook: Outlook, behind: Neighbour, goes: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> float:
+    """Return how hard the rearing vehicle would have to brake to come down to the CAV's speed.
+
+    Args:
+        outlook: The CAV's view.
+        behind: The rearing vehicle.
+        goes: Arc length of the CAV over time (n,) [m].
+
+    Returns:
+        Braking [m/s2]; inf if there is no room left.
+    """
+    step = outlook.forecast.model.substeps
+    speed = float(goes[step] - goes[step - 1]) / outlook.forecast.model.step
+    closing = behind.speed - speed
+    if closing <= 0 or behind.gap is None:
+        return 0.0
+    room = behind.gap + float(goes[step] - goes[0]) - behind.speed * REACTION
+    return closing**2 / (2 * room) if room > 0.1 else float("inf")

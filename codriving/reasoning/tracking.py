@@ -1,0 +1,87 @@
+"""What a CAV remembers of its neighbours from one decision to the next: their possible routes, and if they stand."""
+
+from math import acos, cos, hypot
+
+from codriving.datatypes.vehicle import Intent
+from codriving.geometry.road_map import RoadMap
+from codriving.reasoning.glimpse import Glimpse
+
+STANDING = 0.5
+"""Below this speed a vehicle counts as standing [m/s]."""
+
+SIDE, TURN = 0.5, 0.15
+"""Lateral offset [m] and difference of headings [rad] that count as one step of misfit to a route."""
+
+CLEARLY = 2.0
+"""Steps of misfit by which a route must be worse than the best one to be ruled out; cars do cut corners."""
+
+Places = tuple[tuple[str, float], ...]
+"""Routes and the arc length on each [m]."""
+
+
+class Tracking:
+    """Narrows the possible routes of each vehicle down as it is watched.
+
+    Args:
+        road_map: The precomputed road.
+    """
+
+    def __init__(self, road_map: RoadMap) -> None:
+        self.road_map = road_map
+        self._routes: dict[tuple[str, str], frozenset[str]] = {}
+        self._standing: dict[tuple[str, str], float] = {}
+        self._near: dict[tuple[float, float, float | None], Places] = {}
+
+    def begin_step(self) -> None:
+        """Forget what was only worked out for the step before."""
+        self._near.clear()
+
+    def places(self, ego: str, seen: Glimpse, intent: Intent | None) -> Places:
+        """Return the routes on which a vehicle may be.
+
+        A shared route is believed. Otherwise every route that fits the position (and the heading, if it is known)
+        and has fitted it so far is possible.
+
+        Args:
+            ego: Who watches.
+            seen: The vehicle.
+            intent: What it has shared, if anything.
+        """
+        if intent is not None:
+            s, _ = self.road_map.paths[intent.route].project(seen.x, seen.y)
+            return ((intent.route, s),)
+        spot = (seen.x, seen.y, seen.heading)
+        if spot not in self._near:
+            self._near[spot] = self._fitting(*spot)
+        near = self._near[spot]
+        before = self._routes.get((ego, seen.id))
+        kept = tuple(p for p in near if before is None or p[0] in before) or near
+        self._routes[ego, seen.id] = frozenset(route for route, _ in kept)
+        return kept
+
+    def _fitting(self, x: float, y: float, heading: float | None) -> Places:
+        """Return the routes near a place, without those that fit position and heading clearly worse than the best."""
+        near = self.road_map.routes_near(x, y, heading)
+        misfits = []
+        for route, s in near:
+            path = self.road_map.paths[route]
+            px, py = path.position(s)
+            turned = 0.0 if heading is None else acos(min(1.0, max(-1.0, cos(heading - float(path.heading(s))))))
+            misfits.append(hypot(float(px) - x, float(py) - y) / SIDE + turned / TURN)
+        return tuple(p for p, misfit in zip(near, misfits, strict=True) if misfit <= min(misfits) + CLEARLY)
+
+    def standing(self, ego: str, seen: Glimpse, time: float) -> float:
+        """Return how long a vehicle has been standing.
+
+        Args:
+            ego: Who watches.
+            seen: The vehicle.
+            time: Time now [s].
+
+        Returns:
+            Time since it was last seen moving [s].
+        """
+        if seen.speed >= STANDING:
+            self._standing.pop((ego, seen.id), None)
+            return 0.0
+        return time - self._standing.setdefault((ego, seen.id), time)

@@ -1,0 +1,133 @@
+"""The summary as people read it: rounded, in percent, the paper's row beside ours; console and Markdown share it."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from codriving.reports.paper import Paper, PaperRow
+from codriving.reports.rows import Row, Value
+
+NOTES = (
+    "Rates are over completed episodes, intervals are Wilson 95 %; PET and velocity are over successful episodes.",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One printed row.
+
+    Attributes:
+        cells: Text of each column.
+        ours: Whether it is measured here; False for the paper's.
+    """
+
+    cells: tuple[str, ...]
+    ours: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Display:
+    """A table that only has to be drawn.
+
+    Attributes:
+        title: What it shows and who reasoned.
+        columns: Heads of the columns; the first ones hold words.
+        words: Number of columns that hold words.
+        lines: The rows.
+        notes: What a reader has to know.
+    """
+
+    title: str
+    columns: tuple[str, ...]
+    words: int
+    lines: tuple[Line, ...]
+    notes: tuple[str, ...] = NOTES
+
+
+def display(rows: Sequence[Row], paper: Paper) -> Display:
+    """Prepare the summary for people.
+
+    Args:
+        rows: Rows of the summary, at least one.
+        paper: The paper's numbers.
+
+    Returns:
+        The table. A column of scenarios or of statements is there only where it says something.
+    """
+    scenarios = list(dict.fromkeys(str(row["scenario"]) for row in rows))
+    many = len(scenarios) > 1
+    claims = [paper.statement(str(row["scenario"]), str(row["variant"])) for row in rows]
+    # With full alone there is nothing to compare the claim with.
+    ablation = any(claims) and len(rows) > 1
+    columns = [
+        *(["scenario"] if many else []),
+        "method",
+        "episodes",
+        "success",
+        "95 % interval",
+        "collision",
+        "timeout",
+        *(["off road"] if _any(rows, "off_road_rate") else []),
+        *(["error"] if _any(rows, "error_rate") else []),
+        "PET mean / max / min [s]",
+        "velocity mean / max / min [m/s]",
+        *(["the paper says"] if ablation else []),
+    ]
+    lines: list[Line] = []
+    for row, claim in zip(rows, claims, strict=True):
+        beside = paper.row(str(row["scenario"]), str(row["method"]), str(row["variant"]))
+        lines.append(Line(tuple(_ours(row, claim).get(column, "") for column in columns)))
+        if beside is not None:
+            lines.append(Line(tuple(_theirs(row, beside).get(column, "") for column in columns), ours=False))
+    return Display(_title(scenarios, rows), tuple(columns), 2 if many else 1, tuple(lines))
+
+
+def _title(scenarios: Iterable[str], rows: Sequence[Row]) -> str:
+    names = dict.fromkeys(str(row["reasoner"]) for row in rows)
+    reasoners = ", ".join(f"{name} (llm=offline)" if name == "rules" else name for name in names)
+    return f"{', '.join(scenarios)} - reasoner: {reasoners}"
+
+
+def _ours(row: Row, claim: str) -> dict[str, str]:
+    variant = str(row["variant"])
+    low, high = _percent(row["success_low"]), _percent(row["success_high"])
+    episodes = str(row["episodes"]) if row["completed"] == row["episodes"] else f"{row['completed']}/{row['episodes']}"
+    return {
+        "scenario": str(row["scenario"]),
+        "method": f"{row['method']} {variant}".strip(),
+        "episodes": episodes,
+        "success": _percent(row["success_rate"]),
+        "95 % interval": f"{low} to {high}" if low else "",
+        "collision": _percent(row["collision_rate"]),
+        "timeout": _percent(row["timeout_rate"]),
+        "off road": _percent(row["off_road_rate"]),
+        "error": _percent(row["error_rate"]),
+        "PET mean / max / min [s]": _three(row, "pet"),
+        "velocity mean / max / min [m/s]": _three(row, "velocity"),
+        "the paper says": claim,
+    }
+
+
+def _theirs(row: Row, paper: PaperRow) -> dict[str, str]:
+    numbers: Row = paper.numbers
+    return {
+        "scenario": str(row["scenario"]),
+        "method": f"paper: {paper.label}",
+        "episodes": "20",
+        "success": _percent(numbers.get("success_rate")),
+        "PET mean / max / min [s]": _three(numbers, "pet"),
+        "velocity mean / max / min [m/s]": _three(numbers, "velocity"),
+    }
+
+
+def _any(rows: Sequence[Row], column: str) -> bool:
+    return any(row.get(column) for row in rows)
+
+
+def _percent(value: Value) -> str:
+    return f"{100 * value:.3g} %" if isinstance(value, int | float) else ""
+
+
+def _three(numbers: Row, what: str) -> str:
+    """Mean, maximum and minimum; a dash where one is not defined."""
+    values = [numbers.get(f"{what}_{which}") for which in ("mean", "max", "min")]
+    return " / ".join(f"{value:.1f}" if isinstance(value, int | float) else "-" for value in values)

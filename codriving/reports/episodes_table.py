@@ -1,0 +1,93 @@
+"""``episodes.csv``: one row an episode."""
+
+from collections.abc import Iterable, Sequence
+
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import EpisodeRecord
+from codriving.reports.rows import Row, Value
+from codriving.reports.statistics import mean
+
+LABELS = ("scenario", "method", "variant", "reasoner")
+
+LEADING = (*LABELS, "seed", "outcome", "pet_mean", "pet_min", "velocity_mean", "duration")
+"""The columns that users rely on, in their fixed order."""
+
+FURTHER = (
+    "pet_count",
+    "travel_time_mean",
+    "delay_mean",
+    "cavs",
+    "hdvs",
+    "arrived",
+    "decisions",
+    "collision_pair",
+    "striker",
+    "struck",
+    "bystander_collisions",
+    "off_road",
+    "message",
+)
+
+TEXT = frozenset({*LABELS, "outcome", "collision_pair", "striker", "struck", "off_road", "message"})
+"""Columns of words; all others are numbers."""
+
+
+def episode_columns(records: Iterable[EpisodeRecord]) -> tuple[str, ...]:
+    """Give the columns of ``episodes.csv``: the fixed ones, then one for each counter that a method reports.
+
+    Args:
+        records: All records of the table.
+
+    Returns:
+        Columns in order.
+    """
+    counters = sorted({name for record in records for name in record.counts})
+    return (*LEADING, *FURTHER, *(name for name in counters if name not in {*LEADING, *FURTHER}))
+
+
+def episode_rows(records: Sequence[EpisodeRecord]) -> list[Row]:
+    """Give the rows of ``episodes.csv``.
+
+    Args:
+        records: The records in the order of the table.
+
+    Returns:
+        One row a record.
+    """
+    return [_row(record) for record in records]
+
+
+def _row(record: EpisodeRecord) -> Row:
+    outcome = record.outcome
+    collision = outcome.collision
+    pets = [pet.value for pet in record.score.pets] if record.score else []
+    travels = record.score.travels if record.score else ()
+    kinds = [participant.kind for participant in record.participants]
+    row: dict[str, Value] = {
+        **record.counts,
+        "scenario": record.scenario,
+        "method": record.method,
+        "variant": record.variant,
+        "reasoner": record.reasoner,
+        "seed": record.seed,
+        "outcome": outcome.ending.value,
+        "pet_mean": mean(pets),
+        "pet_min": min(pets, default=None),
+        "velocity_mean": mean([travel.velocity for travel in travels]),
+        # How long something lasted that broke off says nothing.
+        "duration": None if outcome.ending is Ending.ERROR else outcome.time,
+        "pet_count": len(pets) if record.score else None,
+        "travel_time_mean": mean([travel.time for travel in travels]),
+        "delay_mean": mean([travel.delay for travel in travels if travel.delay is not None]),
+        "cavs": kinds.count("CAV"),
+        "hdvs": kinds.count("HDV"),
+        "arrived": len(outcome.arrivals),
+        "decisions": record.decisions,
+        "collision_pair": collision.pair if collision else None,
+        "striker": collision.striker if collision else None,
+        "struck": collision.struck if collision else None,
+        "bystander_collisions": len(outcome.bystander_collisions),
+        "off_road": " ".join(outcome.off_road) or None,
+        "message": outcome.message or None,
+    }
+    return row

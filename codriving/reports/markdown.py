@@ -1,0 +1,28 @@
+"""``summary.md``: the printed table for a page or an issue."""
+
+from codriving.reports.display import Display
+
+
+def markdown_text(table: Display) -> str:
+    """Write a table as Markdown.
+
+    Args:
+        table: What to write.
+
+    Returns:
+        Title, table and notes; the paper's rows are in italics.
+    """
+    rules = ["---" if i < table.words or head == "the paper says" else "---:" for i, head in enumerate(table.columns)]
+    lines = [f"# {table.title}", "", _line(table.columns), _line(rules)]
+    for line in table.lines:
+        lines.append(_line([cell if line.ours or not cell else f"*{cell}*" for cell in map(_escape, line.cells)]))
+    lines += ["", *table.notes]
+    return "\n".join(lines) + "\n"
+
+
+def _line(cells: list[str] | tuple[str, ...]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _escape(text: str) -> str:
+    return text.replace("|", "\\|").replace("\n", " ")

@@ -1,0 +1,113 @@
+"""The paper's own numbers, read from ``experiments/*.csv``, to stand beside ours."""
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+COMPARISON = "paper_comparison.csv"
+ABLATION = "paper_ablation.csv"
+WHOLE = frozenset({"", "full"})
+"""Variants of which nothing has been removed."""
+
+
+@dataclass(frozen=True, slots=True)
+class PaperRow:
+    """One row of the paper's comparison (20 seeds).
+
+    Attributes:
+        scenario: Name of the scenario; the paper compares methods at the intersection alone.
+        method: Our name of the method.
+        label: Its name in the paper.
+        numbers: What the paper prints, by the names of our summary's columns; what it leaves out is missing.
+    """
+
+    scenario: str
+    method: str
+    label: str
+    numbers: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class PaperStatement:
+    """What the paper says of one ablation.
+
+    Attributes:
+        scenario: Name of the scenario.
+        variant: What was removed.
+        statement: The claim in words.
+    """
+
+    scenario: str
+    variant: str
+    statement: str
+
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """Everything of the paper that tables quote.
+
+    Attributes:
+        comparison: Rows of the comparison of methods.
+        ablation: Statements on the ablations.
+    """
+
+    comparison: tuple[PaperRow, ...] = ()
+    ablation: tuple[PaperStatement, ...] = ()
+
+    def row(self, scenario: str, method: str, variant: str) -> PaperRow | None:
+        """Find the paper's row for one of ours.
+
+        Args:
+            scenario: Our scenario.
+            method: Our method.
+            variant: Our variant; a row with something removed has none beside it.
+
+        Returns:
+            The row, or None if the paper has none.
+        """
+        if variant not in WHOLE:
+            return None
+        return next((row for row in self.comparison if (row.scenario, row.method) == (scenario, method)), None)
+
+    def statement(self, scenario: str, variant: str) -> str:
+        """Find what the paper says of an ablation.
+
+        Args:
+            scenario: Our scenario.
+            variant: Our variant; what follows a slash is our reading of it, which the paper leaves open.
+
+        Returns:
+            The claim, empty if there is none.
+        """
+        removed = variant.partition("/")[0]
+        matches = (s.statement for s in self.ablation if (s.scenario, s.variant) == (scenario, removed))
+        return next(matches, "")
+
+
+def read_paper(folder: Path) -> Paper:
+    """Read the paper's numbers.
+
+    Args:
+        folder: Folder of the experiments.
+
+    Returns:
+        What is there; a file that is missing gives no rows.
+    """
+    comparison = tuple(_row(row) for row in _read(folder / COMPARISON))
+    ablation = tuple(
+        PaperStatement(row["scenario"], row["variant"], row["statement"]) for row in _read(folder / ABLATION)
+    )
+    return Paper(comparison, ablation)
+
+
+def _read(path: Path) -> list[dict[str, str]]:
+    if not path.is_file():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def _row(texts: dict[str, str]) -> PaperRow:
+    words = ("scenario", "method", "label")
+    numbers = {name: float(text) for name, text in texts.items() if name not in words and text}
+    return PaperRow(texts["scenario"], texts["method"], texts["label"], numbers)

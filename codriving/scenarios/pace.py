@@ -1,0 +1,104 @@
+"""The settings that every scenario shares: frequencies, speeds, time limit, perception."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+from codriving.errors import ConfigError
+
+TOP_SPEED = 40.0
+"""No vehicle of highway-env drives faster [m/s]."""
+
+
+def require(condition: bool, message: str) -> None:
+    """Refuse a setting.
+
+    Args:
+        condition: What must hold.
+        message: Which setting, the rule, and the value given.
+
+    Raises:
+        ConfigError: If the condition does not hold.
+    """
+    if not condition:
+        raise ConfigError(message)
+
+
+def require_range(name: str, value: float, low: float, high: float, unit: str = "") -> None:
+    """Refuse a number outside its range.
+
+    Args:
+        name: Setting.
+        value: Value given.
+        low: Smallest allowed value.
+        high: Largest allowed value.
+        unit: Unit for the message, with a leading space.
+
+    Raises:
+        ConfigError: If the value is outside [low, high] or not a number.
+    """
+    require(low <= value <= high, f"{name} must be {low:g} to {high:g}{unit}, got {value:g}")
+
+
+def require_interval(name: str, value: tuple[float, float], low: float, high: float, unit: str = "") -> None:
+    """Refuse an interval that is reversed or leaves its range.
+
+    Args:
+        name: Setting.
+        value: Smallest and largest value.
+        low: Smallest allowed value.
+        high: Largest allowed value.
+        unit: Unit for the message, with a leading space.
+
+    Raises:
+        ConfigError: If the rule is broken.
+    """
+    shown = f"[{', '.join(f'{v:g}' for v in value)}]"
+    require(
+        len(value) == 2 and low <= value[0] <= value[1] <= high,
+        f"{name} must be [smallest, largest] within {low:g} to {high:g}{unit}, got {shown}",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """Time, speeds and perception of a scenario.
+
+    Attributes:
+        simulation_frequency: Simulation steps per second [Hz].
+        decision_frequency: Decisions per second [Hz].
+        time_limit: Longest duration of an episode [s].
+        target_speeds: Speeds that FASTER and SLOWER step through [m/s].
+        detection_range: Radius of perception [m].
+
+    Raises:
+        ConfigError: If a value is out of range.
+    """
+
+    simulation_frequency: float
+    decision_frequency: float
+    time_limit: float
+    target_speeds: tuple[float, ...]
+    detection_range: float
+
+    def __post_init__(self) -> None:
+        require_range("simulation_frequency", self.simulation_frequency, 5, 50, " Hz")
+        require_range("decision_frequency", self.decision_frequency, 0.5, 5, " Hz")
+        require_range("time_limit", self.time_limit, 1, 600, " s")
+        require_range("detection_range", self.detection_range, 5, 500, " m")
+        ratio = self.simulation_frequency / self.decision_frequency
+        require(
+            abs(ratio - round(ratio)) < 1e-9,
+            f"simulation_frequency must be a multiple of decision_frequency ({self.decision_frequency:g} Hz), "
+            f"got {self.simulation_frequency:g} Hz",
+        )
+        speeds = self.target_speeds
+        gaps = [b - a for a, b in pairwise(speeds)]
+        require(
+            len(speeds) >= 2
+            and speeds[0] >= 0
+            and speeds[-1] <= TOP_SPEED
+            and min(gaps) > 0
+            and max(gaps) - min(gaps) < 1e-9,
+            f"target_speeds must be two or more evenly spaced, rising speeds within 0 to {TOP_SPEED:g} m/s "
+            f"(highway-env's actions assume it), got {list(speeds)}",
+        )

@@ -1,0 +1,95 @@
+"""Files and folders that are there whole or not at all, also after SIGKILL or a power cut."""
+
+import os
+import shutil
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+PARTIAL = ".partial-"
+"""Prefix of everything unfinished; a leading dot keeps it out of listings."""
+
+
+def _partial(path: Path) -> Path:
+    """A fresh name beside ``path``: renaming is atomic only within one file system."""
+    return path.parent / f"{PARTIAL}{path.name}-{uuid.uuid4().hex[:12]}"
+
+
+def _sync(path: Path) -> None:
+    """Push a file or folder to the disk itself, so that a rename never runs ahead of its content."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file so that a reader sees the old content or the new, never a part.
+
+    Args:
+        path: File to write; its folder must exist.
+        text: Content, written as UTF-8 with the line ends it has.
+
+    Raises:
+        OSError: If the file cannot be written; nothing is left behind.
+    """
+    partial = _partial(path)
+    try:
+        with partial.open("w", encoding="utf-8", newline="") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        partial.replace(path)
+        _sync(path.parent)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+
+
+@contextmanager
+def whole_folder(path: Path) -> Iterator[Path]:
+    """Give a folder to fill, which takes the place of ``path`` once the block has ended well.
+
+    Args:
+        path: Folder to make; one that exists already is replaced.
+
+    Yields:
+        The folder to write into.
+
+    Raises:
+        OSError: If it cannot be written; nothing is left behind and an existing ``path`` stays.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = _partial(path)
+    partial.mkdir()
+    try:
+        yield partial
+        for item in partial.iterdir():
+            _sync(item)
+        _sync(partial)
+        if path.exists():
+            former = _partial(path)
+            path.rename(former)
+            partial.rename(path)
+            shutil.rmtree(former, ignore_errors=True)
+        else:
+            partial.rename(path)
+        _sync(path.parent)
+    except BaseException:
+        shutil.rmtree(partial, ignore_errors=True)
+        raise
+
+
+def sweep(folder: Path) -> None:
+    """Remove what a killed run left unfinished directly in a folder.
+
+    Args:
+        folder: Folder to clean; one that does not exist is clean.
+    """
+    for item in folder.glob(f"{PARTIAL}*"):
+        if item.is_dir():
+            shutil.rmtree(item, ignore_errors=True)
+        else:
+            item.unlink(missing_ok=True)

@@ -1,0 +1,127 @@
+"""Help, lists, versions and exit codes of the command line, in this process."""
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from codriving import __version__
+from codriving.cli.app import app
+
+
+def call(*args: str) -> Result:
+    return CliRunner().invoke(app, list(args))
+
+
+def test_version() -> None:
+    result = call("--version")
+    assert (result.exit_code, result.stdout) == (0, f"codriving {__version__}\n")
+
+
+@pytest.mark.parametrize("command", [(), ("run",), ("ablate",), ("compare",), ("list",)])
+def test_every_help_shows_an_example(command: tuple[str, ...]) -> None:
+    result = call(*command, "--help")
+    assert result.exit_code == 0
+    assert "Example: codriving " in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("group", "name"),
+    [
+        ("scenarios", "intersection"),
+        ("scenario", "intersection"),
+        ("methods", "codriving"),
+        ("llms", "offline"),
+        ("cdas", "prescriptive"),
+        ("metrics", "authors"),
+        ("experiments", "ablation"),
+    ],
+)
+def test_list_names_and_describes_choices(group: str, name: str) -> None:
+    lines = call("list", group).stdout.splitlines()
+    found = next(line for line in lines if line.split()[0] == name)
+    assert len(found.split()) > 3
+
+
+def test_list_without_a_group_shows_all_groups() -> None:
+    result = call("list")
+    assert result.exit_code == 0
+    assert [line.split()[0] for line in result.stdout.splitlines()] == [
+        "scenarios",
+        "methods",
+        "cdas",
+        "llms",
+        "memories",
+        "metrics",
+        "launchers",
+        "experiments",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (("list", "cars"), "unknown group 'cars'; choices: scenarios, "),
+        (("compare", "baselines"), "compare baselines is not there yet"),
+        (("run", "scenario=nowhere"), "unknown scenario 'nowhere'; choices: intersection"),
+        (("run", "scenario.cvas=4"), "unknown key scenario.cvas; did you mean scenario.cavs? keys of scenario: cav_"),
+        (("run", "+scenario.typo=3"), "unknown key scenario.typo; "),
+        (("run", "episdes=3"), "unknown key episdes; did you mean episodes?"),
+        (("run", "episodes=0"), "episodes must be a whole number, 1 to 100000, got 0"),
+        (("run", "episodes=two"), "episodes must be a whole number, 1 to 100000, got 'two'"),
+        (("run", "scenario.cavs=99"), "scenario.cavs must be 2 to 12, got 99"),
+        (("run", "scenario.cavs=four"), "scenario.cavs must be a whole number, got 'four'"),
+        (("run", "scenario.hdvs=3"), "scenario.hdvs must be a list of 2 values, got 3"),
+        (("run", "cda.own_order=mine"), "cda.own_order must be one of own_view, same_rule, independent, got 'mine'"),
+        (("run", "scenario._target_=os.system"), "scenario._target_ may name classes of codriving"),
+        (("run", "cda=prescriptive", "cda.negotiation=false"), "cda.binding=true needs cda.negotiation=true"),
+        (("run", "memory.shots=3"), "memory has no _target_"),
+        (("run", "--config-dir", "/nowhere"), "--config-dir /nowhere is not a folder"),
+        (("ablate", "episodes=0"), "episodes must be"),
+        (("run", "--cfg", "scenario.cavs=99"), "scenario.cavs must be 2 to 12, got 99"),
+    ],
+)
+def test_a_users_mistake_is_one_line_and_exit_code_2(args: tuple[str, ...], said: str) -> None:
+    result = call(*args)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr.startswith(f"error: {said}")
+    assert result.stderr.count("\n") == 1
+
+
+def test_a_bug_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> int:
+        raise RuntimeError("a bug")
+
+    monkeypatch.setattr("codriving.experiment.run_experiment", broken)
+    assert isinstance(call("run").exception, RuntimeError)
+
+
+def test_an_interruption_before_the_batch_is_exit_code_130(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("codriving.experiment.run_experiment", interrupted)
+    assert call("run").exit_code == 130
+
+
+@pytest.mark.parametrize("code", [0, 1, 130])
+def test_the_exit_code_is_the_experiments(monkeypatch: pytest.MonkeyPatch, code: int) -> None:
+    given: list[object] = []
+
+    def experiment(*args: object) -> int:
+        given.extend(args)
+        return code
+
+    monkeypatch.setattr("codriving.experiment.run_experiment", experiment)
+    assert call("run", "episodes=3", "+seed=4").exit_code == code
+    assert given == [["episodes=3", "+seed=4"], None]
+
+
+def test_cfg_prints_the_config_and_runs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    import yaml
+
+    monkeypatch.setattr("codriving.experiment.run_experiment", None)
+    result = call("run", "--cfg", "episodes=3", "cda=prescriptive")
+    assert result.exit_code == 0
+    shown = yaml.safe_load(result.stdout)
+    assert shown["episodes"] == 3
+    assert shown["cda"]["binding"] is True

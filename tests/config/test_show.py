@@ -1,0 +1,28 @@
+"""A config as text that composes to the same, and a fingerprint of what results depend on."""
+
+import pytest
+import yaml
+
+from codriving.config.compose import compose
+from codriving.config.show import WITHOUT_EFFECT, fingerprint, show
+
+
+def test_shown_config_reads_back_the_same() -> None:
+    resolved = compose(["run=2026_01", "cda=prescriptive"])
+    assert yaml.safe_load(show(resolved)) == resolved
+
+
+@pytest.mark.parametrize("override", ["workers=2", "output=elsewhere", "run=again", "launcher=serial"])
+def test_fingerprint_ignores_what_has_no_effect(override: str) -> None:
+    assert fingerprint(compose([override])) == fingerprint(compose([]))
+    assert override.partition("=")[0] in WITHOUT_EFFECT
+
+
+@pytest.mark.parametrize("override", ["seed=1", "scenario.cavs=5", "cda.negotiation=false", "metrics=authors"])
+def test_fingerprint_sees_what_has(override: str) -> None:
+    assert fingerprint(compose([override])) != fingerprint(compose([]))
+
+
+def test_fingerprint_does_not_depend_on_the_order_of_keys() -> None:
+    resolved = compose([])
+    assert fingerprint(dict(reversed(resolved.items()))) == fingerprint(resolved)

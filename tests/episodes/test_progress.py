@@ -1,0 +1,39 @@
+"""Progress: a few lines in a pipe, a bar on a terminal."""
+
+import io
+
+import pytest
+
+from codriving.episodes.progress import show_progress
+
+
+class Terminal(io.StringIO):
+    """A stream that is shown to a person."""
+
+    def isatty(self) -> bool:
+        """Say so."""
+        return True
+
+
+def test_a_pipe_gets_about_ten_plain_lines() -> None:
+    stream = io.StringIO()
+    with show_progress(25, stream) as progress:
+        for done in range(1, 26):
+            progress.update(done, done // 20)
+    lines = stream.getvalue().splitlines()
+    assert len(lines) == 13
+    assert lines[0] == "2 of 25 episodes done, 0 failed"
+    assert lines[-1] == "25 of 25 episodes done, 1 failed"
+    assert "\x1b" not in stream.getvalue()
+
+
+def test_a_terminal_gets_a_bar_with_done_failed_and_remaining_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TERM", "xterm")
+    stream = Terminal()
+    with show_progress(2, stream) as progress:
+        progress.update(1, 1)
+        progress.update(2, 1)
+    text = stream.getvalue()
+    assert "2/2" in text
+    assert "1 failed" in text
+    assert "left" in text

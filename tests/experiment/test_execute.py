@@ -1,0 +1,136 @@
+"""A run: the same bytes however it comes about, resumed where it was left, refused where it must be."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+from toy_drive import BuildToy
+from toy_plan import EPISODES, toy_cell, toy_plan
+
+from codriving.errors import RunFolderError
+from codriving.experiment.execute import execute
+
+TABLES = ["episodes.csv", "summary.csv", "summary.md"]
+
+
+def deterministic(folder: Path) -> dict[str, bytes]:
+    """Every file that must not depend on the clock, the machine or the number of workers."""
+    kept = [folder / name for name in TABLES] + [
+        path for path in folder.glob("episodes/*/*/*") if path.name not in {"timing.json", "error.txt"}
+    ]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in kept}
+
+
+def all_files(folder: Path) -> dict[str, bytes]:
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def rewrite(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """The bytes of an undisturbed run in one process."""
+    folder = execute(toy_plan(tmp_path_factory.mktemp("reference")), BuildToy()).folder
+    return deterministic(folder)
+
+
+def test_a_run_folder_holds_everything(tmp_path: Path) -> None:
+    finished = execute(toy_plan(tmp_path), BuildToy())
+    assert finished.folder == tmp_path / "run" / "mine"
+    assert (finished.driven, finished.kept, finished.failed) == (EPISODES, 0, ())
+    top = {item.name for item in finished.folder.iterdir()}
+    assert top == {"config.yaml", "manifest.json", "timing.csv", "episodes", ".lock", *TABLES}
+    episode = finished.folder / "episodes" / "toy-steady-full" / "3"
+    assert {p.name for p in episode.iterdir()} == {"record.json", "trajectory.csv", "decisions.jsonl", "timing.json"}
+    assert len((finished.folder / "episodes.csv").read_text().splitlines()) == EPISODES + 1
+
+
+def test_three_workers_leave_the_bytes_of_one(tmp_path: Path, reference: dict[str, bytes]) -> None:
+    assert deterministic(execute(toy_plan(tmp_path, workers=3), BuildToy(), ["numpy"]).folder) == reference
+
+
+def test_a_complete_run_is_a_no_op(tmp_path: Path) -> None:
+    folder = execute(toy_plan(tmp_path), BuildToy()).folder
+    before = all_files(folder)
+    again = execute(toy_plan(tmp_path), BuildToy(raises=tuple(range(EPISODES))))
+    assert (again.driven, again.kept) == (0, EPISODES)
+    assert all_files(folder) == before
+
+
+def test_only_what_is_missing_is_driven(tmp_path: Path, reference: dict[str, bytes]) -> None:
+    folder = execute(toy_plan(tmp_path), BuildToy()).folder
+    gone = folder / "episodes" / "toy-steady-full" / "5"
+    for path in gone.iterdir():
+        path.unlink()
+    gone.rmdir()
+    # Any episode but the missing one would fail.
+    again = execute(toy_plan(tmp_path), BuildToy(raises=tuple(s for s in range(EPISODES) if s != 5)))
+    assert (again.driven, again.kept, again.failed) == (1, EPISODES - 1, ())
+    assert deterministic(folder) == reference
+
+
+def test_failed_episodes_are_records_and_are_driven_again(tmp_path: Path, reference: dict[str, bytes]) -> None:
+    broken = execute(toy_plan(tmp_path), BuildToy(raises=(2,), nan=(4,)))
+    message = {report.unit.seed: report.message for report in broken.failed}
+    assert message[2] == "RuntimeError: seed 2 broke"
+    assert any(text.startswith("ValueError: Out of range float") for text in message.values())
+    episode = broken.folder / "episodes" / "toy-steady-full" / "2"
+    assert json.loads((episode / "record.json").read_text())["outcome"]["ending"] == "error"
+    assert "RuntimeError: seed 2" in (episode / "error.txt").read_text()
+    rows = (broken.folder / "episodes.csv").read_text().splitlines()
+    assert rows[3].startswith("toy,steady,full,rules,2,error,,,,,")
+
+    mended = execute(toy_plan(tmp_path), BuildToy())
+    assert mended.driven == len(broken.failed)
+    assert not (episode / "error.txt").exists()
+    assert deterministic(mended.folder) == reference
+
+
+def test_a_damaged_record_stops_before_anything_is_driven_or_lost(tmp_path: Path) -> None:
+    folder = execute(toy_plan(tmp_path), BuildToy()).folder
+    path = folder / "episodes" / "toy-steady-full" / "4" / "record.json"
+    rewrite(path, '"seed": 4', '"seed": "4"')
+    before = all_files(folder)
+    with pytest.raises(RunFolderError, match=r"4/record\.json is damaged"):
+        execute(toy_plan(tmp_path), BuildToy())
+    assert all_files(folder) == before
+
+
+def test_another_config_is_refused(tmp_path: Path) -> None:
+    folder = execute(toy_plan(tmp_path), BuildToy()).folder
+    before = all_files(folder)
+    with pytest.raises(RunFolderError, match=r"seed was 0, is now 9"):
+        execute(toy_plan(tmp_path, cells=(toy_cell(seed=9),)), BuildToy())
+    assert all_files(folder) == before
+
+
+def test_an_unwritable_output_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(RunFolderError, match="choose another output"):
+        execute(toy_plan(tmp_path / "file"), BuildToy())
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write anywhere")
+def test_an_output_without_permission_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "closed").mkdir(mode=0o500)
+    with pytest.raises(RunFolderError, match="Permission denied; choose another output"):
+        execute(toy_plan(tmp_path / "closed"), BuildToy())
+
+
+def test_two_cells_are_two_rows(tmp_path: Path) -> None:
+    plan = toy_plan(tmp_path, cells=(toy_cell(a=1), toy_cell(a=2)))
+    finished = execute(plan, BuildToy())
+    assert len(list((finished.folder / "episodes").iterdir())) == 2
+    assert len(finished.tables.summary.rows) == 2
+    assert len(finished.tables.episodes.rows) == 2 * EPISODES
+
+
+def test_a_run_without_a_name_is_called_by_its_time(tmp_path: Path) -> None:
+    names = [execute(toy_plan(tmp_path, name=None), BuildToy()).folder.name for _ in range(2)]
+    assert names[0] != names[1]
+    assert len(names[0]) == len("2026-01-02_030405")

@@ -1,0 +1,121 @@
+"""What a finished run says, and how cells and variations come about."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from toy_drive import LABELS, BuildToy
+from toy_plan import toy_cell, toy_plan
+
+from codriving.episodes.unit import Labels
+from codriving.errors import ConfigError
+from codriving.experiment import run
+from codriving.experiment.ablation import ablation_variations
+from codriving.experiment.cells import distinct, folder_name, make_cell
+from codriving.experiment.objects import modules_to_preload
+
+
+@pytest.fixture
+def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., None]:
+    def use(**settings: tuple[int, ...]) -> None:
+        monkeypatch.setattr(run, "make_plan", lambda variations, config_dir: toy_plan(tmp_path))
+        monkeypatch.setattr(run, "BuildObjects", lambda configs: BuildToy(**settings))
+
+    return use
+
+
+def test_the_table_is_printed_and_the_last_line_tells_the_folder(
+    toy: Callable[..., None], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    toy()
+    assert run.run_experiment([]) == 0
+    out, err = capsys.readouterr()
+    assert out.splitlines()[0].strip() == "toy - reasoner: rules (llm=offline)"
+    assert out.splitlines()[-1] == f"Run folder: {tmp_path / 'run' / 'mine'}"
+    assert "10 of 10 episodes done, 0 failed" in err
+
+
+def test_a_complete_run_says_so_and_prints_its_table_again(
+    toy: Callable[..., None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    toy()
+    run.run_experiment([])
+    first = capsys.readouterr().out
+    assert run.run_experiment([]) == 0
+    out, err = capsys.readouterr()
+    assert out == "Nothing to do: all 10 episodes of this run are finished already.\n" + first
+    assert err == ""
+
+
+def test_failed_episodes_are_told_with_the_way_to_repeat_them(
+    toy: Callable[..., None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    toy(raises=(2, 3))
+    assert run.run_experiment(["episodes=10"]) == 1
+    out = capsys.readouterr().out
+    assert "2 episodes ended in an error, the first with RuntimeError: seed 2 broke" in out
+    assert "Repeat them with: codriving run episodes=10 run=mine" in out
+
+
+def test_python_gets_frames(toy: Callable[..., None], capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    toy()
+    results = run.run_frames("episodes=10")
+    assert list(results.episodes["seed"]) == list(range(10))
+    assert results.summary["episodes"][0] == 10
+    assert results.folder == tmp_path / "run" / "mine"
+    assert capsys.readouterr().out == ""
+
+
+def test_the_command_to_go_on_replaces_the_name_and_is_quoted(tmp_path: Path) -> None:
+    command = run.resume_command("ablate", ["run=null", "a='x y'"], tmp_path, "2026-01-02_030405")
+    assert command == f"""codriving ablate 'a='"'"'x y'"'"'' run=2026-01-02_030405 --config-dir {tmp_path}"""
+
+
+def test_the_ablation_removes_one_thing_at_a_time_under_three_readings() -> None:
+    variations = ablation_variations(["episodes=5"])
+    assert variations[0] == ["experiment=ablate", "episodes=5"]
+    assert [v[2] for v in variations[1:]] == [
+        "cda.state_sharing=false",
+        "cda.intent_sharing=false",
+        *["cda.negotiation=false"] * 3,
+        "cda.safety_check=false",
+    ]
+    assert [v[-1] for v in variations[3:6]] == [f"cda.own_order={o}" for o in ("own_view", "same_rule", "independent")]
+    assert ablation_variations(["experiment=mine"])[0] == ["experiment=mine"]
+
+
+def test_a_method_without_sub_modules_cannot_be_ablated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    plan = toy_plan(tmp_path, cells=(toy_cell(a=1), toy_cell(a=2)))
+    monkeypatch.setattr(run, "make_plan", lambda variations, config_dir: plan)
+    with pytest.raises(ConfigError, match="method 'steady' has no reasoning sub-modules"):
+        run.run_ablation([])
+
+
+def test_folders_are_readable_and_distinct() -> None:
+    labels = Labels("intersection", "codriving", "no_negotiation/own_view", "rules")
+    assert folder_name(labels) == "intersection-codriving-no_negotiation_own_view"
+    assert folder_name(Labels("t", "fcfs", "", "rules")) == "t-fcfs"
+    assert folder_name(Labels("../..", "a b", "", "rules")) == "_..-a_b"
+    cells = distinct([toy_cell(a=1), toy_cell(a=2), toy_cell(a=1)])
+    assert [cell.resolved["a"] for cell in cells] == [1, 2]
+    assert len({cell.folder for cell in cells}) == 2
+    assert all(cell.folder.startswith("toy-steady-full-") for cell in cells)
+
+
+def test_a_cell_is_labelled_by_its_objects_and_an_object_without_a_name_is_refused() -> None:
+    config = {
+        "plugins": ["toy_drive"],
+        "scenario": {"_target_": "toy_drive.ToyMetrics"},
+        "method": {"_target_": "toy_drive.ToyMethod"},
+    }
+    assert make_cell(config).labels == Labels("toy", *("steady", "full", "rules"))
+    assert make_cell(config).folder == folder_name(LABELS)
+    with pytest.raises(ConfigError, match="method: ToyMetrics needs an attribute 'variant'"):
+        make_cell({**config, "method": config["scenario"]})
+
+
+def test_only_our_own_modules_are_preloaded() -> None:
+    config = {"a": {"_target_": "codriving.x.y.Z", "b": [{"_target_": "theirs.W"}]}, "c": 1}
+    modules = modules_to_preload([config])
+    assert "codriving.x.y" in modules
+    assert not any(module.startswith("theirs") for module in modules)

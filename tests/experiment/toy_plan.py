@@ -1,0 +1,32 @@
+"""A plan of toy episodes, and the command line driven by it: ``python toy_plan.py OUTPUT WORKERS [GATE]``."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "episodes"))
+
+from toy_drive import LABELS, BuildToy
+
+from codriving.episodes.launcher import Processes
+from codriving.experiment import run
+from codriving.experiment.cells import Cell, distinct, folder_name
+from codriving.experiment.plan import Plan
+
+EPISODES = 10
+
+
+def toy_cell(**settings: object) -> Cell:
+    return Cell(folder_name(LABELS), LABELS, {"seed": 0, **settings})
+
+
+def toy_plan(output: Path, workers: int = 1, name: str | None = "mine", cells: tuple[Cell, ...] = ()) -> Plan:
+    return Plan(distinct(cells or (toy_cell(),)), 0, EPISODES, Processes(), workers, output, "run", name, "seed: 0\n")
+
+
+if __name__ == "__main__":
+    output, workers, *rest = sys.argv[1:]
+    gate = Path(rest[0]) if rest else None
+    plan = toy_plan(Path(output), int(workers))
+    run.make_plan = lambda variations, config_dir: plan  # type: ignore[assignment]
+    run.BuildObjects = lambda configs: BuildToy(gate=gate, waits_from=4)  # type: ignore[assignment,misc]
+    sys.exit(run.run_experiment(["scenario=toy", "run=mine"]))

@@ -1,0 +1,68 @@
+"""Positions on a path and projections onto it."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from codriving.datatypes.road import Arc, Lane, Straight
+from codriving.geometry.lane_path import lane_path, route_path
+from codriving.geometry.path import Path
+
+TURN = route_path(
+    [
+        Lane(("a", "b", 0), Straight((0, 0), (40, 0))),
+        Lane(("b", "c", 0), Arc((40, 9), 9, -math.pi / 2, 0)),
+        Lane(("c", "d", 0), Straight((49, 9), (49, 50))),
+    ]
+)
+
+
+@settings(deadline=None)
+@given(st.floats(-10, TURN.length + 10), st.floats(-3, 3))
+def test_a_point_beside_the_path_is_projected_back(s: float, lateral: float) -> None:
+    x, y = TURN.position(s)
+    heading = float(TURN.heading(s))
+    found, offset = TURN.project(float(x) - lateral * math.sin(heading), float(y) + lateral * math.cos(heading))
+    assert found == pytest.approx(s, abs=0.02 + 0.03 * abs(lateral))
+    assert offset == pytest.approx(lateral, abs=0.01)
+
+
+@settings(deadline=None)
+@given(st.floats(-20, 80), st.floats(-20, 80))
+def test_a_projection_is_the_nearest_place(x: float, y: float) -> None:
+    s, lateral = TURN.project(x, y)
+    px, py = TURN.position(np.linspace(-100, TURN.length + 100, 3000))
+    assert abs(lateral) <= np.hypot(px - x, py - y).min() + 0.02
+    px, py = TURN.position(s)
+    assert np.hypot(px - x, py - y) == pytest.approx(abs(lateral), abs=1e-6)
+
+
+def test_the_offset_is_positive_on_the_right_of_a_screen() -> None:
+    path = lane_path(Lane(("a", "b", 0), Straight((0, 0), (10, 0))))
+    assert path.project(4, 1) == pytest.approx((4, 1))
+    assert path.project(4, -1) == pytest.approx((4, -1))
+
+
+def test_positions_keep_the_shape_and_go_straight_on() -> None:
+    s = np.array([[-4.0, 0.0], [TURN.length, TURN.length + 4.0]])
+    x, y = TURN.position(s)
+    assert x.shape == y.shape == TURN.heading(s).shape == (2, 2)
+    np.testing.assert_allclose(x, [[-4, 0], [49, 49]], atol=1e-9)
+    np.testing.assert_allclose(y, [[0, 0], [50, 54]], atol=1e-9)
+    np.testing.assert_allclose(TURN.heading(s), [[0, 0], [math.pi / 2, math.pi / 2]])
+
+
+def test_near_tells_two_passages_of_one_place_apart() -> None:
+    there_and_back = np.concatenate((np.linspace((0, 0), (50, 0), 101), np.linspace((49.5, 0), (0, 0), 100)))
+    headings = np.repeat([0.0, math.pi], [101, 100])
+    path = Path(there_and_back, headings, 100.0)
+    assert path.project(20, 0.2, near=18)[0] == pytest.approx(20)
+    assert path.project(20, 0.2, near=78)[0] == pytest.approx(80)
+
+
+def test_near_beyond_the_end_still_finds_the_end() -> None:
+    s, _ = TURN.project(49, 53, near=TURN.length + 20)
+    assert s == pytest.approx(TURN.length + 3)

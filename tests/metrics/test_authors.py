@@ -1,0 +1,77 @@
+"""The authors' definitions on trajectories of ours."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.trajectory import Track, Trajectory
+from codriving.datatypes.vehicle import Kind
+from codriving.errors import ConfigError
+from codriving.geometry.road_map import RoadMap
+from codriving.metrics.authors import AuthorsMetrics
+from codriving.metrics.protocol import Metrics
+
+Drive = Callable[..., Track]
+
+OUTCOME = Outcome(Ending.SUCCESS, 30.0, {})
+
+
+def _track(name: str, x: np.ndarray, y: np.ndarray, first_step: int = 0, kind: Kind = Kind.HDV) -> Track:
+    speed = np.linspace(1, 9, len(x))
+    zeros = np.zeros(len(x))
+    return Track(name, kind, "east", first_step, x, y, zeros, speed, zeros, ("",) * len(x), None)
+
+
+def _crossing(step: float, first_step: int = 0) -> Trajectory:
+    """Two human drivers cross the middle at 4 s and at 6 s."""
+    time = np.arange(0, 20, step)
+    a = _track("a", 10 * (time - 4), 0 * time)
+    b = _track("b", 0 * time, 10 * (time + first_step * step - 6), first_step)
+    return Trajectory(step, (a, b))
+
+
+@pytest.mark.parametrize("step", [0.05, 0.1, 0.2])
+@pytest.mark.parametrize("first_step", [0, 3, 4])
+def test_rows_of_a_fifth_of_a_second_are_compared(road: RoadMap, step: float, first_step: int) -> None:
+    metrics: Metrics = AuthorsMetrics()
+    (pet,) = metrics.score(_crossing(step, first_step), OUTCOME, road).pets
+    # Rows are 2 m apart: only the rows in the very middle are less than 1 m apart.
+    assert (pet.first, pet.second) == ("a", "b")
+    assert pet.value == pytest.approx(2.0)
+
+
+def test_the_one_that_was_there_earlier_is_first(road: RoadMap) -> None:
+    a, b = _crossing(0.1).tracks
+    (pet,) = AuthorsMetrics().score(Trajectory(0.1, (b, a)), OUTCOME, road).pets
+    assert (pet.first, pet.second) == ("a", "b")
+
+
+def test_velocity_is_the_mean_of_the_first_rows_or_of_all(road: RoadMap) -> None:
+    trajectory = _crossing(0.1)
+    speed = trajectory.tracks[0].speed[::2]
+    first = AuthorsMetrics().score(trajectory, OUTCOME, road).travels
+    whole = AuthorsMetrics(rows=None).score(trajectory, OUTCOME, road).travels
+    assert first[0].velocity == pytest.approx(speed[:60].mean())
+    assert whole[0].velocity == pytest.approx(speed.mean())
+    assert [travel.id for travel in first] == ["a", "b"], "human drivers count"
+    assert first[0].delay is None
+    assert first[0].time == pytest.approx(19.8)
+
+
+def test_a_track_without_a_logged_row_is_left_out(road: RoadMap) -> None:
+    short = _track("c", np.zeros(1), np.ones(1), first_step=1)
+    trajectory = Trajectory(0.1, (*_crossing(0.1).tracks, short))
+    assert [travel.id for travel in AuthorsMetrics().score(trajectory, OUTCOME, road).travels] == ["a", "b"]
+
+
+def test_success_is_the_ending(road: RoadMap) -> None:
+    assert AuthorsMetrics().score(_crossing(0.1), OUTCOME, road).success
+    assert not AuthorsMetrics().score(_crossing(0.1), Outcome(Ending.TIMEOUT, 30.0, {}), road).success
+
+
+@pytest.mark.parametrize("key", ["row_interval", "box", "distance", "rows"])
+def test_numbers_must_be_positive(key: str) -> None:
+    with pytest.raises(ConfigError, match=rf"metrics\.{key} must be > 0, got 0"):
+        AuthorsMetrics(**{key: 0})

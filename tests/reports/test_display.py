@@ -1,0 +1,96 @@
+"""The printed table: ours beside the paper's, plain in a pipe, and the same in Markdown."""
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import EpisodeRecord
+from codriving.reports.console import print_table
+from codriving.reports.display import Display, display
+from codriving.reports.markdown import markdown_text
+from codriving.reports.paper import ABLATION, COMPARISON, Paper, read_paper
+from codriving.reports.summary import summary_row
+
+COMPARED = "scenario,method,label,success_rate,pet_mean,pet_max,pet_min,velocity_mean,velocity_max,velocity_min\n"
+
+
+@pytest.fixture
+def paper(tmp_path: Path) -> Paper:
+    (tmp_path / COMPARISON).write_text(COMPARED + "intersection,codriving,CoDrivingLLM,0.90,10.3,44.0,1.8,5.7,8.0,\n")
+    (tmp_path / ABLATION).write_text(
+        "scenario,variant,statement,success_low,success_high\n"
+        "intersection,full,90 %,0.9,0.9\nintersection,no_negotiation,below 15 %,0.0,0.15\n"
+    )
+    return read_paper(tmp_path)
+
+
+def printed(table: Display) -> str:
+    stream = io.StringIO()
+    print_table(table, stream)
+    return stream.getvalue()
+
+
+def test_a_pipe_gets_plain_text_with_the_papers_row_beside_ours(
+    make: Callable[..., EpisodeRecord], paper: Paper
+) -> None:
+    rows = [summary_row([make(seed, pets=(2.0, 4.0), velocities=(7.0,)) for seed in range(20)])]
+    text = printed(display(rows, paper))
+    assert text.isascii()
+    assert "\x1b" not in text
+    title, head, ours, theirs, note = (" ".join(line.split()) for line in text.splitlines())
+    assert title == "intersection - reasoner: rules (llm=offline)"
+    assert head.split()[0] == "method"
+    assert ours.split()[:4] == ["codriving", "full", "20", "100"]
+    assert "83.9 % to 100 %" in ours
+    assert ours.endswith("3.0 / 4.0 / 2.0 7.0 / 7.0 / 7.0")
+    assert theirs.startswith("paper: CoDrivingLLM")
+    assert theirs.endswith("10.3 / 44.0 / 1.8 5.7 / 8.0 / -")
+    assert "Wilson" in note
+
+
+def test_the_ablation_has_the_papers_words_beside_each_reading(
+    make: Callable[..., EpisodeRecord], paper: Paper
+) -> None:
+    rows = [summary_row([make(0, variant=v)]) for v in ("full", "no_negotiation/own_view", "no_safety_check")]
+    table = display(rows, paper)
+    assert table.columns[-1] == "the paper says"
+    assert [line.cells[-1] for line in table.lines if line.ours] == ["90 %", "below 15 %", ""]
+    assert sum(not line.ours for line in table.lines) == 1
+
+
+def test_scenarios_and_errors_have_columns_only_where_there_are_some(make: Callable[..., EpisodeRecord]) -> None:
+    one = display([summary_row([make(0)])], Paper())
+    assert not {"scenario", "error", "off road", "the paper says"} & set(one.columns)
+    two = display([summary_row([make(0)]), summary_row([make(0, Ending.ERROR, scenario="merge")])], Paper())
+    assert two.columns[0] == "scenario"
+    assert "error" in two.columns
+    assert two.lines[1].cells[2] == "0/1"
+    assert two.title.startswith("intersection, merge - ")
+
+
+def test_a_model_is_named_without_the_word_offline(make: Callable[..., EpisodeRecord]) -> None:
+    row = {**summary_row([make(0)]), "reasoner": "gpt-4o-mini"}
+    assert display([row], Paper()).title == "intersection - reasoner: gpt-4o-mini"
+
+
+def test_text_is_never_taken_for_markup(make: Callable[..., EpisodeRecord]) -> None:
+    row = {**summary_row([make(0)]), "variant": "[bold]|x"}
+    table = display([row], Paper())
+    assert "codriving [bold]|x" in printed(table)
+    assert "codriving [bold]\\|x" in markdown_text(table)
+
+
+def test_markdown_has_the_same_rows(make: Callable[..., EpisodeRecord], paper: Paper) -> None:
+    lines = markdown_text(display([summary_row([make(0)])], paper)).splitlines()
+    assert lines[0] == "# intersection - reasoner: rules (llm=offline)"
+    assert lines[3].startswith("| --- | ---: |")
+    assert lines[4].startswith("| codriving full | 1 | 100 % |")
+    assert lines[5].startswith("| *paper: CoDrivingLLM* | *20* | *90 %* |  |")
+    assert len({line.count("|") for line in lines[2:6]}) == 1
+
+
+def test_a_missing_paper_is_no_paper(tmp_path: Path) -> None:
+    assert read_paper(tmp_path) == Paper()

@@ -1,0 +1,24 @@
+"""One record with everything in it."""
+
+import pytest
+
+from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.datatypes.record import EpisodeRecord, Participant
+from codriving.datatypes.score import Pet, Score, TravelScore
+
+
+@pytest.fixture
+def record() -> EpisodeRecord:
+    hit = Collision(4.2, "CAV1", "HDV2", "CAV-HDV")
+    return EpisodeRecord(
+        scenario="intersection",
+        method="codriving",
+        variant="no_negotiation/own_view",
+        reasoner="rules",
+        seed=7,
+        outcome=Outcome(Ending.COLLISION, 4.2, {"CAV0": 3.0}, hit, (hit,), ("HDV3",), ""),
+        score=Score(False, (Pet("CAV0", "CAV1", "crossing", 1.25),), (TravelScore("CAV0", 7.1, 3.0, None),)),
+        participants=(Participant("CAV0", "CAV", "south-north", 3.0), Participant("HDV2", "HDV", "west-east", None)),
+        decisions=5,
+        counts={"fallbacks": 2},
+    )

@@ -1,0 +1,24 @@
+"""Secrets are masked, everything else stays."""
+
+from codriving.storage.redaction import MASK, flat, redact
+
+
+def test_values_under_secret_names_are_masked_at_any_depth() -> None:
+    settings = {"llm": {"api_key": "sk-1", "headers": [{"X-Secret": "s"}], "TOKEN": ["t"], "model": "m"}}
+    assert redact(settings) == {
+        "llm": {"api_key": MASK, "headers": [{"X-Secret": MASK}], "TOKEN": [MASK], "model": "m"}
+    }
+
+
+def test_numbers_switches_and_names_of_variables_stay() -> None:
+    settings = {"max_tokens": 500, "use_key": True, "api_key": None, "api_key_env": "OPENAI_API_KEY", "keyword": ""}
+    assert redact(settings) == settings
+
+
+def test_flattening_gives_a_line_a_setting() -> None:
+    assert flat({"scenario": {"cavs": 4, "speeds": [0, 8]}, "run": None, "memory": {}}) == {
+        "scenario.cavs": "4",
+        "scenario.speeds": "[0, 8]",
+        "run": "null",
+        "memory": "{}",
+    }
