@@ -8,7 +8,7 @@ from highway_env.vehicle.objects import RoadObject
 
 from codriving.environment.on_way import OnWay
 
-BODY_MARGIN = 0.3
+BODY_MARGIN = 0.6
 """Lateral room that a driver wants beside a body before it counts as out of the way [m]."""
 
 LARGE = 8.0

@@ -37,11 +37,11 @@ class OnWay(PlainMotion):
             corrections: Which faults of the simulator are corrected.
         """
         self.id, self.way, self.s, self.offset, self.corrections = name, way, s, 0.0, corrections
-        # A lane number would bind the driver to that lane: MOBIL never leaves it, and a CAV that did is pulled back.
+        # From the present lane on: highway-env takes any other road if the plan does not begin with it or the next one.
+        # No number where there are several lanes: it would bind drivers to that lane, and pull back CAVs that left it.
         graph = self.road.network.graph
-        self.route = [
-            (start, end, index if len(graph[start][end]) == 1 else None) for start, end, index in way.route.lanes
-        ]
+        ahead = way.route.lanes[way.route.lanes.index(way.lane_at(s)) :]
+        self.route = [(start, end, index if len(graph[start][end]) == 1 else None) for start, end, index in ahead]
         if corrections.route_lane:
             self._find_lane()
             self.target_lane_index = self.lane_index

@@ -16,6 +16,9 @@ LAST = float(HORIZON[-1])
 SIGHT = 25.0
 """How far ahead a driver minds who is in the junction [m]."""
 
+OVERSHOOT = 1.0
+"""How far a driver may come into a zone and still wait there; the bodies do not touch yet [m]."""
+
 GRID = 1.0
 """More than what the tables of a zone reach beyond its ends [m]."""
 
@@ -73,6 +76,6 @@ def occupied_ahead(road_map: RoadMap, driver: OnWay, others: Iterable[OnWay]) ->
             if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
                 continue
             inside = zone.entry_j < other.s < (zone.exit_j if zone.merge_j is None else zone.merge_j)
-            if inside and stop < zone.entry_i < driver.s + SIGHT and (nearest is None or zone.entry_i < nearest):
+            if inside and stop < zone.entry_i + OVERSHOOT and zone.entry_i < driver.s + SIGHT and (nearest is None or zone.entry_i < nearest):
                 nearest = zone.entry_i
     return nearest

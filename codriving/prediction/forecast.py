@@ -59,7 +59,7 @@ class Forecast:
         self._stride = max(1, round(SAMPLE / model.step))
         self.sample = self._stride * model.step
         self.steps = round(HORIZON / self.sample)
-        self.times = np.arange(self.steps + 1) * self.sample
+        self.times: Array = np.arange(self.steps + 1, dtype=np.float64) * self.sample
         self._library = tuple(dict.fromkeys((BRAKE, GO, *library)))
         self._index = {plan: k for k, plan in enumerate(self._library)}
         self._travel: dict[tuple[float, float], Array] = {}

@@ -8,7 +8,7 @@ Array = NDArray[np.float64]
 HARD_BRAKING = 6.0
 """Hardest braking expected of a human driver [m/s2]."""
 
-HARD_ACCELERATION = 3.0
+HARD_ACCELERATION = 1.5
 """Hardest acceleration expected of a human driver [m/s2]."""
 
 

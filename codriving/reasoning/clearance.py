@@ -8,8 +8,11 @@ from codriving.geometry.zone import ConflictZone
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-GENTLE = 3.0
-"""Braking that a driver can be expected to do behind somebody who has merged ahead [m/s2]."""
+REACTION = 1.0
+"""Time after which a driver brakes for a vehicle that is in the way [s]."""
+
+BRAKING = 4.0
+"""Braking that can be expected of a driver for a vehicle that is in the way [m/s2]."""
 
 
 def stays_behind(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: float) -> Flags:
@@ -25,8 +28,9 @@ def stays_behind(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: fl
     Returns:
         One flag a plan (plans,).
     """
-    blocked_until = zone.over_i.highest(ego[:, lag:]) + pad
-    return np.asarray((other[: ego.shape[1] - lag] > blocked_until).all(axis=1))
+    # Where the other one was before now is not known; it must have left by now if the ego vehicle enters that soon.
+    earlier = np.concatenate([np.full(lag, other[0]), other[: ego.shape[1] - lag]])
+    return np.asarray((earlier > zone.over_i.highest(ego) + pad).all(axis=1))
 
 
 def stays_ahead(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: float) -> Flags:
@@ -42,31 +46,28 @@ def stays_ahead(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: flo
     Returns:
         One flag a plan (plans,).
     """
-    needed = zone.front(other[lag:]) + pad
-    return np.asarray((ego[:, : ego.shape[1] - lag] > needed).all(axis=1))
+    earlier = np.concatenate([np.repeat(ego[:, :1], lag, axis=1), ego[:, : ego.shape[1] - lag]], axis=1)
+    return np.asarray((earlier > zone.front(other) + pad).all(axis=1))
 
 
-def follows_after_merge(zone: ConflictZone, ego: Array, other: Array, speed: float, sample: float) -> Array:
-    """Let the other vehicle brake gently once the ego vehicle has merged ahead of it.
+def reacts(zone: ConflictZone, ego: Array, other: Array, sample: float) -> Array:
+    """Let a driver brake, after a reaction time, once the ego vehicle is in a zone ahead of it.
 
     Args:
         zone: The zone, seen from the ego vehicle.
         ego: Arc length of the ego vehicle over time (n,) [m].
-        other: Arc length of the other vehicle over time, the most that it may reach (n,) [m].
-        speed: Speed of the other vehicle now [m/s].
+        other: Arc length of the driver over time, the most that it may reach (n,) [m].
         sample: Time between two samples [s].
 
     Returns:
-        Arc length of the other vehicle over time (n,) [m].
+        Arc length of the driver over time (n,) [m].
     """
-    if zone.merge_i is None:
+    sees = int(np.searchsorted(ego, zone.entry_i)) + round(REACTION / sample)
+    if sees >= len(other) - 1:
         return other
-    merged = int(np.searchsorted(ego, zone.merge_i))
-    if merged >= len(ego) - 1:
-        return other
-    pace = (other[merged + 1] - other[merged]) / sample if merged + 1 < len(other) else speed
-    later = np.minimum(np.arange(len(other) - merged) * sample, pace / GENTLE)
-    return np.concatenate([other[:merged], other[merged] + pace * later - GENTLE * later**2 / 2])
+    pace = (other[sees + 1] - other[sees]) / sample
+    later = np.minimum(np.arange(len(other) - sees) * sample, pace / BRAKING)
+    return np.concatenate([other[:sees], other[sees] + pace * later - BRAKING * later**2 / 2])
 
 
 def first_overlap(zone: ConflictZone, ego: Array, other: Array) -> NDArray[np.int64]:
@@ -81,4 +82,4 @@ def first_overlap(zone: ConflictZone, ego: Array, other: Array) -> NDArray[np.in
         One step a plan (plans,); n where they never overlap.
     """
     hit = (ego >= zone.back(other)) & (ego <= zone.front(other))
-    return np.where(hit.any(axis=1), hit.argmax(axis=1), ego.shape[1])
+    return np.asarray(np.where(hit.any(axis=1), hit.argmax(axis=1), ego.shape[1]))

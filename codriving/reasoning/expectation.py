@@ -69,7 +69,7 @@ def expect(
         for other in found:
             if order.first_of(v.id, other) == v.id:
                 continue
-            now = {r: s for r, s in vehicles[other].routes}
+            now = dict(vehicles[other].routes)
             for motion in found[other]:
                 for zone in binding_zones(road_map.zones(route, motion.route), place, now[motion.route]):
                     keeps &= stays_behind(zone, places, motion.places, lag, 0.0)

@@ -16,6 +16,7 @@ class Mover:
         speed: Speed [m/s].
         target: Target speed, its own or its speed where that is unknown [m/s].
         routes: Each route that it may be on, with its arc length there [m].
+        acceleration: Acceleration [m/s2]; None where it is not known.
         standing: How long it has been standing [s].
     """
 
@@ -24,6 +25,7 @@ class Mover:
     speed: float
     target: float
     routes: tuple[tuple[str, float], ...]
+    acceleration: float | None
     standing: float
 
 
@@ -35,9 +37,9 @@ def movers(scene: SceneDescription) -> dict[str, Mover]:
     """
     ego = scene.ego
     route = ((scene.intent.route, scene.place),)
-    found = {ego.id: Mover(ego.id, True, ego.speed, scene.intent.target_speed, route, 0.0)}
+    found = {ego.id: Mover(ego.id, True, ego.speed, scene.intent.target_speed, route, ego.acceleration, 0.0)}
     for n in scene.neighbours:
         is_cav = n.kind == Kind.CAV and n.intent is not None
         target = n.intent.target_speed if n.intent is not None else n.speed
-        found[n.id] = Mover(n.id, is_cav, n.speed, target, n.routes, n.standing)
+        found[n.id] = Mover(n.id, is_cav, n.speed, target, n.routes, n.acceleration, n.standing)
     return dict(sorted(found.items()))

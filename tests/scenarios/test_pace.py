@@ -26,7 +26,11 @@ def test_good_settings_are_taken() -> None:
     ("key", "value", "message"),
     [
         ("simulation_frequency", 4.0, "simulation_frequency must be 5 to 50 Hz, got 4"),
-        ("simulation_frequency", 11.0, "simulation_frequency must be a multiple of decision_frequency (2 Hz), got 11 Hz"),
+        (
+            "simulation_frequency",
+            11.0,
+            "simulation_frequency must be a multiple of decision_frequency (2 Hz), got 11 Hz",
+        ),
         ("simulation_frequency", math.nan, "simulation_frequency must be 5 to 50 Hz, got nan"),
         ("decision_frequency", 10.0, "decision_frequency must be 0.5 to 5 Hz, got 10"),
         ("time_limit", 0.0, "time_limit must be 1 to 600 s, got 0"),

@@ -46,6 +46,8 @@ def test_scene_that_is_too_full_is_refused_with_the_reason() -> None:
     def draw(rng: np.random.Generator, name: str, kind: Kind) -> Start:
         return Start(name, kind, "r", float(rng.uniform(0, 20)), 5.0)
 
-    message = "road with 20 m: 4 CAVs and 1 HDVs do not fit with 10 m and a braking gap between them (seed 7); use fewer"
+    message = (
+        "road with 20 m: 4 CAVs and 1 HDVs do not fit with 10 m and a braking gap between them (seed 7); use fewer"
+    )
     with pytest.raises(ScenarioError, match=re.escape(message)):
         place(7, 4, (1, 1), draw, _spot, 10.0, "road with 20 m")

@@ -7,9 +7,10 @@ from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.order import PassingOrder, Precedence
 from codriving.datatypes.road import Turn
 from codriving.datatypes.scene_description import Role, SceneDescription
+from codriving.geometry.box import TRUE
 from codriving.geometry.road_map import RoadMap
 from codriving.prediction.forecast import Forecast
-from codriving.reasoning.negotiation.human_windows import window
+from codriving.reasoning.negotiation.human_windows import is_blocked, window
 from codriving.reasoning.negotiation.reasons import reason_between, reason_human
 from codriving.reasoning.negotiation.schedule import GAP, Slot, lag_length, start_time
 
@@ -18,6 +19,9 @@ TURN_YIELDS = 1.0
 
 KEEPS_TURN = 1.0
 """An order that has been agreed on is changed only if the other one can go this much earlier [s]."""
+
+FOREVER = 1e3
+"""Beyond every time that matters [s]."""
 
 Scenes = Mapping[str, SceneDescription]
 Conflicts = Mapping[str, tuple[Conflict, ...]]
@@ -126,10 +130,12 @@ class RuleCoordinator:
         return found
 
     def _cannot_stop(self, scene: SceneDescription, c: Conflict) -> bool:
-        return bool(self.forecast.reach(scene.ego.speed, True).least[-1] >= c.distances[0])
+        least = c.places[0] + self.forecast.reach(scene.ego.speed, True).least[-1]
+        return any(z.entry_i <= least and c.places[0] < z.exit_i for z in self.road_map.zones(*c.routes, TRUE))
 
     def _other_cannot_stop(self, scenes: Scenes, c: Conflict) -> bool:
-        return bool(self.forecast.reach(scenes[c.other].ego.speed, True).least[-1] >= c.distances[1])
+        least = c.places[1] + self.forecast.reach(scenes[c.other].ego.speed, True).least[-1]
+        return any(z.entry_j <= least and c.places[1] < z.exit_j for z in self.road_map.zones(*c.routes, TRUE))
 
     def _add_windows(
         self, slot: Slot, scene: SceneDescription, conflicts: tuple[Conflict, ...]
@@ -141,6 +147,8 @@ class RuleCoordinator:
             if n is None or n.intent is not None:
                 continue
             begin, end = window(c, n, slot.reference, self.road_map, self.forecast)
+            if n.standing > 0 and is_blocked(c, self.road_map):
+                begin, end = -FOREVER, FOREVER
             slot.windows.append((begin, end))
             known = found.get(c.other, (begin, end))
             found[c.other] = (min(begin, known[0]), max(end, known[1]))

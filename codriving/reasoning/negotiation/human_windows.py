@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.scene_description import Neighbour, SceneDescription
+from codriving.geometry.box import TRUE
 from codriving.geometry.road_map import RoadMap
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.negotiation.schedule import GAP, lag_length
@@ -28,7 +29,7 @@ def window(
     Returns:
         Begin and end, inf for a driver who gives way [s].
     """
-    if gives_way(c, n.speed, n.standing, road_map):
+    if gives_way(c, n, road_map):
         return float("inf"), float("inf")
     zone = road_map.zones(*c.routes)[c.zone]
     top = forecast.model.target_speeds[-1]
@@ -58,3 +59,15 @@ def passes_first(
         if forecast.time_to(c.distances[0], travel) > begin:
             return False
     return True
+
+
+def is_blocked(c: Conflict, road_map: RoadMap) -> bool:
+    """Whether the other vehicle stands bodily in the way of the CAV.
+
+    Args:
+        c: The conflict.
+        road_map: The precomputed road.
+    """
+    return any(
+        z.entry_j < c.places[1] < z.exit_j and c.places[0] < z.exit_i for z in road_map.zones(*c.routes, TRUE)
+    )

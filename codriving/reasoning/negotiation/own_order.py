@@ -50,7 +50,8 @@ class OwnOrders:
 
     def _own(self, scene: SceneDescription, conflicts: tuple[Conflict, ...]) -> PassingOrder:
         ego = scene.ego.id
-        precedences, times = [], {}
+        precedences: list[Precedence] = []
+        times: dict[str, float] = {}
         for other in dict.fromkeys(c.other for c in conflicts):
             n = scene.neighbour(other)
             if n is None:

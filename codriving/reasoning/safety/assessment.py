@@ -58,11 +58,13 @@ class ThreeLayers:
             for action, why in abrupt.items():
                 reasons[action] += why
         forced = None if any(not why for why in reasons.values()) else least_dangerous(outlook)
+        if forced is not None:
+            reasons[forced].append("no action is safe; this one is the least dangerous")
         return tuple(
             ActionAssessment(
                 action,
                 not reasons[action] or action is forced,
-                (*reasons[action], *(("no action is safe; this one is the least dangerous",) if action is forced else ())),
+                tuple(reasons[action]),
                 arrivals(outlook, k),
                 progress(outlook, action),
             )

@@ -1,0 +1,1 @@
+"""Speed, measured against a rival that is stepped alternately in the same run."""

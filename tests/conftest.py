@@ -1,0 +1,35 @@
+"""Fixtures for all rooms, and makes ``worlds`` importable."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from codriving.config.build import build
+from codriving.config.compose import compose
+from codriving.environment.environment import Environment
+
+HERE = str(Path(__file__).parent)
+if HERE not in sys.path:
+    sys.path.insert(0, HERE)
+
+from worlds import Junction  # noqa: E402  (needs the path above)
+
+
+@pytest.fixture(scope="session")
+def configured() -> Callable[..., Environment]:
+    """Builds the environment that some overrides ask for."""
+
+    def make(*overrides: str) -> Environment:
+        environment = build(compose(overrides)["environment"])
+        assert isinstance(environment, Environment)
+        return environment
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def junction(configured: Callable[..., Environment]) -> Junction:
+    """The intersection of the configuration, and worlds on it made by hand."""
+    return Junction(configured("scenario=intersection"))

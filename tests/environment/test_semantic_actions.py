@@ -1,0 +1,99 @@
+"""FASTER, IDLE and SLOWER do what prediction says, and the controllers follow the paper's laws."""
+
+import math
+from collections.abc import Callable
+from itertools import product
+
+import numpy as np
+import pytest
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
+from codriving.datatypes.scene import Start
+from codriving.datatypes.vehicle import Kind
+from codriving.environment.cav import ConnectedVehicle
+from codriving.environment.control import ControlGains
+from codriving.environment.environment import Environment
+from codriving.errors import ConfigError
+from codriving.prediction.rollout import rollout
+
+Build = Callable[..., Environment]
+
+STREET = Road(
+    "street",
+    (Lane(("a", "b", 0), Straight((0.0, 0.0), (300.0, 0.0))),),
+    (Route("along", (("a", "b", 0),), Turn.STRAIGHT, entry=200.0, goal=290.0),),
+)
+PLANS = tuple(product((Action.SLOWER, Action.IDLE, Action.FASTER), repeat=5))
+
+
+@pytest.mark.parametrize("speed", [0.0, 4.4, 9.0])
+def test_actions_do_what_prediction_says(speed: float, by_hand: Build) -> None:
+    # Every shorter sequence is the beginning of one of these.
+    env = by_hand(starts=[Start("CAV1", Kind.CAV, "along", 20.0, speed)], road=STREET)
+    target = env.reset(0).intents["CAV1"].target_speed
+    steps = 5 * env.driving_model.substeps
+    distances, speeds = rollout(env.driving_model, [speed], [target], PLANS, steps)
+    for k, plan in enumerate(PLANS):
+        env.reset(0)
+        for action in plan:
+            env.step({"CAV1": action})
+        track = env.trajectory().tracks[0]
+        assert np.allclose(track.x - 20.0, distances[0, k], rtol=0, atol=1e-6)
+        assert np.allclose(track.speed, speeds[0, k], rtol=0, atol=1e-6)
+        assert track.y == pytest.approx(0.0)
+
+
+def test_acceleration_is_proportional_to_the_missing_speed(by_hand: Build) -> None:
+    env = by_hand(starts=[Start("CAV1", Kind.CAV, "along", 20.0, 4.0)], road=STREET)
+    env.reset(0)
+    env.step({"CAV1": Action.FASTER})
+    track = env.trajectory().tracks[0]
+    assert track.acceleration[1:] == pytest.approx(1.6 * (6.0 - track.speed[:-1]))
+    assert track.speed[1:] == pytest.approx(track.speed[:-1] + track.acceleration[1:] * 0.1)
+
+
+@pytest.mark.parametrize("delta", [-0.4, -0.05, 0.0, 0.2, 0.9])
+def test_bicycle_model(delta: float, by_hand: Build) -> None:
+    env = by_hand(starts=[Start("CAV1", Kind.CAV, "along", 20.0, 8.0)], road=STREET)
+    env.reset(0)
+    vehicle = env._traffic.vehicles[0]
+    vehicle.heading, vehicle.action = 0.3, {"steering": delta, "acceleration": 1.5}
+    vehicle.step(0.1)
+    beta = math.atan(math.tan(delta) / 2)
+    assert vehicle.position[0] == pytest.approx(20.0 + 0.8 * math.cos(0.3 + beta))
+    assert vehicle.position[1] == pytest.approx(0.8 * math.sin(0.3 + beta))
+    assert vehicle.heading == pytest.approx(0.3 + 0.8 * math.sin(beta) / 2.5)
+    assert vehicle.speed == pytest.approx(8.15)
+
+
+def test_steering_follows_the_heading_law(by_hand: Build) -> None:
+    env = by_hand(starts=[Start("CAV1", Kind.CAV, "along", 20.0, 8.0)], road=STREET)
+    env.reset(0)
+    vehicle = env._traffic.vehicles[0]
+    vehicle.position[1], vehicle.heading = 0.6, 0.1
+    wanted = math.asin(-(1 / 0.6) * 0.6 / 8.0)
+    slip = math.asin(5.0 * (wanted - 0.1) * 5.0 / (2 * 8.0))
+    steering = vehicle.steering_control(vehicle.target_lane_index)
+    assert steering == pytest.approx(math.atan(2 * math.tan(slip)))
+
+
+def test_gains_are_those_of_the_settings(by_hand: Build) -> None:
+    env = by_hand(starts=[Start("CAV1", Kind.CAV, "along", 20.0, 8.0)], road=STREET)
+    env.reset(0)
+    vehicle = env._traffic.vehicles[0]
+    assert (vehicle.KP_A, vehicle.KP_HEADING, vehicle.KP_LATERAL) == (1.6, 5.0, 1 / 0.6)
+    assert pytest.approx(1 / 0.6) == ConnectedVehicle.KP_A, "the class keeps what highway-env gave it"
+
+
+@pytest.mark.parametrize(
+    ("gains", "message"),
+    [
+        ((0.0, 5.0, 1.0), "control.speed must be above 0 and at most 5 1/s, got 0"),
+        ((1.6, 50.0, 1.0), "control.heading must be above 0 and at most 10 1/s, got 50"),
+        ((1.6, 5.0, math.nan), "control.lateral must be above 0 and at most 5 1/s, got nan"),
+    ],
+)
+def test_gains_out_of_range_are_refused(gains: tuple[float, float, float], message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        ControlGains(*gains)
