@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 import numpy as np
+from highway_env.vehicle.behavior import IDMVehicle
 
 from codriving.datatypes.conflict import Relation
 from codriving.environment.on_way import OnWay
@@ -19,6 +20,9 @@ SIGHT = 25.0
 OVERSHOOT = 1.0
 """How far a driver may come into a zone and still wait there; the bodies do not touch yet [m]."""
 
+STARTING = 4.0
+"""Speed that a driver who creeps or stands expects to have soon [m/s]."""
+
 GRID = 1.0
 """More than what the tables of a zone reach beyond its ends [m]."""
 
@@ -33,17 +37,29 @@ def will_meet(road_map: RoadMap, one: OnWay, other: OnWay) -> bool:
         one: A vehicle.
         other: Another vehicle.
     """
-    reach_one = one.s + max(one.speed, 0.0) * LAST + GRID
-    reach_other = other.s + max(other.speed, 0.0) * LAST + GRID
+    reach_one = one.s + pace(one) * LAST + GRID
+    reach_other = other.s + pace(other) * LAST + GRID
     for zone in road_map.zones(one.way.route.id, other.way.route.id):
         if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
             continue
         if one.s > zone.exit_i or other.s > zone.exit_j or reach_one < zone.entry_i or reach_other < zone.entry_j:
             continue
-        s_one, s_other = one.s + one.speed * HORIZON, other.s + other.speed * HORIZON
+        s_one, s_other = one.s + pace(one) * HORIZON, other.s + pace(other) * HORIZON
         if np.any((s_one >= zone.back(s_other)) & (s_one <= zone.front(s_other))):
             return True
     return False
+
+
+def pace(vehicle: OnWay) -> float:
+    """Speed at which a vehicle is expected to go on: a driver who creeps or stands means to start.
+
+    Args:
+        vehicle: A vehicle.
+
+    Returns:
+        Speed [m/s].
+    """
+    return float(max(vehicle.speed, STARTING if isinstance(vehicle, IDMVehicle) else 0.0))
 
 
 def can_wait(driver: OnWay) -> bool:
@@ -76,6 +92,11 @@ def occupied_ahead(road_map: RoadMap, driver: OnWay, others: Iterable[OnWay]) ->
             if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
                 continue
             inside = zone.entry_j < other.s < (zone.exit_j if zone.merge_j is None else zone.merge_j)
-            if inside and stop < zone.entry_i + OVERSHOOT and zone.entry_i < driver.s + SIGHT and (nearest is None or zone.entry_i < nearest):
+            if (
+                inside
+                and stop < zone.entry_i + OVERSHOOT
+                and zone.entry_i < driver.s + SIGHT
+                and (nearest is None or zone.entry_i < nearest)
+            ):
                 nearest = zone.entry_i
     return nearest

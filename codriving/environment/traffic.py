@@ -18,6 +18,10 @@ from codriving.environment.right_of_way import can_wait, occupied_ahead, will_me
 from codriving.geometry.road_map import RoadMap
 
 
+ATTENTION = 5
+"""How often a driver looks who else is coming [Hz]."""
+
+
 class Traffic(RegulatedRoad):
     """All bodies on the road, and the rules that human drivers obey.
 
@@ -45,7 +49,9 @@ class Traffic(RegulatedRoad):
             super().step(dt)
             return
         self.steps += 1
-        if self.steps % int(1 / dt / self.REGULATION_FREQUENCY) == 0:
+        # A driver who looks only twice a second is in the way before it can wait.
+        frequency = ATTENTION if self.corrections.yield_at_entry else self.REGULATION_FREQUENCY
+        if self.steps % max(int(1 / dt / frequency), 1) == 0:
             self.enforce_road_rules()
         for vehicle in self.vehicles:
             vehicle.step(dt)
@@ -62,6 +68,8 @@ class Traffic(RegulatedRoad):
             return
         for vehicle in self.vehicles:
             if isinstance(vehicle, HumanDriver):
+                if vehicle.waits_at is not None:
+                    vehicle.target_speed = vehicle.lane.speed_limit
                 vehicle.waits_at = None
         for one, other in combinations(self.vehicles, 2):
             if not (isinstance(one, HumanDriver) or isinstance(other, HumanDriver)):

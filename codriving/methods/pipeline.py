@@ -70,7 +70,9 @@ class Pipeline:
         orders = self.negotiation.orders(scenes, conflicts)
         expectations = self._expectations(known, orders)
         situations = tuple(
-            self._situation(scenes[ego], conflicts[ego], orders[ego], known[ego], expectations[ego], world.available[ego])
+            self._situation(
+                scenes[ego], conflicts[ego], orders[ego], known[ego], expectations[ego], world.available[ego]
+            )
             for ego in scenes
         )
         decisions = tuple(self.decider.decide(situations))

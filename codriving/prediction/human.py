@@ -39,6 +39,4 @@ def fastest(speed: float, times: Array, limit: float) -> Array:
     """
     gain = max(limit - speed, 0.0)
     rising = np.minimum(times, gain / HARD_ACCELERATION)
-    return np.asarray(
-        speed * times + HARD_ACCELERATION * rising**2 / 2 + HARD_ACCELERATION * rising * (times - rising)
-    )
+    return np.asarray(speed * times + HARD_ACCELERATION * rising**2 / 2 + HARD_ACCELERATION * rising * (times - rising))

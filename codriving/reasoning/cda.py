@@ -35,9 +35,7 @@ class CdaLevel:
         if self.binding and not self.negotiation:
             raise ConfigError("cda.binding=true needs cda.negotiation=true: only a negotiated order can bind")
         if self.own_order not in ("own_view", "same_rule", "independent"):
-            raise ConfigError(
-                f"cda.own_order must be own_view, same_rule or independent, got {self.own_order!r}"
-            )
+            raise ConfigError(f"cda.own_order must be own_view, same_rule or independent, got {self.own_order!r}")
 
     @property
     def variant(self) -> str:

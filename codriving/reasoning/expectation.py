@@ -19,6 +19,7 @@ from codriving.reasoning.plans import PLANS, STARTS_WITH
 
 Array = NDArray[np.float64]
 
+
 @dataclass(frozen=True, slots=True)
 class Expected:
     """The expected motion of one vehicle.
@@ -67,7 +68,8 @@ def expect(
         places = place + forecast.travel(v.speed, v.target, PLANS)
         keeps = np.ones(len(PLANS), dtype=np.bool_)
         for other in found:
-            if order.first_of(v.id, other) == v.id:
+            # A driver who may still take several routes is left to the safety check: nobody slows down early for guesses.
+            if order.first_of(v.id, other) == v.id or len(vehicles[other].routes) > 1:
                 continue
             now = dict(vehicles[other].routes)
             for motion in found[other]:

@@ -42,9 +42,7 @@ def describe_scenes(
         intent = world.intents[ego.id]
         path = road_map.paths[intent.route]
         place, _ = path.project(ego.x, ego.y)
-        neighbours = [
-            _neighbour(seen, intents.get(seen.id), tracking, ego.id, world.time) for seen in views[ego.id]
-        ]
+        neighbours = [_neighbour(seen, intents.get(seen.id), tracking, ego.id, world.time) for seen in views[ego.id]]
         ahead: tuple[float, str] | None = None
         behind: tuple[float, str] | None = None
         for n in neighbours:

@@ -38,6 +38,9 @@ LEFT, RIGHT = 28, SIZE // 2 + 80
 BEYOND, LONGEST = 18.0, 70.0
 """What is left out at the end of a human driver's possible routes, and what is shown of a CAV's at most [m]."""
 
+EDGE = 72.0
+"""Half the width of a name, which must not leave the picture [px]."""
+
 JUNCTION = 11.0
 """Half the side of the junction [m]."""
 
@@ -164,7 +167,9 @@ def name(state: VehicleState) -> str:
     x, y = SIZE / 2 + SCALE * state.x, SIZE / 2 + SCALE * state.y
     along_y = abs(np.sin(state.heading)) > abs(np.cos(state.heading))
     right, below = state.x > 0, state.y > 0
-    place = (x + (26 if right else -26), y + 6) if along_y else (x, y + (41 if below else -28))
+    place = (
+        (x + (26 if right else -26), y + 6) if along_y else (min(max(x, EDGE), SIZE - EDGE), y + (41 if below else -28))
+    )
     aside = along_y or abs(state.x) < JUNCTION
     anchor = ("start" if right else "end") if aside else "middle"
     words = f"{state.id}  {state.speed:.1f} m/s"
@@ -201,7 +206,7 @@ def order(decided: Deliberation) -> Iterable[str]:
     """Write who goes first."""
     x, y = LEFT, SIZE / 2 + 220.0
     agreed = decided.situations[0].order
-    yield text(x, y, "The order that they agreed on", 20, INK, BOLD)
+    yield text(x, y, "The negotiated passing order", 20, INK, BOLD)
     for k, vehicle_id in enumerate(agreed.sequence):
         y += 44 if k % 4 == 0 else 0
         left, colour = x + 92 * (k % 4), COLOURS[Kind.CAV if vehicle_id.startswith("CAV") else Kind.HDV]

@@ -10,7 +10,7 @@ EAGERNESS = (Action.FASTER, Action.IDLE, Action.SLOWER)
 """Actions from the most to the least progress."""
 
 
-TOLERANCE = 30.0
+TOLERANCE = 3.0
 """Progress that is given up to be closer when the way becomes free earlier than expected [m]."""
 
 

@@ -110,9 +110,7 @@ class RuleCoordinator:
                     found[pair] = max(needed, found.get(pair, needed))
         return found
 
-    def _add_leaders(
-        self, slots: dict[str, Slot], separation: dict[tuple[str, str], float], scenes: Scenes
-    ) -> None:
+    def _add_leaders(self, slots: dict[str, Slot], separation: dict[tuple[str, str], float], scenes: Scenes) -> None:
         top = self.forecast.model.target_speeds[-1]
         for ego, slot in slots.items():
             for n in scenes[ego].neighbours:
@@ -125,9 +123,17 @@ class RuleCoordinator:
         found = {(slot.leader, ego) for ego, slot in slots.items() if slot.leader is not None}
         for ego in slots:
             for c in conflicts[ego]:
-                if c.other in slots and self._cannot_stop(scenes[ego], c) and not self._other_cannot_stop(scenes, c):
+                if c.other not in slots:
+                    continue
+                mine, theirs = self._cannot_stop(scenes[ego], c), self._other_cannot_stop(scenes, c)
+                if mine and (not theirs or self._is_ahead(c)):
                     found.add((ego, c.other))
         return found
+
+    def _is_ahead(self, c: Conflict) -> bool:
+        """Whether the CAV is already past the place at which the other one would be in its way."""
+        zones = self.road_map.zones(*c.routes, TRUE)
+        return any(z.entry_j < c.places[1] and c.places[0] > float(z.front(c.places[1])) > 0 for z in zones)
 
     def _cannot_stop(self, scene: SceneDescription, c: Conflict) -> bool:
         least = c.places[0] + self.forecast.reach(scene.ego.speed, True).least[-1]

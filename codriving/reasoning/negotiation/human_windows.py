@@ -14,9 +14,7 @@ CERTAIN_GAP = 0.4
 """Time between a CAV's leaving a zone and the earliest moment at which a human driver can be there [s]."""
 
 
-def window(
-    c: Conflict, n: Neighbour, reference: float, road_map: RoadMap, forecast: Forecast
-) -> tuple[float, float]:
+def window(c: Conflict, n: Neighbour, reference: float, road_map: RoadMap, forecast: Forecast) -> tuple[float, float]:
     """Return the times at which a CAV must not pass its reference point because of a human driver.
 
     Args:
@@ -68,6 +66,5 @@ def is_blocked(c: Conflict, road_map: RoadMap) -> bool:
         c: The conflict.
         road_map: The precomputed road.
     """
-    return any(
-        z.entry_j < c.places[1] < z.exit_j and c.places[0] < z.exit_i for z in road_map.zones(*c.routes, TRUE)
-    )
+    zones = road_map.zones(*c.routes, TRUE)
+    return any(z.entry_j < c.places[1] < z.exit_j and c.places[0] <= float(z.front(c.places[1])) for z in zones)

@@ -126,4 +126,3 @@ def least_dangerous(outlook: Outlook) -> Action:
             best = key
     assert best is not None  # there is always at least IDLE
     return best[2]
-

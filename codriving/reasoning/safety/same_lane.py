@@ -1,12 +1,15 @@
 """First layer: no collision with the vehicles of the same lane, ahead or behind (Section III-C.4)."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import Neighbour, Role
 from codriving.reasoning.clearance import stays_behind
 from codriving.reasoning.expectation import is_behind
 from codriving.reasoning.safety.outlook import Outlook
+
+Array = NDArray[np.float64]
 
 STANDSTILL_GAP = 1.0
 """Free distance that must be left to the leading vehicle when both have stopped [m]."""
@@ -66,7 +69,7 @@ def check_behind(outlook: Outlook) -> dict[Action, list[str]]:
     return found
 
 
-def forced_braking(outlook: Outlook, behind: Neighbour, goes: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> float:
+def forced_braking(outlook: Outlook, behind: Neighbour, goes: Array) -> float:
     """Return how hard the rearing vehicle would have to brake to come down to the CAV's speed.
 
     Args:
@@ -77,10 +80,11 @@ def forced_braking(outlook: Outlook, behind: Neighbour, goes: "np.ndarray[tuple[
     Returns:
         Braking [m/s2]; inf if there is no room left.
     """
-    step = outlook.forecast.model.substeps
-    speed = float(goes[step] - goes[step - 1]) / outlook.forecast.model.step
+    after = outlook.forecast.model.decision_interval
+    done = max(1, int(np.searchsorted(outlook.forecast.times, after + 1e-9)) - 1)
+    speed = float(goes[done] - goes[done - 1]) / outlook.forecast.sample
     closing = behind.speed - speed
     if closing <= 0 or behind.gap is None:
         return 0.0
-    room = behind.gap + float(goes[step] - goes[0]) - behind.speed * REACTION
+    room = behind.gap + float(goes[done] - goes[0]) - behind.speed * REACTION
     return closing**2 / (2 * room) if room > 0.1 else float("inf")

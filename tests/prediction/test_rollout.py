@@ -1,0 +1,73 @@
+"""The closed form is the simulator's rule, step by step."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.prediction.rollout import Plan, rollout
+
+STEPS = 60
+
+models = st.builds(
+    lambda low, spacing, n, gain, step, substeps: DrivingModel(
+        tuple(low + spacing * k for k in range(n)), gain, step, step * substeps, 50.0
+    ),
+    st.sampled_from([0.0, 4.0, 15.0]),
+    st.sampled_from([1.0, 2.5, 3.0, 5.0]),
+    st.integers(2, 6),
+    st.floats(0.5, 3.0),
+    st.sampled_from([0.05, 0.1, 0.2]),
+    st.integers(1, 10),
+)
+plans = st.lists(st.sampled_from(list(Action)), min_size=1, max_size=6).map(tuple)
+speeds = st.floats(0.0, 35.0)
+
+
+def step_by_step(model: DrivingModel, v: float, goal: float, plan: Plan) -> tuple[list[float], list[float]]:
+    """What highway-env's MDP vehicle does along its lane: a new target at each decision, then Euler's steps."""
+    allowed = model.target_speeds
+    s, places, reached = 0.0, [0.0], [v]
+    for k in range(STEPS):
+        if k % model.substeps == 0:
+            action = plan[min(k // model.substeps, len(plan) - 1)]
+            share = (v - allowed[0]) / (allowed[-1] - allowed[0])
+            index = int(np.clip(np.round(share * (len(allowed) - 1)), 0, len(allowed) - 1))
+            if action is Action.FASTER:
+                goal = allowed[min(index + 1, len(allowed) - 1)]
+            if action is Action.SLOWER:
+                goal = allowed[max(index - 1, 0)]
+        s += v * model.step
+        v += model.speed_gain * (goal - v) * model.step
+        places.append(s)
+        reached.append(v)
+    return places, reached
+
+
+@settings(max_examples=60, deadline=None)
+@given(models, st.lists(st.tuples(speeds, speeds), min_size=1, max_size=3), st.lists(plans, min_size=1, max_size=3))
+def test_closed_form_equals_the_loop(model: DrivingModel, states: list[tuple[float, float]], some: list[Plan]) -> None:
+    now, targets = zip(*states, strict=True)
+    s, v = rollout(model, now, targets, tuple(some), STEPS)
+    assert s.shape == v.shape == (len(states), len(some), STEPS + 1)
+    for i, (speed, target) in enumerate(states):
+        for k, plan in enumerate(some):
+            places, reached = step_by_step(model, speed, target, plan)
+            np.testing.assert_allclose(s[i, k], places, rtol=0, atol=1e-9)
+            np.testing.assert_allclose(v[i, k], reached, rtol=0, atol=1e-9)
+
+
+def test_horizon_need_not_be_a_whole_number_of_decisions() -> None:
+    model = DrivingModel((0.0, 3.0, 6.0), 1.6, 0.1, 0.5, 50.0)
+    long, _ = rollout(model, [4.0], [6.0], ((Action.FASTER,),), 20)
+    short, _ = rollout(model, [4.0], [6.0], ((Action.FASTER,),), 7)
+    assert short.shape == (1, 1, 8)
+    assert np.array_equal(short[0, 0], long[0, 0, :8])
+
+
+def test_a_lane_change_keeps_the_target_speed() -> None:
+    model = DrivingModel((0.0, 3.0, 6.0), 1.6, 0.1, 0.5, 50.0)
+    s, _ = rollout(model, [4.0], [6.0], ((Action.LANE_LEFT,), (Action.LANE_RIGHT,), (Action.IDLE,)), 20)
+    assert np.array_equal(s[0, 0], s[0, 2])
+    assert np.array_equal(s[0, 1], s[0, 2])

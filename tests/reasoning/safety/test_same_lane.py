@@ -1,0 +1,115 @@
+"""First layer: nobody on the ego lane is run into, or made to brake abruptly."""
+
+from dataclasses import replace
+
+import pytest
+from worlds import Junction, car
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.scene_description import Role
+from codriving.reasoning.safety.assessment import ThreeLayers
+from codriving.reasoning.safety.outlook import Outlook
+from codriving.reasoning.safety.same_lane import check_ahead, check_behind, forced_braking
+
+
+def follower(junction: Junction, gap: float, speed: float, leader: float, who: str = "HDV1") -> Outlook:
+    """CAV1 follows somebody with a free distance."""
+    return junction.outlook(car("CAV1", "south-north", 60.0, speed), car(who, "south-north", 65.0 + gap, leader))
+
+
+def followed(junction: Junction, gap: float, speed: float, behind: float, ahead: float | None = None) -> Outlook:
+    """Somebody follows CAV1; and if asked for, somebody stands ahead of it at a free distance."""
+    cars = [car("CAV1", "south-north", 60.0, speed), car("HDV1", "south-north", 55.0 - gap, behind)]
+    if ahead is not None:
+        cars.append(car("HDV2", "south-north", 65.0 + ahead, 0.0))
+    return junction.outlook(*cars)
+
+
+def test_a_slow_leader_near_removes_faster_and_names_itself(junction: Junction) -> None:
+    found = [check_ahead(follower(junction, float(gap), 6.0, 5.0)) for gap in range(4, 20)]
+    assert {Action.FASTER} in [set(removed) for removed in found], "at some distance, braking is not yet needed"
+    for removed in found:
+        for action, (reason,) in removed.items():
+            assert reason.startswith(f"same lane: {action}")
+            assert "HDV1" in reason
+
+
+def test_a_leader_far_ahead_removes_nothing(junction: Junction) -> None:
+    assert check_ahead(follower(junction, 40.0, 6.0, 6.0)) == {}
+    assert check_ahead(follower(junction, 5.0, 0.0, 0.0)).keys() <= {Action.FASTER}
+
+
+@pytest.mark.parametrize("leader", [0.0, 5.0, 9.0])
+def test_the_nearer_the_leader_the_fewer_actions(leader: float, junction: Junction) -> None:
+    removed = [set(check_ahead(follower(junction, gap, 6.0, leader))) for gap in (2.0, 5.0, 10.0, 20.0, 40.0)]
+    assert removed[0]
+    assert not removed[-1]
+    for nearer, farther in zip(removed, removed[1:], strict=False):
+        assert farther <= nearer
+
+
+def test_a_human_leader_needs_more_room_than_a_cav(junction: Junction) -> None:
+    for gap in range(2, 30, 2):
+        human = set(check_ahead(follower(junction, float(gap), 9.0, 9.0)))
+        cav = set(check_ahead(follower(junction, float(gap), 9.0, 9.0, "CAV2")))
+        assert cav <= human
+
+
+@pytest.mark.parametrize("gap", [6.0, 9.0, 12.0, 15.0])
+@pytest.mark.parametrize("leader", [0.0, 4.0, 8.0])
+def test_what_is_left_can_stop_behind_the_hardest_braking(gap: float, leader: float, junction: Junction) -> None:
+    outlook = follower(junction, gap, 6.0, leader)
+    removed = check_ahead(outlook)
+    least = outlook.forecast.reach(leader, False).least
+    for action, stops in zip(outlook.actions, outlook.stops, strict=True):
+        if action not in removed:
+            assert (65.0 + gap + least - stops > 5.0).all()
+
+
+def test_a_vehicle_that_has_merged_ahead_counts_although_it_came_from_elsewhere(junction: Junction) -> None:
+    (zone,) = junction.road_map.zones("south-north", "west-north")
+    assert zone.merge_i is not None
+    assert zone.merge_j is not None
+    outlook = junction.outlook(
+        car("CAV1", "south-north", zone.merge_i + 1.0, 9.0), car("CAV2", "west-north", zone.merge_j + 9.0, 0.0)
+    )
+    assert Action.FASTER in check_ahead(outlook)
+
+
+def test_abrupt_braking_is_removed_while_a_faster_action_is_safe(junction: Junction) -> None:
+    near = 0
+    for gap in (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 20.0):
+        outlook = followed(junction, gap, 6.0, 9.0)
+        assert outlook.scene.neighbours[0].role is Role.REARING
+        abrupt = check_behind(outlook)
+        slower = next(a for a in ThreeLayers().assess(outlook) if a.action is Action.SLOWER)
+        # Where it comes too close whatever is done, nothing is gained by not braking.
+        helps = Action.SLOWER in abrupt and set(abrupt) != set(outlook.actions)
+        assert slower.safe is not helps
+        near += helps
+        if helps:
+            assert slower.reasons == (abrupt[Action.SLOWER][0],)
+            assert "same lane: SLOWER would force HDV1 behind to brake" in slower.reasons[0]
+    assert near > 0
+
+
+def test_braking_stays_allowed_when_nothing_faster_is_safe(junction: Junction) -> None:
+    outlook = followed(junction, 4.0, 6.0, 9.0, ahead=6.0)
+    allowed = {a.action for a in ThreeLayers().assess(outlook) if a.safe}
+    assert Action.SLOWER in allowed
+
+
+def test_a_follower_far_behind_or_slow_is_no_reason(junction: Junction) -> None:
+    assert check_behind(followed(junction, 40.0, 8.0, 9.0)) == {}
+    assert check_behind(followed(junction, 5.0, 9.0, 2.0)) == {}
+    assert check_behind(junction.outlook(car("CAV1", "south-north", 60.0, 8.0))) == {}
+
+
+def test_forced_braking_falls_with_the_gap_and_with_the_own_speed(junction: Junction) -> None:
+    outlook = followed(junction, 30.0, 3.0, 9.0)
+    near = replace(outlook.scene.neighbours[0], gap=12.0)
+    far = replace(outlook.scene.neighbours[0], gap=30.0)
+    braking = {a: forced_braking(outlook, near, goes) for a, goes in zip(outlook.actions, outlook.goes, strict=True)}
+    assert braking[Action.SLOWER] > braking[Action.IDLE] >= braking[Action.FASTER]
+    assert forced_braking(outlook, far, outlook.goes[0]) < braking[Action.SLOWER]
+    assert forced_braking(outlook, replace(near, speed=1.0), outlook.goes[1]) == 0

@@ -1,0 +1,52 @@
+"""Do two motions keep out of each other's way?"""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from worlds import Junction
+
+from codriving.reasoning.clearance import first_overlap, reacts, stays_ahead, stays_behind
+
+TIMES = np.arange(51) * 0.2
+PLACES = st.floats(60.0, 125.0)
+SPEEDS = st.floats(0.0, 9.0)
+OTHERS = st.sampled_from(["west-east", "west-north", "east-south", "north-east"])
+
+
+@settings(max_examples=60, deadline=None)
+@given(OTHERS, PLACES, PLACES, SPEEDS, SPEEDS, st.integers(0, 4))
+def test_whoever_stays_behind_or_ahead_does_not_overlap(
+    junction: Junction, other: str, s: float, t: float, v: float, w: float, lag: int
+) -> None:
+    mine, theirs = (s + v * TIMES)[None], t + w * TIMES
+    for zone in junction.road_map.zones("south-north", other):
+        behind = stays_behind(zone, mine, theirs, lag, 0.0)[0]
+        ahead = stays_ahead(zone, mine, theirs, lag, 0.0)[0]
+        never = first_overlap(zone, mine, theirs)[0] == len(TIMES)
+        if lag == 0:
+            assert never or not (behind or ahead)
+        # The same, seen from the other one.
+        back = zone.mirrored()
+        assert ahead == stays_behind(back, theirs[None], mine[0], lag, 0.0)[0] or lag > 0
+        # More lag and more room are never easier.
+        assert behind >= stays_behind(zone, mine, theirs, lag + 2, 0.0)[0]
+        assert ahead >= stays_ahead(zone, mine, theirs, lag, 1.0)[0]
+
+
+def test_first_overlap_is_the_moment_of_meeting(junction: Junction) -> None:
+    (zone,) = junction.road_map.zones("south-north", "west-east")
+    stands = np.full(51, (zone.entry_j + zone.exit_j) / 2)
+    mine = np.stack([60.0 + 9.0 * TIMES, np.full(51, 60.0)])
+    steps = first_overlap(zone, mine, stands)
+    assert steps[1] == 51
+    assert abs(mine[0, steps[0]] - zone.entry_i) < 4.0
+
+
+def test_a_driver_reacts_to_a_vehicle_in_the_zone_and_no_other(junction: Junction) -> None:
+    (zone,) = junction.road_map.zones("south-north", "west-east")
+    theirs = 40.0 + 8.0 * TIMES
+    slowed = reacts(zone, 100.0 + 5.0 * TIMES, theirs, 0.2)
+    assert np.array_equal(slowed[:5], theirs[:5])
+    assert slowed[-1] < theirs[-1]
+    assert (np.diff(slowed) >= -1e-9).all()
+    assert np.array_equal(reacts(zone, 20.0 + 1.0 * TIMES, theirs, 0.2), theirs)

@@ -1,0 +1,121 @@
+"""How everybody is expected to move if the passing order is kept."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from worlds import LAG, Junction, Thoughts, car, order_of
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.order import PassingOrder
+from codriving.reasoning.clearance import first_overlap
+from codriving.reasoning.expectation import Expected, expect, is_behind
+from codriving.reasoning.movers import movers
+from codriving.reasoning.plans import FIRST, PLANS, STARTS_WITH
+
+
+def expected(thoughts: Thoughts, order: PassingOrder, ego: str = "CAV1") -> dict[str, tuple[Expected, ...]]:
+    return expect(movers(thoughts.scenes[ego]), order, thoughts.junction.road_map, thoughts.forecast, LAG)
+
+
+def overlap(junction: Junction, one: Expected, other: Expected) -> bool:
+    zones = junction.road_map.zones(one.route, other.route)
+    return any(first_overlap(z, one.places[None], other.places)[0] < len(one.places) for z in zones)
+
+
+@pytest.mark.parametrize("first", ["CAV1", "CAV2"])
+def test_the_first_goes_freely_and_the_second_keeps_out_of_its_way(first: str, junction: Junction) -> None:
+    second = "CAV2" if first == "CAV1" else "CAV1"
+    thoughts = junction.thoughts(car("CAV1", "south-north", 70.0, 6.0), car("CAV2", "west-east", 74.0, 6.0))
+    found = expected(thoughts, order_of(f"{first} {second}"))
+    (leader,), (waits,) = found[first], found[second]
+    assert leader.free
+    assert not waits.free
+    assert leader.places[-1] > waits.places[-1]
+    assert not overlap(junction, leader, waits)
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.sampled_from(["west-east", "west-north", "east-west", "north-east", "east-south"]),
+    st.floats(30.0, 85.0),
+    st.floats(30.0, 85.0),
+    st.floats(0.0, 9.0),
+    st.floats(0.0, 9.0),
+)
+def test_an_order_that_is_kept_leaves_no_overlap(
+    junction: Junction, other: str, s: float, t: float, v: float, w: float
+) -> None:
+    thoughts = junction.thoughts(car("CAV1", "south-north", s, v), car("CAV2", other, t, w))
+    found = expected(thoughts, thoughts.negotiate())
+    assume(all(motion.progress for name in found for motion in found[name]))
+    assert not overlap(junction, found["CAV1"][0], found["CAV2"][0])
+
+
+def test_human_drivers_are_expected_to_go_on_at_their_speed_on_each_route(junction: Junction) -> None:
+    thoughts = junction.thoughts(car("CAV1", "south-north", 80.0, 6.0), car("HDV1", "west-east", 80.0, 6.0))
+    found = expected(thoughts, order_of("HDV1 CAV1"))["HDV1"]
+    assert {motion.route for motion in found} == {"west-east", "west-north", "west-south"}
+    for motion in found:
+        assert motion.free
+        assert not motion.progress
+        assert motion.places[-1] - motion.places[0] == pytest.approx(6.0 * thoughts.forecast.times[-1])
+
+
+def test_a_human_driver_who_goes_second_holds_nobody_up(junction: Junction) -> None:
+    thoughts = junction.thoughts(car("CAV1", "south-north", 88.0, 6.0), car("HDV1", "west-east", 108.0, 2.0))
+    assert len(thoughts.scenes["CAV1"].neighbours[0].routes) == 1
+    held, free = (expected(thoughts, order_of(pair))["CAV1"][0] for pair in ("HDV1 CAV1", "CAV1 HDV1"))
+    assert free.free
+    assert not held.free
+    assert held.places[-1] < free.places[-1]
+
+
+def test_followers_stay_behind_their_leaders_without_being_told(junction: Junction) -> None:
+    thoughts = junction.thoughts(car("CAV1", "south-north", 60.0, 9.0), car("CAV2", "south-north", 75.0, 3.0, 0.0))
+    found = expected(thoughts, PassingOrder((), ()))
+    gap = found["CAV2"][0].places - found["CAV1"][0].places
+    assert (gap > 5.0).all()
+
+
+def test_progress_is_that_of_the_best_plan_that_begins_with_an_action(junction: Junction) -> None:
+    thoughts = junction.thoughts(car("CAV1", "south-north", 60.0, 6.0))
+    ((motion,),) = expected(thoughts, PassingOrder((), ())).values()
+    assert motion.free
+    assert set(motion.progress) == set(FIRST)
+    assert motion.progress[Action.FASTER] > motion.progress[Action.IDLE] > motion.progress[Action.SLOWER] > 0
+    assert motion.progress[Action.FASTER] == pytest.approx(float(motion.places[-1] - motion.places[0]))
+
+
+def test_no_progress_where_the_order_cannot_be_kept(junction: Junction) -> None:
+    # It is in the zone already, and is told to let the other one pass first.
+    thoughts = junction.thoughts(car("CAV1", "south-north", 107.0, 6.0), car("CAV2", "west-east", 80.0, 6.0))
+    (motion,) = expected(thoughts, order_of("CAV2 CAV1"))["CAV1"]
+    assert not motion.progress
+    assert not motion.free
+
+
+def test_plans_are_each_something_now_then_waiting_then_going() -> None:
+    assert len(set(PLANS)) == len(PLANS)
+    assert PLANS[0] == (Action.FASTER, Action.FASTER)
+    assert all(set(plan[1:-1]) <= {Action.SLOWER} and plan[-1] is not Action.IDLE for plan in PLANS)
+    assert sorted(k for indices in STARTS_WITH.values() for k in indices) == list(range(len(PLANS)))
+    for action, indices in STARTS_WITH.items():
+        assert {PLANS[k][0] for k in indices} == {action}
+        assert (action, Action.SLOWER) in {PLANS[k] for k in indices}, "one of them stops for good"
+
+
+def test_who_is_behind_whom(junction: Junction) -> None:
+    (following,) = junction.road_map.zones("south-north", "south-north")
+    assert is_behind(following, 50.0, 60.0)
+    assert not is_behind(following, 60.0, 50.0)
+    (diverging,) = junction.road_map.zones("south-north", "south-west")
+    assert is_behind(diverging, 50.0, 60.0)
+    assert not is_behind(diverging, 50.0, diverging.exit_j + 1.0)
+    (merging,) = junction.road_map.zones("south-north", "west-north")
+    assert merging.merge_i is not None
+    assert merging.merge_j is not None
+    assert is_behind(merging, merging.merge_i + 5.0, merging.merge_j + 15.0)
+    assert not is_behind(merging, merging.merge_i + 15.0, merging.merge_j + 5.0)
+    assert not is_behind(merging, merging.merge_i - 5.0, merging.merge_j + 5.0), "it is still open who is first"
+    assert not np.any([is_behind(z, 100.0, 105.0) for z in junction.road_map.zones("south-north", "west-east")])

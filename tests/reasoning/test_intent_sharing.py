@@ -1,0 +1,25 @@
+"""Which intents are known."""
+
+from worlds import Junction, car
+
+from codriving.reasoning.intent_sharing import HiddenIntents, SharedIntents
+
+
+def test_cavs_tell_route_and_target_and_human_drivers_nothing(junction: Junction) -> None:
+    world = junction.world(car("CAV1", "south-west", 40.0, 7.0, 9.0), car("HDV1", "west-east", 40.0, 7.0))
+    told = SharedIntents().intents(world)
+    assert set(told) == {"CAV1"}
+    assert (told["CAV1"].route, told["CAV1"].target_speed) == ("south-west", 9.0)
+
+
+def test_hidden_intents_leave_nothing_and_no_conflicts(junction: Junction) -> None:
+    world = junction.world(car("CAV1", "south-west", 40.0, 7.0), car("CAV2", "west-east", 40.0, 7.0))
+    assert dict(HiddenIntents().intents(world)) == {}
+    assert not HiddenIntents.finds_conflicts
+    assert SharedIntents.finds_conflicts
+
+
+def test_the_simulator_gives_away_no_human_intent(junction: Junction) -> None:
+    world = junction.environment.reset(3)
+    assert world.hdvs
+    assert set(world.intents) == {cav.id for cav in world.cavs}

@@ -1,0 +1,97 @@
+"""Which human drivers can be relied on to give way, and why."""
+
+from dataclasses import replace
+
+import pytest
+from worlds import Car, Junction, car
+
+from codriving.geometry.road_map import RoadMap, road_map
+from codriving.reasoning.movers import movers
+from codriving.reasoning.right_of_way import gives_way
+
+PLACES = [40.0 + 2 * k for k in range(40)]
+
+
+def reason(
+    junction: Junction,
+    cav: Car,
+    human: Car,
+    standing: float = 0.0,
+    pedal: float | None = 0.0,
+    road: RoadMap | None = None,
+) -> str:
+    """What is said of a human driver on exactly the route that it drives; empty if it is not relied on."""
+    # Far from one another nobody is perceived: a second CAV beside the driver tells of it.
+    witness = car("CAV2", human.route, max(human.place - 20.0, 0.0), 0.0)
+    thoughts = junction.thoughts(cav, witness, human)
+    mover = replace(movers(thoughts.scenes["CAV1"])["HDV1"], standing=standing, acceleration=pedal)
+    reasons = {
+        gives_way(c, mover, road or junction.road_map)
+        for c in thoughts.conflicts["CAV1"]
+        if c.other == "HDV1" and c.routes[1] == human.route
+    }
+    (said,) = reasons
+    return said
+
+
+def test_who_has_been_standing_gives_way(junction: Junction) -> None:
+    pair = car("CAV1", "south-north", 80.0, 8.0), car("HDV1", "west-east", 96.0, 0.1)
+    assert "standing" in reason(junction, *pair, standing=30.0)
+    assert not reason(junction, *pair, standing=0.0)
+
+
+def test_who_is_in_the_zone_does_not(junction: Junction) -> None:
+    assert not reason(junction, car("CAV1", "east-west", 80.0, 8.0), car("HDV1", "south-north", 112.0, 3.0))
+
+
+def test_the_lower_priority_gives_way_while_it_can_still_wait(junction: Junction) -> None:
+    major = car("CAV1", "east-west", 80.0, 8.0)
+    assert "right of way" in reason(junction, major, car("HDV1", "south-north", 60.0, 8.0))
+    assert not reason(junction, major, car("HDV1", "south-north", 94.0, 8.0))
+
+
+def test_the_higher_priority_does_not_give_way(junction: Junction) -> None:
+    minor = car("CAV1", "south-north", 80.0, 8.0)
+    assert not reason(junction, minor, car("HDV1", "west-east", 60.0, 8.0))
+    # South and north rank the same.
+    assert not reason(junction, minor, car("HDV1", "north-east", 60.0, 8.0))
+
+
+def test_without_a_right_of_way_on_the_road_none_is_relied_on(junction: Junction) -> None:
+    free = road_map(replace(junction.road_map.road, regulated=False))
+    major = car("CAV1", "east-west", 80.0, 8.0)
+    assert not reason(junction, major, car("HDV1", "south-north", 60.0, 8.0), road=free)
+
+
+def test_a_cav_in_the_junction_is_waited_for(junction: Junction) -> None:
+    inside = car("CAV1", "south-west", 102.0, 5.0)
+    assert "already" in reason(junction, inside, car("HDV1", "east-west", 60.0, 8.0))
+    assert not reason(junction, inside, car("HDV1", "east-west", 95.0, 8.0))
+
+
+def test_a_cav_in_the_zone_is_waited_for_by_whoever_can_stop_before_it(junction: Junction) -> None:
+    inside = car("CAV1", "south-north", 108.0, 5.0)
+    assert "already" in reason(junction, inside, car("HDV1", "west-east", 70.0, 8.0))
+    assert not reason(junction, inside, car("HDV1", "west-east", 106.0, 8.0))
+
+
+@pytest.mark.parametrize("speed", [4.0, 6.0, 8.0])
+def test_a_driver_who_brakes_is_relied_on_for_longer(speed: float, junction: Junction) -> None:
+    def relied_on(pedal: float | None) -> set[float]:
+        major = car("CAV1", "east-west", 80.0, 8.0)
+        return {
+            s for s in PLACES if s < 100 and reason(junction, major, car("HDV1", "south-north", s, speed), 0.0, pedal)
+        }
+
+    braking, coasting, unknown = relied_on(-5.5), relied_on(0.0), relied_on(None)
+    assert coasting == unknown
+    assert coasting <= braking
+    assert coasting == {s for s in PLACES if s <= max(coasting)}, "nearer never means surer"
+
+
+def test_the_faster_the_driver_the_earlier_it_is_not_relied_on(junction: Junction) -> None:
+    def latest(speed: float) -> float:
+        major = car("CAV1", "east-west", 80.0, 8.0)
+        return max(s for s in PLACES if s < 100 and reason(junction, major, car("HDV1", "south-north", s, speed)))
+
+    assert latest(9.0) < latest(6.0) < latest(3.0) + 1

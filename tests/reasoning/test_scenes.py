@@ -1,0 +1,95 @@
+"""Scene descriptions: who is what to whom, lane by lane."""
+
+import json
+from dataclasses import asdict
+
+import pytest
+from worlds import Junction, car
+
+from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
+from codriving.datatypes.scene_description import Role, SceneDescription
+from codriving.geometry.road_map import RoadMap
+from codriving.reasoning.scenes import adjacent_lanes, lane_at
+from codriving.reasoning.state_sharing import SensedStates
+
+
+def roles(scene: SceneDescription) -> dict[str, Role]:
+    return {n.id: n.role for n in scene.neighbours}
+
+
+def test_roles_and_gaps(junction: Junction) -> None:
+    scene = junction.thoughts(
+        car("CAV1", "south-north", 60.0, 8.0),
+        car("CAV2", "south-west", 75.0, 8.0),
+        car("CAV3", "south-east", 40.0, 8.0),
+        car("CAV4", "west-east", 60.0, 8.0),
+        car("HDV1", "south-north", 90.0, 8.0),
+        car("HDV2", "south-north", 45.0, 8.0),
+        car("HDV3", "north-west", 140.0, 8.0),
+    ).scenes["CAV1"]
+    assert roles(scene) == {
+        "CAV2": Role.LEADING,
+        "CAV3": Role.OTHER,
+        "CAV4": Role.CONFLICT,
+        "HDV1": Role.OTHER,
+        "HDV2": Role.REARING,
+        "HDV3": Role.OTHER,
+    }
+    gaps = {n.id: n.gap for n in scene.neighbours if n.gap is not None}
+    assert gaps == {"CAV2": pytest.approx(10.0, abs=0.1), "HDV2": pytest.approx(10.0, abs=0.1)}
+    assert scene.place == pytest.approx(60.0, abs=0.1)
+    assert scene.adjacent_lanes == ()
+    assert scene.ego.lane == ("o0", "ir0", 0)
+
+
+def test_conflict_lanes_are_those_on_which_the_others_will_be_in_the_way(junction: Junction) -> None:
+    scene = junction.thoughts(
+        car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "west-east", 60.0, 8.0), car("CAV3", "east-west", 60.0, 8.0)
+    ).scenes["CAV1"]
+    assert scene.conflict_lanes == (("ir1", "il3", 0), ("ir3", "il1", 0))
+
+
+def test_a_vehicle_that_drives_across_the_ego_lane_does_not_lead(junction: Junction) -> None:
+    cars = car("CAV1", "south-north", 90.0, 8.0), car("CAV2", "west-east", 113.0, 8.0)
+    scene = junction.thoughts(*cars).scenes["CAV1"]
+    assert roles(scene) == {"CAV2": Role.CONFLICT}
+    # Whoever does not know its heading cannot tell.
+    sensed = junction.think(junction.world(*cars), SensedStates()).scenes["CAV1"]
+    assert roles(sensed) == {"CAV2": Role.LEADING}
+
+
+def test_oncoming_traffic_is_neither_ahead_nor_in_conflict(junction: Junction) -> None:
+    thoughts = junction.thoughts(car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "north-south", 60.0, 8.0))
+    assert roles(thoughts.scenes["CAV1"]) == {"CAV2": Role.OTHER}
+    assert thoughts.scenes["CAV1"].conflict_lanes == ()
+
+
+def test_who_shares_an_intent_is_known_to_be_a_cav_even_if_only_sensed(junction: Junction) -> None:
+    world = junction.world(
+        car("CAV1", "south-north", 80.0, 8.0), car("CAV2", "south-west", 95.0, 8.0), car("HDV1", "west-east", 80.0, 8.0)
+    )
+    scene = junction.think(world, SensedStates()).scenes["CAV1"]
+    assert {n.id: n.kind for n in scene.neighbours} == {"CAV2": "CAV", "HDV1": None}
+    assert [len(n.routes) for n in scene.neighbours] == [1, 3]
+
+
+def test_description_is_plain_data(junction: Junction) -> None:
+    scene = junction.thoughts(car("CAV1", "south-north", 80.0, 8.0), car("HDV1", "west-east", 80.0, 8.0)).scenes["CAV1"]
+    assert json.loads(json.dumps(asdict(scene), allow_nan=False))["neighbours"][0]["id"] == "HDV1"
+    assert scene.neighbour("HDV1") is scene.neighbours[0]
+    assert scene.neighbour("CAV1") is None
+
+
+def test_adjacent_lanes_are_left_and_right_of_one_that_runs_the_same_way() -> None:
+    ids: tuple[LaneId, ...] = tuple(("a", "b", k) for k in range(3))
+    lanes = tuple(Lane(name, Straight((0.0, 4.0 * name[2]), (200.0, 4.0 * name[2]))) for name in ids)
+    routes = tuple(Route(f"lane{k}", (ids[k],), Turn.STRAIGHT, 0.0, 200.0) for k in range(3))
+    road_map = RoadMap(Road("three lanes", lanes, routes))
+    assert adjacent_lanes(road_map, ids[0]) == (ids[1],)
+    assert adjacent_lanes(road_map, ids[1]) == (ids[0], ids[2])
+
+
+def test_lane_at_finds_the_lane_of_a_place(junction: Junction) -> None:
+    places = {-5.0: "o0", 0.0: "o0", 99.0: "o0", 101.0: "ir0", 121.0: "ir0", 123.0: "il2", 500.0: "il2"}
+    for place, start in places.items():
+        assert lane_at(junction.road_map, "south-north", place)[0] == start

@@ -1,0 +1,60 @@
+"""What each CAV knows of the others, with and without state sharing."""
+
+from dataclasses import asdict, replace
+
+from worlds import Car, Junction, car
+
+from codriving.reasoning.state_sharing import SensedStates, SharedStates
+
+NOT_SENSED = {"kind", "heading", "acceleration", "lane"}
+
+
+def cars() -> tuple[Car, ...]:
+    return (
+        car("CAV1", "south-north", 20.0, 7.0),
+        car("CAV2", "north-south", 20.0, 8.0),
+        car("HDV1", "north-south", 60.0, 6.0, pedal=-1.0),
+        car("HDV2", "north-west", 90.0, 6.0),
+    )
+
+
+def test_all_cavs_are_shared_and_every_human_driver_near_any_of_them(junction: Junction) -> None:
+    views = SharedStates().views(junction.world(*cars()), junction.model)
+    assert [g.id for g in views["CAV1"]] == ["CAV2", "HDV1"], "180 m away, but told by the other CAV"
+    assert [g.id for g in views["CAV2"]] == ["CAV1", "HDV1"]
+
+
+def test_shared_states_are_complete(junction: Junction) -> None:
+    world = junction.world(*cars())
+    glimpse = SharedStates().views(world, junction.model)["CAV1"][1]
+    state = next(v for v in world.vehicles if v.id == "HDV1")
+    told = asdict(glimpse)
+    assert told == {key: getattr(state, key) for key in told}
+
+
+def test_sensed_states_are_position_and_speed_within_range(junction: Junction) -> None:
+    world = junction.world(*cars())
+    views = SensedStates().views(world, junction.model)
+    assert views["CAV1"] == ()
+    (glimpse,) = views["CAV2"]
+    state = next(v for v in world.vehicles if v.id == "HDV1")
+    assert (glimpse.id, glimpse.x, glimpse.y, glimpse.speed) == ("HDV1", state.x, state.y, state.speed)
+    assert all(getattr(glimpse, name) is None for name in NOT_SENSED)
+
+
+def test_the_detection_range_is_a_circle_around_the_cav(junction: Junction) -> None:
+    world = junction.world(car("CAV1", "south-north", 40.0, 7.0), car("HDV1", "south-north", 89.9, 7.0))
+    for sharing in (SensedStates(), SharedStates()):
+        assert len(sharing.views(world, junction.model)["CAV1"]) == 1
+        assert sharing.views(world, replace(junction.model, detection_range=49.8))["CAV1"] == ()
+
+
+def test_what_sensors_do_not_see_is_not_told(junction: Junction) -> None:
+    world = junction.world(*cars())
+    hidden = replace(
+        world,
+        vehicles=tuple(
+            replace(v, heading=v.heading + 1.0, acceleration=3.0, lane=("il2", "o2", 0)) for v in world.vehicles
+        ),
+    )
+    assert SensedStates().views(world, junction.model) == SensedStates().views(hidden, junction.model)

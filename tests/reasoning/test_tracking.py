@@ -1,0 +1,85 @@
+"""What a CAV remembers of its neighbours."""
+
+import pytest
+from worlds import Junction, car
+
+from codriving.datatypes.vehicle import Intent
+from codriving.reasoning.glimpse import Glimpse
+from codriving.reasoning.state_sharing import SensedStates, SharedStates
+from codriving.reasoning.tracking import Tracking
+
+
+def seen(junction: Junction, route: str, place: float, speed: float = 6.0, full: bool = True) -> Glimpse:
+    """What CAV1 is told of a human driver, or senses itself."""
+    human = car("HDV1", route, place, speed)
+    path = junction.road_map.paths[route]
+    watcher = car("CAV1", route, max(place - 20.0, 0.0), 6.0)
+    assert path.length > place
+    sharing = SharedStates() if full else SensedStates()
+    (glimpse,) = sharing.views(junction.world(watcher, human), junction.model)["CAV1"]
+    return glimpse
+
+
+def routes(tracking: Tracking, glimpse: Glimpse, ego: str = "CAV1") -> set[str]:
+    tracking.begin_step()
+    return {route for route, _ in tracking.places(ego, glimpse, None)}
+
+
+@pytest.mark.parametrize("route", ["south-west", "south-north", "south-east", "east-south"])
+def test_possible_routes_narrow_as_a_driver_turns(route: str, junction: Junction) -> None:
+    tracking = Tracking(junction.road_map)
+    source = route.split("-")[0]
+    before = routes(tracking, seen(junction, route, 60.0))
+    assert before == {name for name in junction.road_map.routes if name.startswith(source)}
+    for place in range(62, 122, 3):
+        now = routes(tracking, seen(junction, route, float(place)))
+        assert route in now, "the true route is never ruled out"
+        assert now <= before, "what has been ruled out stays out"
+        before = now
+    assert before == {route}
+
+
+def test_routes_are_remembered_past_the_junction(junction: Junction) -> None:
+    tracking, fresh = Tracking(junction.road_map), Tracking(junction.road_map)
+    for place in (60.0, 100.0, 110.0, 118.0, 150.0):
+        after = routes(tracking, seen(junction, "south-north", place))
+    assert after == {"south-north"}
+    assert len(routes(fresh, seen(junction, "south-north", 150.0))) > 1
+
+
+def test_each_cav_watches_for_itself(junction: Junction) -> None:
+    tracking = Tracking(junction.road_map)
+    for place in (60.0, 118.0):
+        routes(tracking, seen(junction, "south-north", place))
+    late = seen(junction, "south-north", 150.0)
+    assert routes(tracking, late, "CAV1") < routes(tracking, late, "CAV2")
+
+
+def test_arc_lengths_are_those_of_the_vehicle(junction: Junction) -> None:
+    tracking = Tracking(junction.road_map)
+    for route, place in tracking.places("CAV1", seen(junction, "south-west", 60.0), None):
+        assert place == pytest.approx(60.0, abs=0.1), route
+
+
+def test_without_headings_more_routes_are_possible(junction: Junction) -> None:
+    full = routes(Tracking(junction.road_map), seen(junction, "south-north", 109.0))
+    sensed = routes(Tracking(junction.road_map), seen(junction, "south-north", 109.0, full=False))
+    assert full < sensed
+
+
+def test_a_shared_route_is_believed(junction: Junction) -> None:
+    intent = Intent("south-west", 6.0, ("o0", "ir0", 0))
+    ((route, place),) = Tracking(junction.road_map).places("CAV1", seen(junction, "south-north", 60.0), intent)
+    assert route == "south-west"
+    assert place == pytest.approx(60.0, abs=0.1)
+
+
+def test_standing_is_timed_and_forgotten_when_it_moves(junction: Junction) -> None:
+    tracking = Tracking(junction.road_map)
+    stands, moves = seen(junction, "west-east", 80.0, 0.0), seen(junction, "west-east", 80.0, 3.0)
+    assert tracking.standing("CAV1", moves, 0.0) == 0
+    assert tracking.standing("CAV1", stands, 1.0) == 0
+    assert tracking.standing("CAV1", stands, 2.5) == pytest.approx(1.5)
+    assert tracking.standing("CAV2", stands, 2.5) == 0
+    assert tracking.standing("CAV1", moves, 3.0) == 0
+    assert tracking.standing("CAV1", stands, 4.0) == 0
