@@ -38,6 +38,7 @@ class Car:
 
     @property
     def kind(self) -> Kind:
+        """Who drives."""
         return Kind.CAV if self.id.startswith("CAV") else Kind.HDV
 
 
@@ -65,6 +66,7 @@ class ByHand:
         self.road, self.pace = self.environment.scenario.road, self.environment.scenario.pace
 
     def scene(self, seed: int) -> Scene:
+        """The starts, whatever the seed."""
         return Scene(seed, self.starts)
 
 
@@ -90,7 +92,7 @@ class Thoughts:
         order = order or self.negotiate()
         scene, road_map = self.scenes[ego], self.junction.road_map
         known = movers(scene)
-        expected = expect(known, order, road_map, self.forecast, LAG)
+        expected = expect(known, order, road_map, self.forecast, LAG, minds_conflicts=True)
         stops, goes = motions(scene, actions, self.forecast)
         return Outlook(
             scene, self.conflicts[ego], order, known, expected, actions, stops, goes, road_map, self.forecast, LAG

@@ -17,7 +17,6 @@ from codriving.environment.on_way import OnWay
 from codriving.environment.right_of_way import can_wait, occupied_ahead, will_meet
 from codriving.geometry.road_map import RoadMap
 
-
 ATTENTION = 5
 """How often a driver looks who else is coming [Hz]."""
 

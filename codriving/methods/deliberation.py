@@ -63,7 +63,7 @@ def _entry(situation: Situation, decision: Decision) -> dict[str, Any]:
     }
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any) -> Any:  # noqa: ANN401 - any JSON value
     """Round floats to a millionth and turn infinity into None, so that every line is valid JSON."""
     if isinstance(value, float):
         return round(value, 6) if abs(value) != float("inf") else None

@@ -95,7 +95,9 @@ class Pipeline:
                     found[ego] = expected
                     break
             else:
-                found[ego] = expect(vehicles, order, self.road_map, self.forecast, self._lag)
+                found[ego] = expect(
+                    vehicles, order, self.road_map, self.forecast, self._lag, self.intent_sharing.finds_conflicts
+                )
                 done.append((vehicles, order, found[ego]))
         return found
 

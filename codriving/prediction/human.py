@@ -1,4 +1,4 @@
-"""How far a human driver can and must have come: bounds that hold whatever the driver decides."""
+"""How far a human driver is assumed to come at the least and at the most."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -39,7 +39,12 @@ class Expected:
 
 
 def expect(
-    vehicles: dict[str, Mover], order: PassingOrder, road_map: RoadMap, forecast: Forecast, lag: int
+    vehicles: dict[str, Mover],
+    order: PassingOrder,
+    road_map: RoadMap,
+    forecast: Forecast,
+    lag: int,
+    minds_conflicts: bool,
 ) -> dict[str, tuple[Expected, ...]]:
     """Plan every vehicle in the passing order against those before it.
 
@@ -51,6 +56,7 @@ def expect(
         road_map: The precomputed road.
         forecast: Predictions of this step.
         lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
+        minds_conflicts: Whether conflicts are known at all; otherwise everybody only minds who drives ahead.
 
     Returns:
         Expected motions by id: one for a CAV, one a possible route for others.
@@ -68,12 +74,14 @@ def expect(
         places = place + forecast.travel(v.speed, v.target, PLANS)
         keeps = np.ones(len(PLANS), dtype=np.bool_)
         for other in found:
-            # A driver who may still take several routes is left to the safety check: nobody slows down early for guesses.
+            # A driver who may still take several routes is left to the safety check: no slowing down early for guesses.
             if order.first_of(v.id, other) == v.id or len(vehicles[other].routes) > 1:
                 continue
             now = dict(vehicles[other].routes)
             for motion in found[other]:
-                for zone in binding_zones(road_map.zones(route, motion.route), place, now[motion.route]):
+                for zone in binding_zones(
+                    road_map.zones(route, motion.route), place, now[motion.route], minds_conflicts
+                ):
                     keeps &= stays_behind(zone, places, motion.places, lag, 0.0)
         gained = np.where(keeps, places[:, -1] - place, -np.inf)
         best = int(np.argmax(gained)) if keeps.any() else len(PLANS) - 1
@@ -84,15 +92,18 @@ def expect(
     return found
 
 
-def binding_zones(zones: Sequence[ConflictZone], place: float, other: float) -> list[ConflictZone]:
+def binding_zones(
+    zones: Sequence[ConflictZone], place: float, other: float, minds_conflicts: bool
+) -> list[ConflictZone]:
     """Select the zones in which a vehicle has to mind another one that goes before it.
 
     Args:
         zones: Zones of the two routes, seen from the vehicle.
         place: Arc length of the vehicle [m].
         other: Arc length of the one that goes before it [m].
+        minds_conflicts: Whether zones count in which it is open who goes first.
     """
-    return [z for z in zones if is_open(z, place, other) or is_behind(z, place, other)]
+    return [z for z in zones if (minds_conflicts and is_open(z, place, other)) or is_behind(z, place, other)]
 
 
 def is_behind(zone: ConflictZone, place: float, other: float) -> bool:

@@ -22,8 +22,9 @@ FRONT = 2.5
 def gives_way(c: Conflict, human: Mover | Neighbour, road_map: RoadMap) -> str:
     """Say why a human driver is expected to let the CAV pass first.
 
-    A driver who stands does, or who can still stop before a zone that the CAV is in; so does one who can still stop comfortably before the junction, or is seen to brake for
-    it, and has the lower lane priority or finds the CAV in the junction already. Nobody else is relied on.
+    A driver who stands does, and one who can still stop before a zone that the CAV is in. So does one who can still
+    stop comfortably before the junction, or is seen to brake for it, if it has the lower lane priority or finds the
+    CAV in the junction already. Nobody else is relied on.
 
     Args:
         c: The conflict, seen from the CAV.

@@ -14,8 +14,11 @@ from codriving.reasoning.movers import movers
 from codriving.reasoning.plans import FIRST, PLANS, STARTS_WITH
 
 
-def expected(thoughts: Thoughts, order: PassingOrder, ego: str = "CAV1") -> dict[str, tuple[Expected, ...]]:
-    return expect(movers(thoughts.scenes[ego]), order, thoughts.junction.road_map, thoughts.forecast, LAG)
+def expected(
+    thoughts: Thoughts, order: PassingOrder, ego: str = "CAV1", minds_conflicts: bool = True
+) -> dict[str, tuple[Expected, ...]]:
+    known, road_map = movers(thoughts.scenes[ego]), thoughts.junction.road_map
+    return expect(known, order, road_map, thoughts.forecast, LAG, minds_conflicts)
 
 
 def overlap(junction: Junction, one: Expected, other: Expected) -> bool:
@@ -76,6 +79,15 @@ def test_followers_stay_behind_their_leaders_without_being_told(junction: Juncti
     found = expected(thoughts, PassingOrder((), ()))
     gap = found["CAV2"][0].places - found["CAV1"][0].places
     assert (gap > 5.0).all()
+
+
+def test_who_detects_no_conflicts_minds_those_ahead_and_nobody_else(junction: Junction) -> None:
+    me = car("CAV1", "south-north", 80.0, 6.0)
+    crossing, ahead = car("CAV2", "west-east", 104.0, 2.0), car("CAV2", "south-north", 95.0, 3.0, 0.0)
+    for other, free in ((crossing, True), (ahead, False)):
+        found = expected(junction.thoughts(me, other), PassingOrder((), ()), minds_conflicts=False)
+        assert found["CAV1"][0].free is free
+    assert not expected(junction.thoughts(me, crossing), order_of("CAV2 CAV1"))["CAV1"][0].free
 
 
 def test_progress_is_that_of_the_best_plan_that_begins_with_an_action(junction: Junction) -> None:

@@ -10,7 +10,7 @@ EAGERNESS = (Action.FASTER, Action.IDLE, Action.SLOWER)
 """Actions from the most to the least progress."""
 
 
-TOLERANCE = 3.0
+TOLERANCE = 1.5
 """Progress that is given up to be closer when the way becomes free earlier than expected [m]."""
 
 
@@ -36,10 +36,15 @@ def decide_one(situation: Situation) -> Decision:
     allowed = [action for action in EAGERNESS if action in situation.allowed]
     if not allowed:
         return Decision(ego, situation.allowed[0], "the only action that the safety check left")
+    if any(a.safe and a.reasons for a in situation.assessments):
+        return Decision(ego, allowed[0], f"no action is safe, and {allowed[0]} is the least dangerous")
     reached = {a.action: a.progress for a in situation.assessments if a.action in allowed and a.progress is not None}
     waits_for = _first(situation)
     if not reached:
-        return Decision(ego, allowed[-1], f"slow down: the order cannot be kept otherwise with {waits_for or 'others'}")
+        reason = (
+            f"the order cannot be kept with {waits_for or 'others'}; {allowed[-1]} is the slowest action that is safe"
+        )
+        return Decision(ego, allowed[-1], reason)
     best = max(reached.values())
     action = next(action for action in allowed if reached.get(action, -math.inf) >= best - TOLERANCE)
     return Decision(ego, action, _reason(action, allowed, waits_for))
@@ -56,4 +61,6 @@ def _reason(action: Action, allowed: list[Action], waits_for: str) -> str:
         return f"{action} still lets {waits_for} pass first"
     if action is Action.FASTER:
         return "nobody goes first and accelerating is safe"
-    return f"nobody goes first, and {action} is the fastest action that is safe"
+    if action is allowed[0]:
+        return f"nobody goes first, and {action} is the fastest action that is safe"
+    return f"nobody goes first, and {action} gets farther in the end behind those ahead"

@@ -10,6 +10,7 @@ from codriving.datatypes.scene_description import Role, SceneDescription
 from codriving.geometry.box import TRUE
 from codriving.geometry.road_map import RoadMap
 from codriving.prediction.forecast import Forecast
+from codriving.reasoning.negotiation.acyclic import without_cycles
 from codriving.reasoning.negotiation.human_windows import is_blocked, window
 from codriving.reasoning.negotiation.reasons import reason_between, reason_human
 from codriving.reasoning.negotiation.schedule import GAP, Slot, lag_length, start_time
@@ -77,15 +78,9 @@ class RuleCoordinator:
                 first, second = (human, ego) if human_first else (ego, human)
                 precedences.append(Precedence(first, second, reason_human(human_first, begin, end, times[ego])))
                 arrivals[human] = min(arrivals.get(human, begin), begin)
-        sequence = tuple(sorted(arrivals, key=lambda name: (arrivals[name], name)))
-        self.previous = PassingOrder(self._respecting(sequence, list(times)), tuple(precedences), self.binding)
+        kept, sequence = without_cycles(precedences, arrivals)
+        self.previous = PassingOrder(sequence, kept, self.binding)
         return self.previous
-
-    @staticmethod
-    def _respecting(sequence: tuple[str, ...], scheduled: list[str]) -> tuple[str, ...]:
-        """Put the CAVs of a sequence in the order in which they were scheduled; the others keep their places."""
-        queue = iter(scheduled)
-        return tuple(next(queue) if name in scheduled else name for name in sequence)
 
     def _slot(self, scene: SceneDescription, conflicts: tuple[Conflict, ...]) -> Slot:
         route, speed = self.road_map.routes[scene.intent.route], scene.ego.speed

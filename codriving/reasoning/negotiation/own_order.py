@@ -13,6 +13,7 @@ from codriving.datatypes.scene_description import Neighbour, SceneDescription
 from codriving.geometry.road_map import RoadMap
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.cda import OwnOrder
+from codriving.reasoning.negotiation.acyclic import without_cycles
 from codriving.reasoning.negotiation.coordinator import TURN_YIELDS, Conflicts, Scenes
 from codriving.reasoning.negotiation.human_windows import passes_first
 from codriving.reasoning.severity import ttcp
@@ -66,8 +67,8 @@ class OwnOrders:
                 first, reason = self._compare(scene, n, mine, theirs)
             pair = (ego, other) if first else (other, ego)
             precedences.append(Precedence(*pair, f"own estimate: {reason}"))
-        sequence = tuple(sorted(times, key=lambda name: (times[name], name)))
-        return PassingOrder(sequence, tuple(precedences))
+        kept, sequence = without_cycles(precedences, times)
+        return PassingOrder(sequence, kept)
 
     def _compare(self, scene: SceneDescription, n: Neighbour, mine: float, theirs: float) -> tuple[bool, str]:
         handicap = self._handicap(scene.intent.route) - self._handicap(n.routes[0][0])

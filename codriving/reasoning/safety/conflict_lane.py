@@ -21,7 +21,7 @@ PAD = 0.5
 BODY = Footprint(5.2, 2.3)
 """A vehicle's body with the room for cutting a corner, beside a vehicle that gives way [m]."""
 
-BOUND_LAG = 0.2
+BOUND_LAG = 0.4
 """Time between the least that the other vehicle can do and the CAV's entering [s]."""
 
 AHEAD_LAG = 0.4
@@ -150,7 +150,10 @@ def keeps_clear(outlook: Outlook, c: Conflict, motions: Array, other: Array) -> 
         zones = outlook.road_map.zones(*c.routes, footprint)
         overlaps = [first_overlap(z, motions, other) for z in zones]
         if not any(steps[0] == 0 for steps in overlaps):
-            return np.asarray([steps == motions.shape[1] for steps in overlaps] or [[True] * len(motions)]).all(axis=0)
+            clear: Flags = np.ones(len(motions), dtype=np.bool_)
+            for steps in overlaps:
+                clear &= steps == motions.shape[1]
+            return clear
     return np.zeros(len(motions), dtype=np.bool_)
 
 

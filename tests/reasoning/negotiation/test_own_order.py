@@ -101,3 +101,18 @@ def test_human_drivers_go_first_unless_the_cav_is_through_before(reading: OwnOrd
 @pytest.mark.parametrize("reading", READINGS)
 def test_nobody_to_mind_gives_an_empty_order(reading: OwnOrder, junction: Junction) -> None:
     assert orders(junction.thoughts(car("CAV1", "south-north", 60.0, 8.0)), reading)["CAV1"] == PassingOrder((), ())
+
+
+@pytest.mark.parametrize("reading", READINGS)
+def test_the_sequence_is_that_of_the_order(reading: OwnOrder, junction: Junction) -> None:
+    # CAV1 turns: it is there a little earlier, and lets the other one go first all the same.
+    for gain in range(-20, 21, 2):
+        thoughts = junction.thoughts(
+            car("CAV1", "south-west", 60.0 + gain, 8.0),
+            car("CAV2", "north-south", 60.0, 8.0),
+            car("CAV3", "west-east", 60.0, 8.0),
+        )
+        for seed in range(5):
+            for order in orders(thoughts, reading, seed).values():
+                rank = {name: k for k, name in enumerate(order.sequence)}
+                assert all(rank[p.first] < rank[p.second] for p in order.precedences)

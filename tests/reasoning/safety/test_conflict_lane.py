@@ -1,5 +1,7 @@
 """Third layer: no action intensifies a conflict."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -41,7 +43,7 @@ def test_the_second_must_be_able_to_stop_before_the_zone(junction: Junction) -> 
 
 def test_the_nearer_the_zone_the_more_is_removed(junction: Junction) -> None:
     found = [removed(crossing(junction, s, s + 4.0)) for s in (80.0, 88.0, 92.0, 96.0)]
-    for farther, nearer in zip(found, found[1:], strict=False):
+    for farther, nearer in pairwise(found):
         assert farther <= nearer
     assert not found[0]
     assert found[-1]

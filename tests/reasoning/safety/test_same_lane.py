@@ -1,6 +1,7 @@
 """First layer: nobody on the ego lane is run into, or made to brake abruptly."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from worlds import Junction, car
@@ -44,7 +45,7 @@ def test_the_nearer_the_leader_the_fewer_actions(leader: float, junction: Juncti
     removed = [set(check_ahead(follower(junction, gap, 6.0, leader))) for gap in (2.0, 5.0, 10.0, 20.0, 40.0)]
     assert removed[0]
     assert not removed[-1]
-    for nearer, farther in zip(removed, removed[1:], strict=False):
+    for nearer, farther in pairwise(removed):
         assert farther <= nearer
 
 

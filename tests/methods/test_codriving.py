@@ -1,0 +1,105 @@
+"""The paper's method: what is in the slots, and that it drives."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from worlds import Junction, car
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.scene import Start
+from codriving.datatypes.vehicle import Kind
+from codriving.environment.environment import Environment
+from codriving.errors import ConfigError
+from codriving.llm.offline import Offline
+from codriving.methods.codriving import CoDriving
+from codriving.reasoning.cda import CdaLevel
+from codriving.reasoning.intent_sharing import HiddenIntents, SharedIntents
+from codriving.reasoning.negotiation.negotiation import AgreedOrder
+from codriving.reasoning.negotiation.own_order import OwnOrders
+from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
+from codriving.reasoning.state_sharing import SensedStates, SharedStates
+
+Make = Callable[..., CoDriving]
+
+
+@pytest.mark.parametrize(
+    ("change", "slot", "kind"),
+    [
+        ({}, "state_sharing", SharedStates),
+        ({"state_sharing": False}, "state_sharing", SensedStates),
+        ({}, "intent_sharing", SharedIntents),
+        ({"intent_sharing": False}, "intent_sharing", HiddenIntents),
+        ({}, "negotiation", AgreedOrder),
+        ({"negotiation": False}, "negotiation", OwnOrders),
+        ({}, "safety", ThreeLayers),
+        ({"safety_check": False}, "safety", NoCheck),
+    ],
+)
+def test_an_ablation_puts_another_object_into_one_slot(
+    change: dict[str, Any], slot: str, kind: type, method: Make
+) -> None:
+    assert isinstance(getattr(method(**change)._pipeline, slot), kind)
+
+
+def test_readings_and_binding_reach_the_order(method: Make, junction: Junction) -> None:
+    own = method(negotiation=False, own_order="independent", seed=7)._pipeline.negotiation
+    assert isinstance(own, OwnOrders)
+    assert (own.reading, own.seed) == ("independent", 7)
+    world = junction.world(car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "west-east", 60.0, 8.0))
+    for binding in (False, True):
+        assert {s.order.binding for s in method(binding=binding).act(world).situations} == {binding}
+
+
+def test_names_for_tables(method: Make) -> None:
+    made = method(negotiation=False, own_order="same_rule")
+    assert (made.name, made.variant, made.reasoner) == ("codriving", "no_negotiation/same_rule", "rules")
+
+
+@pytest.mark.parametrize("margin", [-0.1, 5.1])
+def test_a_margin_out_of_range_is_refused(margin: float) -> None:
+    with pytest.raises(ConfigError, match="margin must be 0 to 5 s"):
+        CoDriving(CdaLevel(True, True, True, True, False, "own_view"), Offline(), None, margin)
+
+
+def drive(method: CoDriving, environment: Environment) -> tuple[Environment, list[set[Action]]]:
+    world, taken = environment.reset(0), []
+    method.reset(environment.road_map, environment.driving_model, 0)
+    while environment.outcome is None:
+        actions = method.act(world).actions
+        taken.append(set(actions.values()))
+        world = environment.step(actions)
+    return environment, taken
+
+
+@pytest.mark.parametrize("change", [{}, {"state_sharing": False}, {"negotiation": False}, {"intent_sharing": False}])
+def test_a_cav_on_its_own_accelerates_all_the_way(change: dict[str, Any], method: Make, junction: Junction) -> None:
+    environment, taken = drive(method(**change), junction.drive(Start("CAV1", Kind.CAV, "south-west", 60.0, 5.0)))
+    assert environment.outcome is not None
+    assert environment.outcome.ending is Ending.SUCCESS
+    assert taken == [{Action.FASTER}] * len(taken)
+
+
+@pytest.mark.parametrize(
+    "routes", [("south-north", "west-east"), ("south-west", "north-south"), ("west-north", "south-north")]
+)
+@pytest.mark.parametrize("binding", [False, True])
+def test_two_cavs_in_conflict_get_through(
+    routes: tuple[str, str], binding: bool, method: Make, junction: Junction
+) -> None:
+    starts = [Start(f"CAV{k + 1}", Kind.CAV, route, 60.0 + k, 8.0) for k, route in enumerate(routes)]
+    environment, _ = drive(method(binding=binding), junction.drive(*starts))
+    assert environment.outcome is not None
+    assert environment.outcome.ending is Ending.SUCCESS
+    # One of them waits for the other one, but neither comes to a long stop.
+    assert max(environment.outcome.arrivals.values()) < 20.0
+
+
+def test_an_episode_begins_without_memories_of_the_one_before(method: Make, junction: Junction) -> None:
+    made = method()
+    near = junction.world(car("CAV1", "south-north", 66.0, 8.0), car("CAV2", "west-east", 64.0, 8.0))
+    tied = junction.world(car("CAV1", "south-north", 58.0, 8.0), car("CAV2", "west-east", 64.0, 8.0))
+    made.act(near)
+    made.reset(junction.road_map, junction.model, 0)
+    assert made.act(tied).as_dict() == method().act(tied).as_dict()

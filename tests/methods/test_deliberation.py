@@ -1,0 +1,80 @@
+"""What is written down of a decision step."""
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from worlds import Junction, car
+
+from codriving.methods.codriving import CoDriving
+from codriving.methods.deliberation import Deliberation
+
+Make = Callable[..., CoDriving]
+
+
+@pytest.fixture(scope="module")
+def step(method: Make, junction: Junction) -> Deliberation:
+    """A step in which somebody stands in the way, so that a clear time is infinite, and actions are removed."""
+    world = junction.world(
+        car("CAV1", "south-north", 93.0, 6.0),
+        car("CAV2", "west-north", 90.0, 6.0),
+        car("HDV1", "west-east", 112.0, 0.0),
+        time=1.5,
+        step=3,
+    )
+    return method().act(world)
+
+
+def test_a_line_is_strict_json(step: Deliberation) -> None:
+    line = step.as_dict()
+    assert json.loads(json.dumps(line, allow_nan=False)) == line
+    assert any(c["clear_time"] is None for cav in line["cavs"] for c in cav["conflicts"])
+
+
+def test_a_line_holds_what_was_told_removed_ordered_and_decided(step: Deliberation) -> None:
+    line = step.as_dict()
+    assert (line["time"], line["step"]) == (1.5, 3)
+    assert [cav["id"] for cav in line["cavs"]] == ["CAV1", "CAV2"]
+    for cav, situation, decision in zip(line["cavs"], step.situations, step.decisions, strict=True):
+        assert (cav["action"], cav["reason"]) == (decision.action, decision.reason)
+        assert cav["reason"]
+        assert cav["action"] in cav["allowed"]
+        assert [n["id"] for n in cav["scene"]["neighbours"]] == [n.id for n in situation.scene.neighbours]
+        assert cav["scene"]["neighbours"][0]["x"] == pytest.approx(situation.scene.neighbours[0].x, abs=1e-6)
+        assert {c["other"] for c in cav["conflicts"]} == {c.other for c in situation.conflicts}
+        assert all({"ttcp", "dttcp", "severity", "relation", "clear_time"} <= set(c) for c in cav["conflicts"])
+        assert cav["order"]["sequence"] == list(situation.order.sequence)
+        assert all(p["reason"] for p in cav["order"]["precedences"])
+        assert set(cav["allowed"]) | set(cav["removed"]) == {a.action for a in situation.assessments}
+        assert not set(cav["allowed"]) & set(cav["removed"])
+        assert [a["action"] for a in cav["assessments"]] == [a.action for a in situation.assessments]
+        assert cav["memories"] == []
+    assert any(reasons for cav in line["cavs"] for reasons in cav["removed"].values())
+
+
+def test_a_forced_action_keeps_its_reasons(method: Make, junction: Junction) -> None:
+    world = junction.world(car("CAV1", "south-north", 60.0, 9.0), car("HDV1", "south-north", 67.0, 0.0))
+    (cav,) = method().act(world).as_dict()["cavs"]
+    (forced,) = [a for a in cav["assessments"] if a["safe"]]
+    assert cav["allowed"] == [forced["action"]]
+    assert any("least dangerous" in reason for reason in forced["reasons"])
+
+
+def test_actions_are_by_vehicle(step: Deliberation) -> None:
+    assert step.actions == {d.ego: d.action for d in step.decisions}
+
+
+def test_the_same_world_is_thought_of_in_the_same_way(method: Make, junction: Junction) -> None:
+    def think(**change: Any) -> list[dict[str, Any]]:
+        made = method(seed=4, **change)
+        world = junction.environment.reset(4)
+        lines = []
+        for _ in range(4):
+            deliberation = made.act(world)
+            lines.append(deliberation.as_dict())
+            world = junction.environment.step(deliberation.actions)
+        return lines
+
+    for change in ({}, {"negotiation": False, "own_order": "independent"}):
+        assert think(**change) == think(**change)
