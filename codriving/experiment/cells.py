@@ -22,11 +22,13 @@ class Cell:
         folder: Name of its folder, readable and unique in the run.
         labels: What its records are labelled with.
         resolved: Its resolved config of plain values.
+        metrics: Name of the definitions that it is scored by.
     """
 
     folder: str
     labels: Labels
     resolved: Mapping[str, Any]
+    metrics: str = "standard"
 
     def entry(self) -> CellEntry:
         """Describe it for the manifest."""
@@ -63,7 +65,8 @@ def make_cell(resolved: Mapping[str, Any]) -> Cell:
         variant=_label(method, "variant", "method"),
         reasoner=_label(method, "reasoner", "method"),
     )
-    return Cell(folder_name(labels), labels, resolved)
+    metrics = _label(build(resolved["metrics"], plugins, "metrics"), "name", "metrics")
+    return Cell(folder_name(labels), labels, resolved, metrics)
 
 
 def _label(made: object, attribute: str, key: str) -> str:

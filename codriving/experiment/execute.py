@@ -103,7 +103,9 @@ def execute(
             folder.clean()
         everything = _records(folder, entries, plan.seeds, records, errors=True)
         tables = run_tables(
-            [[everything[Unit(c.folder, seed)] for seed in plan.seeds] for c in entries], paper or Paper()
+            [[everything[Unit(c.folder, seed)] for seed in plan.seeds] for c in entries],
+            paper or Paper(),
+            ", ".join(dict.fromkeys(cell.metrics for cell in plan.cells)),
         )
         _write(folder, tables, [(unit, everything[unit]) for unit in units])
         return Finished(folder.path, tables, len(missing), len(units) - len(missing), failed)

@@ -43,12 +43,13 @@ class Display:
     notes: tuple[str, ...] = NOTES
 
 
-def display(rows: Sequence[Row], paper: Paper) -> Display:
+def display(rows: Sequence[Row], paper: Paper, metrics: str = "standard") -> Display:
     """Prepare the summary for people.
 
     Args:
         rows: Rows of the summary, at least one.
         paper: The paper's numbers.
+        metrics: Name of the definitions by which it was measured.
 
     Returns:
         The table. A column of scenarios or of statements is there only where it says something.
@@ -69,6 +70,7 @@ def display(rows: Sequence[Row], paper: Paper) -> Display:
         *(["off road"] if _any(rows, "off_road_rate") else []),
         *(["error"] if _any(rows, "error_rate") else []),
         "PET mean / max / min [s]",
+        "PET < 1.5 s",
         "velocity mean / max / min [m/s]",
         *(["the paper says"] if ablation else []),
     ]
@@ -78,13 +80,14 @@ def display(rows: Sequence[Row], paper: Paper) -> Display:
         lines.append(Line(tuple(_ours(row, claim).get(column, "") for column in columns)))
         if beside is not None:
             lines.append(Line(tuple(_theirs(row, beside).get(column, "") for column in columns), ours=False))
-    return Display(_title(scenarios, rows), tuple(columns), 2 if many else 1, tuple(lines))
+    return Display(_title(scenarios, rows, metrics), tuple(columns), 2 if many else 1, tuple(lines))
 
 
-def _title(scenarios: Iterable[str], rows: Sequence[Row]) -> str:
+def _title(scenarios: Iterable[str], rows: Sequence[Row], metrics: str) -> str:
     names = dict.fromkeys(str(row["reasoner"]) for row in rows)
     reasoners = ", ".join(f"{name} (llm=offline)" if name == "rules" else name for name in names)
-    return f"{', '.join(scenarios)} - reasoner: {reasoners}"
+    measured = "" if metrics == "standard" else f" - metrics: {metrics}"
+    return f"{', '.join(scenarios)} - reasoner: {reasoners}{measured}"
 
 
 def _ours(row: Row, claim: str) -> dict[str, str]:
@@ -102,6 +105,7 @@ def _ours(row: Row, claim: str) -> dict[str, str]:
         "off road": _percent(row["off_road_rate"]),
         "error": _percent(row["error_rate"]),
         "PET mean / max / min [s]": _three(row, "pet"),
+        "PET < 1.5 s": _percent(row["pet_below_1_5"]),
         "velocity mean / max / min [m/s]": _three(row, "velocity"),
         "the paper says": claim,
     }

@@ -60,12 +60,13 @@ class RunTables:
     display: Display
 
 
-def run_tables(cells: Sequence[Sequence[EpisodeRecord]], paper: Paper) -> RunTables:
+def run_tables(cells: Sequence[Sequence[EpisodeRecord]], paper: Paper, metrics: str = "standard") -> RunTables:
     """Make all tables of a run.
 
     Args:
         cells: The records of each cell, by seed; cells in the order of the tables, none of them empty.
         paper: The paper's numbers.
+        metrics: Name of the definitions by which they were scored.
 
     Returns:
         The tables; they depend on nothing else.
@@ -75,7 +76,7 @@ def run_tables(cells: Sequence[Sequence[EpisodeRecord]], paper: Paper) -> RunTab
     return RunTables(
         episodes=Table(episode_columns(records), tuple(episode_rows(records))),
         summary=Table(summary_columns(records), rows),
-        display=display(rows, paper),
+        display=display(rows, paper, metrics),
     )
 
 

@@ -107,7 +107,9 @@ def test_a_cell_is_labelled_by_its_objects_and_an_object_without_a_name_is_refus
         "plugins": ["toy_drive"],
         "scenario": {"_target_": "toy_drive.ToyMetrics"},
         "method": {"_target_": "toy_drive.ToyMethod"},
+        "metrics": {"_target_": "toy_drive.ToyMetrics"},
     }
+    assert make_cell(config).metrics == "toy"
     assert make_cell(config).labels == Labels("toy", *("steady", "full", "rules"))
     assert make_cell(config).folder == folder_name(LABELS)
     with pytest.raises(ConfigError, match="method: ToyMetrics needs an attribute 'variant'"):

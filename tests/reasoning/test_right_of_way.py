@@ -9,7 +9,7 @@ from codriving.geometry.road_map import RoadMap, road_map
 from codriving.reasoning.movers import movers
 from codriving.reasoning.right_of_way import gives_way
 
-PLACES = [40.0 + 2 * k for k in range(40)]
+PLACES = [60.0 + 0.5 * k for k in range(80)]
 
 
 def reason(
@@ -75,7 +75,7 @@ def test_a_cav_in_the_zone_is_waited_for_by_whoever_can_stop_before_it(junction:
     assert not reason(junction, inside, car("HDV1", "west-east", 106.0, 8.0))
 
 
-@pytest.mark.parametrize("speed", [4.0, 6.0, 8.0])
+@pytest.mark.parametrize("speed", [6.0, 9.0])
 def test_a_driver_who_brakes_is_relied_on_for_longer(speed: float, junction: Junction) -> None:
     def relied_on(pedal: float | None) -> set[float]:
         major = car("CAV1", "east-west", 80.0, 8.0)
@@ -85,7 +85,7 @@ def test_a_driver_who_brakes_is_relied_on_for_longer(speed: float, junction: Jun
 
     braking, coasting, unknown = relied_on(-5.5), relied_on(0.0), relied_on(None)
     assert coasting == unknown
-    assert coasting <= braking
+    assert coasting < braking
     assert coasting == {s for s in PLACES if s <= max(coasting)}, "nearer never means surer"
 
 

@@ -45,10 +45,16 @@ def test_a_pipe_gets_plain_text_with_the_papers_row_beside_ours(
     assert head.split()[0] == "method"
     assert ours.split()[:4] == ["codriving", "full", "20", "100"]
     assert "83.9 % to 100 %" in ours
-    assert ours.endswith("3.0 / 4.0 / 2.0 7.0 / 7.0 / 7.0")
+    assert ours.endswith("3.0 / 4.0 / 2.0 0 % 7.0 / 7.0 / 7.0")
     assert theirs.startswith("paper: CoDrivingLLM")
     assert theirs.endswith("10.3 / 44.0 / 1.8 5.7 / 8.0 / -")
     assert "Wilson" in note
+
+
+def test_the_title_names_definitions_that_are_not_ours(make: Callable[..., EpisodeRecord], paper: Paper) -> None:
+    rows = [summary_row([make(0)])]
+    assert display(rows, paper, "authors").title.endswith("metrics: authors")
+    assert "metrics" not in display(rows, paper, "standard").title
 
 
 def test_the_ablation_has_the_papers_words_beside_each_reading(

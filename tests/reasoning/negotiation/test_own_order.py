@@ -30,7 +30,8 @@ def believed_first(found: dict[str, PassingOrder]) -> tuple[str | None, str | No
 
 def test_own_view_decides_for_itself_on_both_sides(junction: Junction) -> None:
     # Each knows that it will accelerate and takes the other one to keep its speed.
-    assert believed_first(orders(crossing(junction, speeds=(6.0, 6.0)), "own_view")) == ("CAV1", "CAV2")
+    for gain in (-3.0, 0.0, 3.0):
+        assert believed_first(orders(crossing(junction, gain, (6.0, 6.0)), "own_view")) == ("CAV1", "CAV2")
 
 
 def test_own_view_sees_who_is_clearly_earlier(junction: Junction) -> None:
@@ -44,6 +45,14 @@ def test_the_same_rule_on_shared_data_agrees(junction: Junction, gain: float, v:
     thoughts = junction.thoughts(car("CAV1", "south-north", 60.0 + gain, v), car("CAV2", other, 60.0, w))
     mine, theirs = believed_first(orders(thoughts, "same_rule"))
     assert mine == theirs is not None
+
+
+def test_the_same_rule_agrees_on_ties_as_well(junction: Junction) -> None:
+    (zone,) = junction.road_map.zones("south-north", "west-east")
+    thoughts = junction.thoughts(
+        car("CAV1", "south-north", zone.entry_i - 40.0, 8.0), car("CAV2", "west-east", zone.entry_j - 40.0, 8.0)
+    )
+    assert believed_first(orders(thoughts, "same_rule")) == ("CAV1", "CAV1")
 
 
 def test_the_same_rule_lets_straight_go_before_turning(junction: Junction) -> None:

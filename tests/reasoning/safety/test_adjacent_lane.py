@@ -64,7 +64,7 @@ def test_somebody_fast_from_behind_needs_more_room_than_somebody_slow(highway: J
 
 
 def test_the_one_ahead_on_the_own_lane_does_not_hinder_a_change(highway: Junction) -> None:
-    assert check_adjacent(beside(highway, 112.0, 8.0, lane="right")) == {}
+    assert check_adjacent(beside(highway, 106.0, 8.0, lane="right")) == {}
 
 
 def test_a_road_without_that_lane_has_nothing_to_check(highway: Junction) -> None:

@@ -11,6 +11,7 @@ from codriving.datatypes.scene_description import Role
 from codriving.reasoning.safety.assessment import ThreeLayers
 from codriving.reasoning.safety.outlook import Outlook
 from codriving.reasoning.safety.same_lane import check_ahead, check_behind, forced_braking
+from codriving.reasoning.state_sharing import SensedStates, SharedStates
 
 
 def follower(junction: Junction, gap: float, speed: float, leader: float, who: str = "HDV1") -> Outlook:
@@ -77,6 +78,13 @@ def test_a_vehicle_that_has_merged_ahead_counts_although_it_came_from_elsewhere(
     assert Action.FASTER in check_ahead(outlook)
 
 
+def test_whoever_is_not_known_to_drive_across_is_ahead(junction: Junction) -> None:
+    world = junction.world(car("CAV1", "south-north", 97.0, 8.0), car("CAV2", "west-east", 113.0, 0.0))
+    for sharing, leads in ((SharedStates(), False), (SensedStates(), True)):
+        outlook = junction.think(world, sharing).outlook("CAV1")
+        assert (Action.FASTER in check_ahead(outlook)) is leads
+
+
 def test_abrupt_braking_is_removed_while_a_faster_action_is_safe(junction: Junction) -> None:
     near = 0
     for gap in (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 20.0):
@@ -87,6 +95,7 @@ def test_abrupt_braking_is_removed_while_a_faster_action_is_safe(junction: Junct
         # Where it comes too close whatever is done, nothing is gained by not braking.
         helps = Action.SLOWER in abrupt and set(abrupt) != set(outlook.actions)
         assert slower.safe is not helps
+        assert helps or slower.reasons == ()
         near += helps
         if helps:
             assert slower.reasons == (abrupt[Action.SLOWER][0],)
