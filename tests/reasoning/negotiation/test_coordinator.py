@@ -92,7 +92,7 @@ def test_the_leader_on_a_lane_goes_before_its_follower(junction: Junction) -> No
     order = negotiated(
         junction,
         car("CAV1", "south-north", 59.0, 9.0),
-        car("CAV2", "south-west", 66.0, 3.0),
+        car("CAV2", "south-west", 66.0, 0.0),
         car("CAV3", "north-south", 20.0, 5.0),
         car("CAV4", "west-east", 30.0, 5.0),
     )
