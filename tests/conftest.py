@@ -1,10 +1,12 @@
 """Fixtures for all rooms, and makes ``worlds`` importable."""
 
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from codriving.config.build import build
 from codriving.config.compose import compose
@@ -15,6 +17,11 @@ if HERE not in sys.path:
     sys.path.insert(0, HERE)
 
 from worlds import Junction  # noqa: E402  (needs the path above)
+
+# The same commit has to pass or fail alike in CI; everywhere else new examples are drawn every time.
+settings.register_profile("repeatable", derandomize=True)
+if os.environ.get("CI"):
+    settings.load_profile("repeatable")
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,7 @@
 """Worlds made by hand on a configured road, and what the reasoning makes of them."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
@@ -23,6 +24,16 @@ from codriving.reasoning.tracking import Tracking
 
 LAG = 5
 """Samples that must lie between two vehicles in a zone, for the expectations of these worlds."""
+
+FULL: dict[str, Any] = {
+    "state_sharing": True,
+    "intent_sharing": True,
+    "negotiation": True,
+    "safety_check": True,
+    "binding": False,
+    "own_order": "own_view",
+}
+"""Toggles of the whole framework."""
 
 
 @dataclass(frozen=True)

@@ -4,20 +4,11 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from worlds import Junction
+from worlds import FULL, Junction
 
 from codriving.llm.offline import Offline
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.cda import CdaLevel
-
-FULL: dict[str, Any] = {
-    "state_sharing": True,
-    "intent_sharing": True,
-    "negotiation": True,
-    "safety_check": True,
-    "binding": False,
-    "own_order": "own_view",
-}
 
 
 @pytest.fixture(scope="session")

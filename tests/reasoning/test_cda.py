@@ -4,20 +4,12 @@ import itertools
 from typing import Any
 
 import pytest
+from worlds import FULL
 
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.errors import ConfigError
 from codriving.reasoning.cda import CdaLevel
-
-FULL: dict[str, Any] = {
-    "state_sharing": True,
-    "intent_sharing": True,
-    "negotiation": True,
-    "safety_check": True,
-    "binding": False,
-    "own_order": "own_view",
-}
 
 
 def preset(*overrides: str) -> CdaLevel:

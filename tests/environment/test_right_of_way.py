@@ -1,0 +1,91 @@
+"""Who waits for whom: what human drivers do beyond highway-env's rule."""
+
+from collections.abc import Callable
+
+from codriving.datatypes.scene import Start
+from codriving.datatypes.vehicle import Kind
+from codriving.environment.environment import Environment
+from codriving.environment.on_way import OnWay
+from codriving.environment.right_of_way import OVERSHOOT, STARTING, occupied_ahead, pace, will_meet
+
+Build = Callable[..., Environment]
+CAV, HDV = Kind.CAV, Kind.HDV
+
+
+def placed(by_hand: Build, *starts: Start) -> tuple[Environment, dict[str, OnWay]]:
+    env = by_hand(starts=list(starts))
+    env.reset(0)
+    return env, {vehicle.id: vehicle for vehicle in env._traffic.vehicles}
+
+
+def test_a_driver_stops_before_a_zone_that_somebody_is_in(by_hand: Build) -> None:
+    stands = Start("CAV1", CAV, "west-east", 113.0, 0.0)
+    env, road = placed(by_hand, stands, Start("HDV1", HDV, "south-north", 92.0, 6.0))
+    (zone,) = env.road_map.zones("south-north", "west-east")
+    assert zone.entry_j < 113.0 < zone.exit_j
+    assert occupied_ahead(env.road_map, road["HDV1"], road.values()) == zone.entry_i
+    # Nobody in it, too late to stop, and far away: nothing to wait for.
+    for other, place, speed in ((60.0, 92.0, 6.0), (113.0, zone.entry_i - 1.0, 9.0), (113.0, 40.0, 6.0)):
+        env, road = placed(
+            by_hand, Start("CAV1", CAV, "west-east", other, 0.0), Start("HDV1", HDV, "south-north", place, speed)
+        )
+        assert occupied_ahead(env.road_map, road["HDV1"], road.values()) is None
+
+
+def test_a_driver_who_overshoots_a_little_still_waits(by_hand: Build) -> None:
+    env, _ = placed(by_hand, Start("CAV1", CAV, "west-east", 60.0, 0.0))
+    (zone,) = env.road_map.zones("south-north", "west-east")
+    for beyond, waits in ((OVERSHOOT / 2, True), (OVERSHOOT + 0.5, False)):
+        driver = Start("HDV1", HDV, "south-north", zone.entry_i + beyond, 0.0)
+        env, road = placed(by_hand, Start("CAV1", CAV, "west-east", 113.0, 0.0), driver)
+        assert (occupied_ahead(env.road_map, road["HDV1"], road.values()) is not None) == waits
+
+
+def test_the_driver_comes_to_a_stand_outside_the_bodies(by_hand: Build) -> None:
+    stands = Start("CAV1", CAV, "west-east", 113.0, 0.0)
+    env, road = placed(by_hand, stands, Start("HDV1", HDV, "south-north", 80.0, 7.0))
+    (zone,) = env.road_map.zones("south-north", "west-east")
+    for _ in range(100):
+        env._traffic.act()
+        env._traffic.step(0.1)
+        road["CAV1"].speed = 0.0
+    assert road["HDV1"].speed < 0.5
+    assert road["HDV1"].s <= zone.entry_i + OVERSHOOT
+
+
+def test_after_waiting_a_driver_wants_the_speed_limit(by_hand: Build) -> None:
+    env, road = placed(
+        by_hand, Start("CAV1", CAV, "west-east", 20.0, 5.0), Start("HDV1", HDV, "south-north", 60.0, 6.0)
+    )
+    driver = road["HDV1"]
+    env._traffic.enforce_road_rules()
+    assert driver.target_speed == 6.0
+    driver.waits_at = 100.0  # type: ignore[attr-defined]
+    env._traffic.enforce_road_rules()
+    assert driver.target_speed == driver.lane.speed_limit == 10.0
+
+
+def test_a_driver_who_stands_means_to_start_and_a_cav_does_not(by_hand: Build) -> None:
+    env, road = placed(
+        by_hand, Start("CAV1", CAV, "west-east", 101.0, 0.0), Start("HDV1", HDV, "south-north", 99.0, 0.0)
+    )
+    assert pace(road["HDV1"]) == STARTING
+    assert pace(road["CAV1"]) == 0.0
+    env, road = placed(
+        by_hand, Start("HDV1", HDV, "south-north", 99.0, 0.0), Start("HDV2", HDV, "west-east", 101.0, 0.0)
+    )
+    assert will_meet(env.road_map, road["HDV1"], road["HDV2"])
+
+
+def test_drivers_look_more_often_than_highway_env_lets_them(by_hand: Build) -> None:
+    looks = {}
+    for off in ((), ("yield_at_entry",)):
+        env = by_hand(*off, starts=[Start("HDV1", HDV, "south-north", 20.0, 6.0)])
+        env.reset(0)
+        counted = []
+        env._traffic.enforce_road_rules = lambda counted=counted: counted.append(1)  # type: ignore[method-assign]
+        for _ in range(10):
+            env._traffic.act()
+            env._traffic.step(0.1)
+        looks[off] = len(counted)
+    assert looks == {(): 5, ("yield_at_entry",): 2}
