@@ -21,8 +21,8 @@ class Collision:
     Attributes:
         time: When the footprints first overlapped [s].
         striker: Id of the vehicle whose front ran into the other.
-        struck: Id of the vehicle that was hit.
-        pair: ``CAV-CAV``, ``CAV-HDV`` or ``HDV-HDV``.
+        struck: Id of the vehicle, or name of the block, that was hit.
+        pair: ``CAV-CAV``, ``CAV-HDV``, ``HDV-HDV``, ``CAV-block`` or ``HDV-block``.
     """
 
     time: float

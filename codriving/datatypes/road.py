@@ -105,15 +105,34 @@ class Lane:
 
 
 @dataclass(frozen=True, slots=True)
+class Block:
+    """Something solid that stands on the road, for instance where a lane ends.
+
+    Attributes:
+        position: Its centre [m].
+        length: Length along the heading [m].
+        width: Width across it [m].
+        heading: Heading [rad].
+    """
+
+    position: Point
+    length: float = 2.0
+    width: float = 2.0
+    heading: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Route:
     """A way through the road from a source to a destination.
 
     Attributes:
         id: Name that is unique on the road, for instance ``south-north``.
-        lanes: The lanes followed, in order.
+        lanes: The lanes followed, in order. Two lanes side by side, between the same nodes, are a lane change that the
+            destination asks for, as at the end of a ramp.
         turn: What the route does at the junction.
         entry: Arc length at which the shared part of the road (junction, ring, merge) begins [m].
         goal: Arc length at which a vehicle has arrived [m].
+        taper: Length of the way from one lane to the one beside it, which ends where the lane that is left does [m].
     """
 
     id: str
@@ -121,6 +140,7 @@ class Route:
     turn: Turn
     entry: float
     goal: float
+    taper: float = 40.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,9 +152,21 @@ class Road:
         lanes: Every lane, each id once.
         routes: Every route, each id once.
         regulated: Whether human drivers give way by lane priority before the shared part.
+        blocks: Solid things that stand on the road.
     """
 
     name: str
     lanes: tuple[Lane, ...]
     routes: tuple[Route, ...]
     regulated: bool = False
+    blocks: tuple[Block, ...] = ()
+
+
+def beside(lane: LaneId, other: LaneId) -> bool:
+    """Whether two different lanes run side by side, between the same nodes.
+
+    Args:
+        lane: A lane.
+        other: Another lane.
+    """
+    return lane[:2] == other[:2] and lane[2] != other[2]

@@ -54,6 +54,19 @@ class Neighbour:
 
 
 @dataclass(frozen=True, slots=True)
+class LaneChange:
+    """A lane change that the ego vehicle's route asks for.
+
+    Attributes:
+        lane: The lane to change to.
+        room: Distance within which it has to be begun, since the present lane ends [m].
+    """
+
+    lane: LaneId
+    room: float
+
+
+@dataclass(frozen=True, slots=True)
 class SceneDescription:
     """The surroundings of one CAV, by lane and by relation.
 
@@ -64,6 +77,8 @@ class SceneDescription:
         adjacent_lanes: Lanes to the left and right that run its way.
         conflict_lanes: Lanes that its lanes ahead intersect.
         neighbours: Everybody it knows of, in order of id.
+        covers: Other routes onto whose lanes its body reaches while it changes lanes, with its arc length there [m].
+        must_change: The lane change that its route asks for next, or None.
     """
 
     ego: VehicleState
@@ -72,6 +87,8 @@ class SceneDescription:
     adjacent_lanes: tuple[LaneId, ...]
     conflict_lanes: tuple[LaneId, ...]
     neighbours: tuple[Neighbour, ...]
+    covers: tuple[tuple[str, float], ...] = ()
+    must_change: LaneChange | None = None
 
     def neighbour(self, name: str) -> Neighbour | None:
         """Return a neighbour by id, or None if the ego vehicle does not know of it."""

@@ -1,5 +1,7 @@
 """A connected automated vehicle: highway-env's semantic actions, driven with the paper's gains."""
 
+from collections.abc import Mapping
+
 from highway_env.road.road import Road
 from highway_env.vehicle.controller import MDPVehicle
 
@@ -19,7 +21,7 @@ class ConnectedVehicle(OnWay, MDPVehicle):
         cls,
         road: Road,
         start: Start,
-        way: Way,
+        ways: Mapping[str, Way],
         target_speeds: tuple[float, ...],
         gains: ControlGains,
         corrections: Corrections,
@@ -29,15 +31,16 @@ class ConnectedVehicle(OnWay, MDPVehicle):
         Args:
             road: The road of highway-env.
             start: Where it starts.
-            way: The route that it follows, laid out.
+            ways: Every route of the road, laid out, by id.
             target_speeds: Speeds that FASTER and SLOWER step through [m/s].
             gains: Gains of its controllers.
             corrections: Which faults of the simulator are corrected.
         """
+        way = ways[start.route]
         x, y = way.path.position(start.position)
         heading = float(way.path.heading(start.position))
         vehicle = cls(road, [float(x), float(y)], heading, start.speed, target_speeds=list(target_speeds))
-        vehicle.take_way(start.id, way, start.position, corrections)
+        vehicle.take_way(start, ways, corrections)
         gains.apply(vehicle)
         return vehicle
 
@@ -49,6 +52,8 @@ class ConnectedVehicle(OnWay, MDPVehicle):
         """
         if action in (Action.LANE_LEFT, Action.LANE_RIGHT):
             super().act(action)
+            if self.corrections.route_lane:
+                self.follow_target_lane()
             return
         if action in (Action.FASTER, Action.SLOWER):
             # From the speed at which it drives, not from the target that it had; so does highway-env's MDPVehicle.

@@ -2,6 +2,8 @@
 
 from itertools import combinations
 
+from highway_env.vehicle.objects import RoadObject
+
 from codriving.datatypes.outcome import Collision
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.on_way import OnWay
@@ -49,6 +51,31 @@ def find_collisions(
     return found
 
 
-def _overlap(one: OnWay, other: OnWay) -> bool:
+def find_block_collisions(
+    vehicles: list[OnWay], obstacles: list[RoadObject], time: float, by_footprint: bool
+) -> list[tuple[OnWay, Collision]]:
+    """Find every vehicle that has run into something solid that stands on the road.
+
+    Args:
+        vehicles: Vehicles on the road.
+        obstacles: What stands on it.
+        time: Present time, for the record [s].
+        by_footprint: Whether a collision is an overlap of two footprints; else it is what highway-env declares.
+
+    Returns:
+        The vehicle and the record of each collision.
+    """
+    found = []
+    for k, obstacle in enumerate(obstacles, start=1):
+        for vehicle in vehicles:
+            if abs(vehicle.position[0] - obstacle.position[0]) > vehicle.diagonal + obstacle.diagonal:
+                continue
+            if _overlap(vehicle, obstacle) if by_footprint else vehicle.crashed and obstacle.hit:
+                record = Collision(time, vehicle.id, f"block{k}", f"{kind(vehicle)}-block")
+                found.append((vehicle, record))
+    return found
+
+
+def _overlap(one: RoadObject, other: RoadObject) -> bool:
     boxes = [corners(v.position[0], v.position[1], v.heading, v.LENGTH, v.WIDTH) for v in (one, other)]
     return overlap(*boxes)

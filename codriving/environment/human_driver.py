@@ -1,6 +1,7 @@
 """A human driver: highway-env's IDM and MOBIL, with its faults corrected."""
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from highway_env.road.road import Road
@@ -32,21 +33,22 @@ class HumanDriver(OnWay, IDMVehicle):
 
     @classmethod
     def start(
-        cls, road: Road, start: Start, way: Way, profile: DriverProfile, corrections: Corrections
+        cls, road: Road, start: Start, ways: Mapping[str, Way], profile: DriverProfile, corrections: Corrections
     ) -> "HumanDriver":
         """Put a human driver on the road; the start speed is the speed that the driver wants.
 
         Args:
             road: The road of highway-env.
             start: Where it starts.
-            way: The route that it follows, laid out.
+            ways: Every route of the road, laid out, by id.
             profile: Parameters of IDM and MOBIL.
             corrections: Which faults of the simulator are corrected.
         """
+        way = ways[start.route]
         x, y = way.path.position(start.position)
         heading = float(way.path.heading(start.position))
         driver = cls(road, [float(x), float(y)], heading, start.speed)
-        driver.take_way(start.id, way, start.position, corrections)
+        driver.take_way(start, ways, corrections)
         profile.apply(driver, to_class=not corrections.own_parameters)
         driver.sight = profile.sight
         driver.randomize_behavior()
@@ -67,6 +69,8 @@ class HumanDriver(OnWay, IDMVehicle):
             self.change_lane_policy()
         if self.target_lane_index != lane:
             steering = self.steering_control(self.target_lane_index)
+            if self.corrections.route_lane:
+                self.follow_target_lane()
         self.action = {"steering": steering, "acceleration": clip(self.following_acceleration(), self.ACC_MAX)}
 
     def step(self, dt: float) -> None:
@@ -90,6 +94,9 @@ class HumanDriver(OnWay, IDMVehicle):
         if leader is not None and not (changing and self._leaves(leader)):
             # IDM counts from centre to centre; a body that crosses is met at its near side.
             wanted.append(self.gap_behind(leader) / max(gap + self.LENGTH, 0.01))
+        if not changing and self.lane_index == self.way.ending and self.way.lane_end < self.s + self.sight:
+            room = self.way.lane_end - self.s - self.LENGTH / 2
+            wanted.append(self._gap_at(self.speed) / max(room + self.LENGTH, 0.01))
         if self.waits_at is not None:
             wanted.append(self._gap_at(self.speed) / max(self.waits_at - self.s + self.LENGTH / 2, 0.01))
         acceleration = float(self.free_acceleration() - self.COMFORT_ACC_MAX * max(wanted) ** 2)

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.environment.cav import ConnectedVehicle
-from codriving.environment.collisions import find_collisions
+from codriving.environment.collisions import find_block_collisions, find_collisions
 from codriving.environment.on_way import OnWay
 from codriving.environment.traffic import Traffic
 
@@ -63,7 +63,7 @@ class Judge:
         return None
 
     def _collide(self, traffic: Traffic, time: float) -> Collision | None:
-        """Tow away human drivers who hit each other; return the first collision of a CAV."""
+        """Tow away human drivers who hit each other or a block; return the first collision of a CAV."""
         first = None
         exact = traffic.corrections.true_collisions
         for striker, struck, collision in find_collisions(traffic.vehicles, time, self._dt, exact):
@@ -72,6 +72,12 @@ class Judge:
             else:
                 self._bystanders.append(collision)
                 traffic.vehicles = [v for v in traffic.vehicles if v not in (striker, struck)]
+        for vehicle, collision in find_block_collisions(traffic.vehicles, traffic.objects, time, exact):
+            if isinstance(vehicle, ConnectedVehicle):
+                first = first or collision
+            else:
+                self._bystanders.append(collision)
+                traffic.vehicles = [v for v in traffic.vehicles if v is not vehicle]
         return first
 
     def _end(

@@ -4,13 +4,16 @@ from collections.abc import Iterable
 
 import numpy as np
 from highway_env.vehicle.behavior import IDMVehicle
+from numpy.typing import NDArray
 
 from codriving.datatypes.conflict import Relation
 from codriving.environment.on_way import OnWay
 from codriving.geometry.road_map import RoadMap
 
+Array = NDArray[np.float64]
+
 HORIZON = np.arange(0.25, 3.0, 0.25)
-"""Times at which the right of way looks for a conflict at constant speed, as highway-env does [s]."""
+"""Times at which the right of way looks for a conflict; highway-env looks as far [s]."""
 
 LAST = float(HORIZON[-1])
 
@@ -18,7 +21,7 @@ SIGHT = 25.0
 """How far ahead a driver minds who is in the junction [m]."""
 
 OVERSHOOT = 1.0
-"""How far a driver may come into a zone and still wait there; the bodies do not touch yet [m]."""
+"""How far a driver may come over the line or into a zone and still wait there; the bodies do not touch yet [m]."""
 
 STARTING = 4.0
 """Speed that a driver who creeps or stands expects to have soon [m/s]."""
@@ -28,26 +31,47 @@ GRID = 1.0
 
 
 def will_meet(road_map: RoadMap, one: OnWay, other: OnWay) -> bool:
-    """Whether two vehicles would be in a conflict zone together at constant speed within three seconds.
+    """Whether two vehicles would be in a conflict zone together within three seconds.
 
-    Vehicles that merely follow one another are left to the car-following model.
+    Vehicles that merely follow one another are left to the car-following model. A CAV is expected to keep its speed; so
+    is a human driver, who may also speed up: whoever has braked to wait would else be let go by its low speed, speed up,
+    and be in the way when it is too late to wait.
 
     Args:
         road_map: The precomputed road.
         one: A vehicle.
         other: Another vehicle.
     """
-    reach_one = one.s + pace(one) * LAST + GRID
-    reach_other = other.s + pace(other) * LAST + GRID
+    ones, others = motions(one), motions(other)
+    reach_one, reach_other = ones[-1, -1] + GRID, others[-1, -1] + GRID
     for zone in road_map.zones(one.way.route.id, other.way.route.id):
         if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
             continue
         if one.s > zone.exit_i or other.s > zone.exit_j or reach_one < zone.entry_i or reach_other < zone.entry_j:
             continue
-        s_one, s_other = one.s + pace(one) * HORIZON, other.s + pace(other) * HORIZON
-        if np.any((s_one >= zone.back(s_other)) & (s_one <= zone.front(s_other))):
-            return True
+        for places in others:
+            if np.any((ones >= zone.back(places)) & (ones <= zone.front(places))):
+                return True
     return False
+
+
+def motions(vehicle: OnWay) -> Array:
+    """Where a vehicle may be on its route at the times of the horizon.
+
+    Args:
+        vehicle: A vehicle.
+
+    Returns:
+        Arc lengths at constant speed; for a human driver, in a second row, those of speeding up to the speed that it
+        wants, which is never behind the first row (1 or 2, n) [m].
+    """
+    steady: Array = vehicle.s + pace(vehicle) * HORIZON
+    if not isinstance(vehicle, IDMVehicle):
+        return steady[None]
+    gain = max(min(vehicle.target_speed, vehicle.lane.speed_limit) - vehicle.speed, 0.0)
+    rising = np.minimum(HORIZON, gain / vehicle.COMFORT_ACC_MAX)
+    faster = vehicle.s + vehicle.speed * HORIZON + vehicle.COMFORT_ACC_MAX * rising * (HORIZON - rising / 2)
+    return np.stack((steady, np.maximum(steady, faster)))
 
 
 def pace(vehicle: OnWay) -> float:
@@ -63,12 +87,12 @@ def pace(vehicle: OnWay) -> float:
 
 
 def can_wait(driver: OnWay) -> bool:
-    """Whether a driver is still before the entry of the junction and can stop there.
+    """Whether a driver can still stop before the junction, its front over the line by a metre at most.
 
     Args:
         driver: A human driver.
     """
-    room = driver.way.route.entry - driver.s - driver.LENGTH / 2
+    room = driver.way.route.entry + OVERSHOOT - driver.s - driver.LENGTH / 2
     return bool(room > 0 and driver.speed**2 / (2 * driver.ACC_MAX) <= room)
 
 

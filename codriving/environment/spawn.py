@@ -32,10 +32,9 @@ def spawn(
     """
     corrections = traffic.corrections
     for start in scene.starts:
-        way = ways[start.route]
         vehicle = (
-            ConnectedVehicle.start(traffic, start, way, target_speeds, control, corrections)
+            ConnectedVehicle.start(traffic, start, ways, target_speeds, control, corrections)
             if start.kind is Kind.CAV
-            else HumanDriver.start(traffic, start, way, drivers, corrections)
+            else HumanDriver.start(traffic, start, ways, drivers, corrections)
         )
         traffic.vehicles.append(vehicle)

@@ -8,8 +8,9 @@ from highway_env.road.lane import AbstractLane
 from highway_env.road.regulation import RegulatedRoad
 from highway_env.road.road import LaneIndex, RoadNetwork
 from highway_env.vehicle.kinematics import Vehicle
-from highway_env.vehicle.objects import Landmark, RoadObject
+from highway_env.vehicle.objects import Landmark, Obstacle, RoadObject
 
+from codriving.datatypes.road import Block
 from codriving.environment.connected_lanes import connected
 from codriving.environment.corrections import Corrections
 from codriving.environment.human_driver import HumanDriver
@@ -36,6 +37,7 @@ class Traffic(RegulatedRoad):
     ) -> None:
         super().__init__(network, np_random=np_random)
         self.road_map, self.corrections = road_map, corrections
+        self.objects = [_obstacle(self, block) for block in road_map.road.blocks]
         self._connected: dict[tuple[Any, ...], list[tuple[AbstractLane, float]]] = {}
 
     def step(self, dt: float) -> None:
@@ -142,3 +144,9 @@ class Traffic(RegulatedRoad):
         if key not in self._connected:
             self._connected[key] = connected(self.network, index, planned)
         return self._connected[key]
+
+
+def _obstacle(road: Traffic, block: Block) -> Obstacle:
+    obstacle = Obstacle(road, list(block.position), block.heading)
+    obstacle.LENGTH, obstacle.WIDTH = block.length, block.width
+    return obstacle

@@ -3,11 +3,12 @@
 import math
 from bisect import bisect_right
 from dataclasses import dataclass
+from itertools import pairwise, zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.road import LaneId, Route
+from codriving.datatypes.road import LaneId, Route, beside
 from codriving.errors import ScenarioError
 from codriving.geometry.path import Path
 from codriving.geometry.road_map import RoadMap
@@ -36,6 +37,8 @@ class Way:
         headings: Heading at each point [rad].
         spacing: Arc length between two points [m].
         cells: Squares of the plane near some point of the centre line.
+        lane_end: Arc length at which a lane ends that has to be left before [m]; inf if there is none.
+        ending: That lane, or None.
     """
 
     route: Route
@@ -47,6 +50,8 @@ class Way:
     headings: tuple[float, ...]
     spacing: float
     cells: frozenset[tuple[int, int]]
+    lane_end: float = math.inf
+    ending: LaneId | None = None
 
     @property
     def end(self) -> float:
@@ -60,6 +65,24 @@ class Way:
             s: Arc length along the route [m].
         """
         return self.route.lanes[max(0, bisect_right(self.starts, s) - 1)]
+
+    def changes_after(self, s: float) -> int:
+        """Return how many lane changes the route still asks for.
+
+        Args:
+            s: Arc length along the route [m].
+        """
+        lanes = self.route.lanes
+        return sum(1 for k, (a, b) in enumerate(pairwise(lanes), start=1) if beside(a, b) and self.starts[k] > s)
+
+    def plan(self, s: float) -> list[LaneId]:
+        """Return the lanes still to be driven; where a lane change is asked for, the lane beside only.
+
+        Args:
+            s: Arc length along the route [m].
+        """
+        lanes = self.route.lanes[max(0, bisect_right(self.starts, s) - 1) :]
+        return [lane for lane, after in zip_longest(lanes, lanes[1:]) if after is None or not beside(lane, after)]
 
     def is_near(self, x: float, y: float) -> bool:
         """Whether a point may be within 10 m of the centre line; the answer is quick and errs towards yes.
@@ -124,7 +147,11 @@ def way(road_map: RoadMap, route: str) -> Way:
     starts = tuple(road_map.lane_start(route, lane) for lane in found.lanes)
     x, y = path.points.T.copy()
     points = tuple(zip(x.tolist(), y.tolist(), strict=True))
-    return Way(found, path, starts, x, y, points, tuple(path.headings.tolist()), path.spacing, _cells(x, y))
+    left = [k for k, (a, b) in enumerate(pairwise(found.lanes), start=1) if beside(a, b)]
+    lane_end = starts[left[0]] + found.taper / 2 if left else math.inf
+    ending = found.lanes[left[0] - 1] if left else None
+    headings = tuple(path.headings.tolist())
+    return Way(found, path, starts, x, y, points, headings, path.spacing, _cells(x, y), lane_end, ending)
 
 
 def _cells(x: NDArray[np.float64], y: NDArray[np.float64]) -> frozenset[tuple[int, int]]:

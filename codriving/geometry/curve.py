@@ -80,6 +80,46 @@ def bridge(start: Point, heading: float, end: Point, end_heading: float) -> Curv
     return Curve(float(arc[-1]), at)
 
 
+def taper(left: Curve, entered: Curve, length: float) -> Curve:
+    """Return the way from the end of one lane over to the lane beside it, half a cosine across.
+
+    Args:
+        left: Centre line of the lane that is left.
+        entered: Centre line of the lane beside it, of about the same length.
+        length: How much of the lane that is left it takes, at most all of it [m].
+    """
+    share = min(length / left.length, 1.0)
+
+    def point(u: FloatArray) -> FloatArray:
+        along = 1 - share * (1 - u)
+        weight = ((1 - np.cos(np.pi * u)) / 2)[:, None]
+        value: FloatArray = (1 - weight) * left.at(along * left.length)[0] + weight * entered.at(
+            along * entered.length
+        )[0]
+        return value
+
+    u = np.linspace(0.0, 1.0, max(16, math.ceil(2 * share * left.length / _FINE)))
+    points = point(u)
+    arc = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+    dx, dy = np.gradient(points, axis=0).T
+    headings = np.unwrap(np.arctan2(dy, dx))
+
+    def at(s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return point(np.interp(s, arc, u)), np.interp(s, arc, headings)
+
+    return Curve(float(arc[-1]), at)
+
+
+def first_part(curve: Curve, length: float) -> Curve:
+    """Return the beginning of a curve.
+
+    Args:
+        curve: The curve.
+        length: How much of it [m].
+    """
+    return Curve(length, curve.at)
+
+
 def _straight(start: Point, end: Point) -> Curve:
     origin, delta = np.array(start, dtype=float), np.array(end, dtype=float) - np.array(start, dtype=float)
     length = float(np.hypot(*delta))

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from codriving.datatypes.road import Lane
-from codriving.geometry.curve import Curve, FloatArray, bridge, lane_curve
+from codriving.datatypes.road import Lane, beside
+from codriving.geometry.curve import Curve, FloatArray, bridge, first_part, lane_curve, taper
 from codriving.geometry.path import Path
 
 SPACING = 0.5
@@ -26,37 +26,57 @@ def lane_path(lane: Lane, spacing: float = SPACING) -> Path:
     return _sample([lane_curve(lane.shape)], spacing)
 
 
-def route_path(lanes: Sequence[Lane], spacing: float = SPACING) -> Path:
-    """Join lanes into one path; a gap between two of them is bridged smoothly.
+def route_path(lanes: Sequence[Lane], change: float = 0.0, spacing: float = SPACING) -> Path:
+    """Join lanes into one path; a gap between two of them is bridged smoothly, a lane change is a taper.
 
     Args:
         lanes: The lanes in the order of travel, at least one.
+        change: Length of the way from a lane to the one beside it, at the end of the one that is left [m].
         spacing: Nominal distance between two points [m].
     """
-    return _sample([curve for _, curve in joined_curves(lanes)], spacing)
+    return _sample([curve for _, curve in joined_curves(lanes, change)], spacing)
 
 
-def lane_starts(lanes: Sequence[Lane]) -> tuple[float, ...]:
-    """Return the arc length at which each lane begins on the path that joins them [m]."""
+def lane_starts(lanes: Sequence[Lane], change: float = 0.0) -> tuple[float, ...]:
+    """Return the arc length at which each lane begins on the path that joins them [m].
+
+    A lane that is changed to begins in the middle of the change.
+
+    Args:
+        lanes: The lanes in the order of travel.
+        change: Length of a lane change [m].
+    """
     starts, s = [], 0.0
-    for is_lane, curve in joined_curves(lanes):
-        if is_lane:
+    for kind, curve in joined_curves(lanes, change):
+        if kind == "lane":
             starts.append(s)
+        elif kind == "change":
+            starts.append(s + curve.length / 2)
         s += curve.length
     return tuple(starts)
 
 
-def joined_curves(lanes: Sequence[Lane]) -> list[tuple[bool, Curve]]:
-    """Return the curves of lanes and of the bridges between them, each with whether it is a lane."""
-    curves: list[tuple[bool, Curve]] = []
-    for lane in lanes:
+def joined_curves(lanes: Sequence[Lane], change: float) -> list[tuple[str, Curve]]:
+    """Return the curves of a route in order, each with what it is: a ``lane``, a ``bridge`` or a lane ``change``.
+
+    Args:
+        lanes: The lanes in the order of travel.
+        change: Length of a lane change [m].
+    """
+    curves: list[tuple[str, Curve]] = []
+    for k, lane in enumerate(lanes):
         curve = lane_curve(lane.shape)
+        if k and beside(lanes[k - 1].id, lane.id):
+            left = lane_curve(lanes[k - 1].shape)
+            curves[-1] = ("lane", first_part(left, max(left.length - change, 0.0)))
+            curves.append(("change", taper(left, curve, change)))
+            continue
         if curves:
             x, y, heading = end_of(curves[-1][1], at_start=False)
             x2, y2, heading2 = end_of(curve, at_start=True)
             if math.hypot(x2 - x, y2 - y) > JOINED:
-                curves.append((False, bridge((x, y), heading, (x2, y2), heading2)))
-        curves.append((True, curve))
+                curves.append(("bridge", bridge((x, y), heading, (x2, y2), heading2)))
+        curves.append(("lane", curve))
     return curves
 
 

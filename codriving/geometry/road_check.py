@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterable
 from itertools import pairwise
 
-from codriving.datatypes.road import Arc, Lane, Road, Route
+from codriving.datatypes.road import Arc, Lane, Road, Route, beside
 from codriving.errors import ScenarioError
 from codriving.geometry.curve import lane_curve
 from codriving.geometry.lane_path import end_of, route_path
@@ -46,9 +46,15 @@ def check_road(road: Road) -> None:
                     f"route {route.id!r} of road {road.name!r} uses lane {lane_id}, which does not exist; "
                     f"add the lane or correct the route"
                 )
+        for one, two, three in zip(route.lanes, route.lanes[1:], route.lanes[2:], strict=False):
+            if beside(one, two) and beside(two, three):
+                raise ScenarioError(
+                    f"route {route.id!r} of road {road.name!r} changes lanes from {one} to {two} to {three}; between "
+                    "two nodes one lane change has room, so split the road or start the route on another lane"
+                )
         for lane_id, next_id in pairwise(route.lanes):
             _check_joint(road, route, lanes[lane_id], lanes[next_id])
-        length = route_path([lanes[lane_id] for lane_id in route.lanes]).length
+        length = route_path([lanes[lane_id] for lane_id in route.lanes], route.taper).length
         if not 0 <= route.entry <= route.goal <= length + 1e-6:
             raise ScenarioError(
                 f"route {route.id!r} of road {road.name!r} must have 0 <= entry <= goal <= its length of "
@@ -83,6 +89,9 @@ def _check_lane(road: Road, lane: Lane) -> None:
 
 def _check_joint(road: Road, route: Route, lane: Lane, following: Lane) -> None:
     where = f"route {route.id!r} of road {road.name!r} goes from lane {lane.id} to lane {following.id}"
+    if beside(lane.id, following.id):
+        _check_change(where, route, lane, following)
+        return
     if lane.id[1] != following.id[0]:
         raise ScenarioError(f"{where}, but the first ends at node {lane.id[1]!r} and the second begins elsewhere")
     x, y, heading = end_of(lane_curve(lane.shape), at_start=False)
@@ -96,4 +105,14 @@ def _check_joint(road: Road, route: Route, lane: Lane, following: Lane) -> None:
         raise ScenarioError(
             f"{where}, which begins {gap:.1f} m away at an angle of {math.degrees(max(turns)):.0f} deg to the way of "
             f"travel; at most {math.degrees(_SIDEWAYS):.0f} deg can be driven"
+        )
+
+
+def _check_change(where: str, route: Route, lane: Lane, following: Lane) -> None:
+    length = lane_curve(lane.shape).length
+    if abs(lane.id[2] - following.id[2]) != 1:
+        raise ScenarioError(f"{where}, which are not next to each other; change one lane at a time")
+    if not 10.0 <= route.taper <= length:
+        raise ScenarioError(
+            f"{where} with a taper of {route.taper:g} m; it must be 10 m to the {length:.1f} m of the lane that is left"
         )

@@ -1,18 +1,20 @@
 """All that geometry knows of a road, worked out once."""
 
-import math
 from collections.abc import Mapping
 from functools import lru_cache
-
-import numpy as np
 
 from codriving.datatypes.road import Lane, LaneId, Road, Route
 from codriving.geometry.box import PLANNING, Footprint
 from codriving.geometry.find_zones import find_zones
+from codriving.geometry.lane_changes import LaneChanges
 from codriving.geometry.lane_path import lane_starts, route_path
+from codriving.geometry.nearby import Nearby
 from codriving.geometry.path import Path
 from codriving.geometry.road_check import check_road
 from codriving.geometry.zone import ConflictZone, following_zone
+
+_REMEMBERED = 10_000
+"""Projections that are remembered; many vehicles ask for the same ones within a decision step."""
 
 
 class RoadMap:
@@ -26,6 +28,8 @@ class RoadMap:
         lanes: Lanes by id.
         routes: Routes by id.
         paths: Paths by id of the route.
+        changes: The lane changes that routes ask for, and the lanes beside them.
+        nearby: The routes that pass by a place.
 
     Raises:
         ScenarioError: If the road is not consistent in itself.
@@ -37,20 +41,52 @@ class RoadMap:
         self.lanes: Mapping[LaneId, Lane] = {lane.id: lane for lane in road.lanes}
         self.routes: Mapping[str, Route] = {route.id: route for route in road.routes}
         self.paths: Mapping[str, Path] = {
-            route.id: route_path([self.lanes[lane] for lane in route.lanes]) for route in road.routes
+            route.id: route_path([self.lanes[lane] for lane in route.lanes], route.taper) for route in road.routes
         }
         self._starts = {
             (route.id, lane): start
             for route in road.routes
-            for lane, start in zip(route.lanes, lane_starts([self.lanes[k] for k in route.lanes]), strict=True)
+            for lane, start in zip(
+                route.lanes, lane_starts([self.lanes[k] for k in route.lanes], route.taper), strict=True
+            )
         }
-        self._zones: dict[tuple[str, str, Footprint], tuple[ConflictZone, ...]] = {}
-        self._names = sorted(self.paths)
-        ordered = [self.paths[name] for name in self._names]
-        self._first = np.cumsum([0] + [len(path.points) for path in ordered[:-1]])
-        self._x, self._y = np.concatenate([path.points for path in ordered]).T.copy()
-        headings = np.concatenate([path.headings for path in ordered])
-        self._cos, self._sin = np.cos(headings), np.sin(headings)
+        self.changes = LaneChanges(self.lanes, self.routes, self._starts)
+        self.nearby = Nearby(self.lanes, self.routes, self.paths, self._starts)
+        self._projected: dict[tuple[str, float, float], tuple[float, float]] = {}
+        self._zones: dict[Footprint, dict[tuple[str, str], tuple[ConflictZone, ...]]] = {}
+        self._planning = self._zones[PLANNING] = {}
+
+    def project(self, route_id: str, x: float, y: float) -> tuple[float, float]:
+        """Return arc length and lateral offset of a place on a route [m], as `Path.project` does, each worked out once.
+
+        Args:
+            route_id: Id of the route.
+            x: Place [m].
+            y: Place [m].
+
+        Raises:
+            KeyError: If the route does not exist.
+        """
+        key = (route_id, x, y)
+        found = self._projected.get(key)
+        if found is None:
+            if len(self._projected) >= _REMEMBERED:
+                self._projected.clear()
+            found = self._projected[key] = self.paths[route_id].project(x, y)
+        return found
+
+    def lane_at(self, route_id: str, s: float) -> LaneId:
+        """Return the lane of a route at an arc length.
+
+        Args:
+            route_id: Id of the route.
+            s: Arc length; before the start of the route the first lane counts [m].
+
+        Raises:
+            KeyError: If the route does not exist.
+        """
+        lanes = self.routes[route_id].lanes
+        return next((lane for lane in reversed(lanes) if self._starts[route_id, lane] <= s), lanes[0])
 
     def lane_start(self, route_id: str, lane_id: LaneId) -> float:
         """Return the arc length on a route at which one of its lanes begins [m].
@@ -71,10 +107,11 @@ class RoadMap:
         Raises:
             KeyError: If a route does not exist.
         """
-        key = (route_i, route_j, footprint)
-        if key not in self._zones:
-            self._zones[key] = self._find(route_i, route_j, footprint)
-        return self._zones[key]
+        known = self._planning if footprint is PLANNING else self._zones.setdefault(footprint, {})
+        found = known.get((route_i, route_j))
+        if found is None:
+            found = known[route_i, route_j] = self._find(route_i, route_j, footprint)
+        return found
 
     def _find(self, route_i: str, route_j: str, footprint: Footprint) -> tuple[ConflictZone, ...]:
         if route_i == route_j:
@@ -84,37 +121,6 @@ class RoadMap:
             mirrored = (zone.mirrored() for zone in self.zones(route_j, route_i, footprint))
             return tuple(sorted(mirrored, key=lambda zone: (zone.entry_i, zone.entry_j)))
         return find_zones(self.paths[route_i], self.paths[route_j], footprint)
-
-    def routes_near(
-        self, x: float, y: float, heading: float | None, tolerance: float = 2.0, angle: float = math.pi / 3
-    ) -> tuple[tuple[str, float], ...]:
-        """Return the routes that pass by a place, as someone who only sees a vehicle there would guess them.
-
-        Args:
-            x: Place [m].
-            y: Place [m].
-            heading: Heading of the vehicle [rad]; None if any direction will do.
-            tolerance: Largest distance of the centre line [m].
-            angle: Largest difference of the headings [rad].
-
-        Returns:
-            Id of each route and arc length of the place on it [m], in order of id.
-        """
-        dx, dy = self._x - x, self._y - y
-        square = dx * dx + dy * dy
-        if heading is not None:
-            towards = self._cos * math.cos(heading) + self._sin * math.sin(heading)
-            square[towards < math.cos(angle)] = np.inf
-        nearest = np.minimum.reduceat(square, self._first)
-        found = []
-        for k in np.flatnonzero(nearest <= (tolerance + 1.0) ** 2).tolist():
-            path = self.paths[self._names[k]]
-            first = int(self._first[k])
-            index = int(square[first : first + len(path.points)].argmin())
-            s, lateral = path.project_at(index, x, y)
-            if abs(lateral) <= tolerance and -tolerance <= s <= path.length + tolerance:
-                found.append((self._names[k], s))
-        return tuple(found)
 
 
 @lru_cache(maxsize=64)

@@ -11,9 +11,13 @@ from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.geometry.box import TRUE
 from codriving.geometry.curve import FloatArray
+from codriving.geometry.path import Path
 from codriving.geometry.progress import progress
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
+
+BESIDE = 2.0
+"""Farther than this from the centre line of its route a vehicle is on another lane [m]."""
 
 
 class Passage(NamedTuple):
@@ -50,7 +54,7 @@ def post_encroachment_times(trajectory: Trajectory, road: RoadMap) -> tuple[Pet,
             if areas is None:
                 continue
             passages = [
-                _passage(track, places[track.id], area, trajectory.step)
+                _passage(track, places[track.id], area, road.paths[track.route], trajectory.step)
                 for track, area in zip((one, other), areas, strict=True)
             ]
             complete = sorted(passage for passage in passages if passage is not None)
@@ -83,10 +87,17 @@ def _areas(
     return None
 
 
-def _passage(track: Track, s: FloatArray, area: tuple[float, float], step: float) -> Passage | None:
-    """Return when a track passed through a stretch of its route, or None if it did not come from before to beyond."""
+def _passage(track: Track, s: FloatArray, area: tuple[float, float], path: Path, step: float) -> Passage | None:
+    """Return when a track passed through a stretch of its route, or None if it did not come from before to beyond.
+
+    A vehicle that had changed lanes passed beside the area.
+    """
     start, end = area
     if not (s[0] <= start and s[-1] >= end):
+        return None
+    inside = slice(int(np.searchsorted(s, start)), int(np.searchsorted(s, end)) + 1)
+    px, py = path.position(s[inside])
+    if np.any(np.hypot(track.x[inside] - px, track.y[inside] - py) > BESIDE):
         return None
     return Passage(_time_at(track, s, start, step), _time_at(track, s, end, step), track.id)
 

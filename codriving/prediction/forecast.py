@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.prediction.human import fastest, slowest
+from codriving.prediction.human import fastest, likely, slowest
 from codriving.prediction.rollout import Plan, rollout
 
 Array = NDArray[np.float64]
@@ -114,6 +114,17 @@ class Forecast:
                 most = fastest(speed, self.times, self.model.target_speeds[-1] + SPEEDING)
             self._reach[key] = Reach(least, speed * self.times, most)
         return self._reach[key]
+
+    def likely(self, speed: float) -> tuple[Array, Array]:
+        """Distances between which a human driver is expected, apart from what it could do at the worst.
+
+        Args:
+            speed: Speed now [m/s].
+
+        Returns:
+            The least and the most, each (steps + 1,) [m].
+        """
+        return likely(speed, self.times)
 
     def time_to(self, distance: float, travel: Array) -> float:
         """Return when a distance has been covered.

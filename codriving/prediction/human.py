@@ -12,6 +12,25 @@ HARD_ACCELERATION = 1.5
 """Hardest acceleration expected of a human driver [m/s2]."""
 
 
+DRIFT = (1.0, 0.75, 6.0)
+"""How far a driver may be from where constant speed leads: at once [m], more each second [m/s], and at most [m]."""
+
+
+def likely(speed: float, times: Array) -> tuple[Array, Array]:
+    """Distances between which a driver is expected, who goes on at about the present speed.
+
+    Args:
+        speed: Speed now [m/s].
+        times: Times from now (n,) [s].
+
+    Returns:
+        The least and the most, each (n,) [m].
+    """
+    at_once, each_second, at_most = DRIFT
+    drift = np.minimum(at_once + each_second * times, at_most)
+    return np.maximum(speed * times - drift, 0.0), speed * times + drift
+
+
 def slowest(speed: float, times: Array) -> Array:
     """Distance of a driver who brakes hard at once.
 

@@ -98,7 +98,7 @@ def test_lane_starts_and_paths(intersection: RoadMap) -> None:
 
 
 def test_routes_near_a_place_on_an_approach(intersection: RoadMap) -> None:
-    found = intersection.routes_near(2.3, 61, heading=-math.pi / 2)
+    found = intersection.nearby.routes(2.3, 61, heading=-math.pi / 2)
     assert [name for name, _ in found] == ["south-east", "south-north", "south-west"]
     assert [s for _, s in found] == pytest.approx([50, 50, 50])
 
@@ -106,15 +106,15 @@ def test_routes_near_a_place_on_an_approach(intersection: RoadMap) -> None:
 def test_routes_near_a_place_on_a_turn(intersection: RoadMap) -> None:
     path = intersection.paths["south-east"]
     x, y = path.position(107.0)
-    found = intersection.routes_near(float(x), float(y), heading=float(path.heading(107.0)) + 4 * math.pi)
+    found = intersection.nearby.routes(float(x), float(y), heading=float(path.heading(107.0)) + 4 * math.pi)
     assert [name for name, _ in found] == ["south-east"]
     assert found[0][1] == pytest.approx(107, abs=0.02)
 
 
 def test_routes_near_needs_place_and_heading_to_fit(intersection: RoadMap) -> None:
-    assert intersection.routes_near(2, 61, heading=math.pi / 2) == ()
-    assert intersection.routes_near(30, 61, heading=None) == ()
-    assert len(intersection.routes_near(0, 61, heading=None, tolerance=2.5)) == 6
+    assert intersection.nearby.routes(2, 61, heading=math.pi / 2) == ()
+    assert intersection.nearby.routes(30, 61, heading=None) == ()
+    assert len(intersection.nearby.routes(0, 61, heading=None, tolerance=2.5)) == 6
 
 
 def test_equal_roads_share_a_map() -> None:

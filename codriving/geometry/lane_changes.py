@@ -1,0 +1,107 @@
+"""Lanes side by side: which change a route asks for next, and which lanes a body reaches onto."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+from codriving.datatypes.road import Lane, LaneId, Route, beside
+from codriving.geometry.box import TRUE
+from codriving.geometry.lane_path import lane_path
+from codriving.geometry.path import Path
+
+_REMEMBERED = 10_000
+"""Places on lanes that are remembered."""
+
+_LEANS = 0.6
+"""A body that comes this near to a lane counts as reaching onto it [m]; drivers who change lanes are seen early."""
+
+
+class LaneChanges:
+    """The lane changes that routes ask for, and what lies on the lanes beside them.
+
+    Args:
+        lanes: Lanes by id.
+        routes: Routes by id, in the order of the road.
+        starts: Arc length at which each lane of a route begins on it, by route and lane [m].
+    """
+
+    def __init__(
+        self, lanes: Mapping[LaneId, Lane], routes: Mapping[str, Route], starts: Mapping[tuple[str, LaneId], float]
+    ) -> None:
+        self.lanes, self.routes, self._starts = lanes, routes, starts
+        self._lane_paths: dict[LaneId, Path] = {}
+        self._on_lanes: dict[tuple[LaneId, float, float], tuple[float, float]] = {}
+        self._beside: dict[tuple[str, LaneId], tuple[tuple[str, LaneId], ...]] = {}
+
+    def ahead(self, route_id: str, s: float) -> tuple[LaneId, float, float] | None:
+        """Return the next lane change that a route asks for.
+
+        Args:
+            route_id: Id of the route.
+            s: Arc length on it [m].
+
+        Returns:
+            The lane to change to, the arc length by which to have begun, the middle of the taper, and that at which
+            the present lane ends [m]; None if there is no change ahead.
+        """
+        route = self.routes[route_id]
+        for lane, other in pairwise(route.lanes):
+            latest = self._starts[route_id, other]
+            if beside(lane, other) and s < latest + route.taper / 2:
+                return other, latest, latest + route.taper / 2
+        return None
+
+    def routes_beside(self, route_id: str, lane: LaneId) -> tuple[tuple[str, LaneId], ...]:
+        """Return the routes along the lanes next to a lane which end where a route does.
+
+        Args:
+            route_id: Id of the route.
+            lane: The lane.
+
+        Returns:
+            Id and lane of each; the route along a lane with the fewest lane changes stands for all of them.
+        """
+        key = (route_id, lane)
+        if key not in self._beside:
+            found = []
+            for index in (lane[2] - 1, lane[2] + 1):
+                side = (lane[0], lane[1], index)
+                options = [
+                    (sum(beside(*pair) for pair in pairwise(r.lanes[r.lanes.index(side) :])), r.id)
+                    for r in self.routes.values()
+                    if side in r.lanes and r.lanes[-1][1] == self.routes[route_id].lanes[-1][1]
+                ]
+                if options:
+                    found.append((min(options)[1], side))
+            self._beside[key] = tuple(found)
+        return self._beside[key]
+
+    def covered(self, route_id: str, lane: LaneId, x: float, y: float) -> tuple[tuple[str, float], ...]:
+        """Return the routes beside a route onto whose lanes a body at a place still or already reaches.
+
+        Args:
+            route_id: Id of the route that the body is on.
+            lane: The lane of it that the body is on.
+            x: Centre of the body [m].
+            y: Centre of the body [m].
+
+        Returns:
+            Id of each route and arc length of the place on it [m].
+        """
+        found = []
+        for name, other in self.routes_beside(route_id, lane):
+            along, lateral = self._on_lane(other, x, y)
+            if abs(lateral) < self.lanes[other].width / 2 + TRUE.width / 2 + _LEANS:
+                found.append((name, self._starts[name, other] + along))
+        return tuple(found)
+
+    def _on_lane(self, lane: LaneId, x: float, y: float) -> tuple[float, float]:
+        """Return arc length and lateral offset of a place on a lane [m], each worked out once."""
+        key = (lane, x, y)
+        found = self._on_lanes.get(key)
+        if found is None:
+            if lane not in self._lane_paths:
+                self._lane_paths[lane] = lane_path(self.lanes[lane])
+            if len(self._on_lanes) >= _REMEMBERED:
+                self._on_lanes.clear()
+            found = self._on_lanes[key] = self._lane_paths[lane].project(x, y)
+        return found
