@@ -1,16 +1,20 @@
 """Worlds made by hand on a configured road, and what the reasoning makes of them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import cos, sin
 from typing import Any
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.order import PassingOrder, Precedence
+from codriving.datatypes.road import LaneId, beside
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.scene_description import SceneDescription
 from codriving.datatypes.vehicle import Intent, Kind, VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
+from codriving.geometry.lane_path import lane_path
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.expectation import expect
@@ -18,7 +22,7 @@ from codriving.reasoning.movers import movers
 from codriving.reasoning.negotiation.coordinator import RuleCoordinator
 from codriving.reasoning.plans import PLANS
 from codriving.reasoning.safety.outlook import CONTINUATIONS, LONGITUDINAL, Outlook, motions
-from codriving.reasoning.scenes import describe_scenes, lane_at, with_conflicts
+from codriving.reasoning.scenes import describe_scenes, with_conflicts
 from codriving.reasoning.state_sharing import SharedStates, StateSharing
 from codriving.reasoning.tracking import Tracking
 
@@ -38,7 +42,7 @@ FULL: dict[str, Any] = {
 
 @dataclass(frozen=True)
 class Car:
-    """One vehicle on a route."""
+    """One vehicle on a route, or beside its centre line while it changes lanes (to the right is positive)."""
 
     id: str
     route: str
@@ -46,6 +50,7 @@ class Car:
     speed: float
     target: float
     acceleration: float = 0.0
+    offset: float = 0.0
 
     @property
     def kind(self) -> Kind:
@@ -53,9 +58,17 @@ class Car:
         return Kind.CAV if self.id.startswith("CAV") else Kind.HDV
 
 
-def car(name: str, route: str, place: float, speed: float, target: float | None = None, pedal: float = 0.0) -> Car:
+def car(
+    name: str,
+    route: str,
+    place: float,
+    speed: float,
+    target: float | None = None,
+    pedal: float = 0.0,
+    offset: float = 0.0,
+) -> Car:
     """A vehicle; who drives is told by its name, and it keeps its speed unless a target is given."""
-    return Car(name, route, place, speed, speed if target is None else target, pedal)
+    return Car(name, route, place, speed, speed if target is None else target, pedal, offset)
 
 
 def order_of(*pairs: str, binding: bool = False) -> PassingOrder:
@@ -89,6 +102,7 @@ class Thoughts:
     forecast: Forecast
     scenes: dict[str, SceneDescription]
     conflicts: dict[str, tuple[Conflict, ...]]
+    available: Mapping[str, tuple[Action, ...]]
 
     def negotiate(self, coordinator: RuleCoordinator | None = None) -> PassingOrder:
         """The order of the built-in coordinator."""
@@ -97,16 +111,16 @@ class Thoughts:
         return who.negotiate(self.scenes, self.conflicts)
 
     def outlook(
-        self, ego: str, order: PassingOrder | None = None, actions: tuple[Action, ...] = LONGITUDINAL
+        self, ego: str, order: PassingOrder | None = None, actions: tuple[Action, ...] | None = None
     ) -> Outlook:
         """The view of one CAV that goes by an order: the coordinator's, or the one given."""
-        order = order or self.negotiate()
+        order, actions = order or self.negotiate(), actions or self.available[ego]
         scene, road_map = self.scenes[ego], self.junction.road_map
         known = movers(scene)
         expected = expect(known, order, road_map, self.forecast, LAG, minds_conflicts=True)
         stops, goes = motions(scene, actions, self.forecast)
         return Outlook(
-            scene, self.conflicts[ego], order, known, expected, actions, stops, goes, road_map, self.forecast, LAG
+            scene, self.conflicts[ego], order, known, expected, actions, stops, goes, road_map, self.forecast, LAG, True
         )
 
 
@@ -120,20 +134,34 @@ class Junction:
         self.road_map, self.model = self.environment.road_map, self.environment.driving_model
 
     def state(self, car: Car) -> VehicleState:
-        """A vehicle on the centre line of its route."""
+        """A vehicle on the centre line of its route, or beside it."""
         path = self.road_map.paths[car.route]
         x, y = path.position(car.place)
-        lane = lane_at(self.road_map, car.route, car.place)
         heading = float(path.heading(car.place))
-        return VehicleState(car.id, car.kind, float(x), float(y), heading, car.speed, car.acceleration, lane)
+        x, y = float(x) - car.offset * sin(heading), float(y) + car.offset * cos(heading)
+        lane = self._nearest(self.road_map.lane_at(car.route, car.place), x, y)
+        return VehicleState(car.id, car.kind, x, y, heading, car.speed, car.acceleration, lane)
+
+    def _nearest(self, lane: LaneId, x: float, y: float) -> LaneId:
+        sides = [name for name in self.road_map.lanes if name == lane or beside(name, lane)]
+        return min(sides, key=lambda name: abs(lane_path(self.road_map.lanes[name]).project(x, y)[1]))
+
+    def actions(self, lane: LaneId) -> tuple[Action, ...]:
+        """What a moving vehicle may do on a lane: change onto one beside it, if that is not forbidden."""
+        start, end, index = lane
+        found = self.road_map.lanes
+        sides = ((Action.LANE_LEFT, (start, end, index - 1)), (Action.LANE_RIGHT, (start, end, index + 1)))
+        return (*LONGITUDINAL, *(action for action, side in sides if side in found and not found[side].forbidden))
 
     def world(self, *cars: Car, time: float = 0.0, step: int = 0) -> WorldState:
         """The world with some vehicles in it."""
         cars = tuple(sorted(cars, key=lambda c: c.id))
         states = {c.id: self.state(c) for c in cars}
         cavs = [c for c in cars if c.kind is Kind.CAV]
-        intents = {c.id: Intent(c.route, c.target, states[c.id].lane) for c in cavs}
-        return WorldState(time, step, tuple(states.values()), intents, {c.id: LONGITUDINAL for c in cavs})
+        lanes = {c.id: self.road_map.lane_at(c.route, c.place) for c in cavs}
+        intents = {c.id: Intent(c.route, c.target, lanes[c.id]) for c in cavs}
+        available = {c.id: self.actions(lanes[c.id]) for c in cavs}
+        return WorldState(time, step, tuple(states.values()), intents, available)
 
     def think(
         self, world: WorldState, sharing: StateSharing | None = None, tracking: Tracking | None = None
@@ -145,7 +173,7 @@ class Junction:
         scenes = describe_scenes(world, views, world.intents, tracking or Tracking(self.road_map))
         conflicts = {ego: find_conflicts(scene, self.road_map) for ego, scene in scenes.items()}
         scenes = {ego: with_conflicts(scene, conflicts[ego], self.road_map) for ego, scene in scenes.items()}
-        return Thoughts(self, forecast, scenes, conflicts)
+        return Thoughts(self, forecast, scenes, conflicts, world.available)
 
     def thoughts(self, *cars: Car) -> Thoughts:
         """What is thought of some vehicles."""

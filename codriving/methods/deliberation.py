@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from math import isfinite
 from typing import Any
 
 from codriving.datatypes.action import Action
@@ -64,9 +65,9 @@ def _entry(situation: Situation, decision: Decision) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:  # noqa: ANN401 - any JSON value
-    """Round floats to a millionth and turn infinity into None, so that every line is valid JSON."""
+    """Round floats to a millionth and turn what is no finite number into None, so that every line is valid JSON."""
     if isinstance(value, float):
-        return round(value, 6) if abs(value) != float("inf") else None
+        return round(value, 6) if isfinite(value) else None
     if isinstance(value, dict):
         return {k: _plain(v) for k, v in value.items()}
     if isinstance(value, (list, tuple)):

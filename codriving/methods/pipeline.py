@@ -112,7 +112,18 @@ class Pipeline:
     ) -> Situation:
         stops, goes = motions(scene, actions, self.forecast)
         outlook = Outlook(
-            scene, conflicts, order, known, expected, actions, stops, goes, self.road_map, self.forecast, self._lag
+            scene,
+            conflicts,
+            order,
+            known,
+            expected,
+            actions,
+            stops,
+            goes,
+            self.road_map,
+            self.forecast,
+            self._lag,
+            self.intent_sharing.finds_conflicts,
         )
         return Situation(
             scene=scene,

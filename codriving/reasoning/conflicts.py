@@ -19,7 +19,7 @@ def find_conflicts(scene: SceneDescription, road_map: RoadMap) -> tuple[Conflict
     """
     found = []
     for neighbour in scene.neighbours:
-        certain = len(neighbour.routes) == 1
+        certain = neighbour.intent is not None or len(neighbour.routes) == 1
         for route, place in neighbour.routes:
             for index, zone in enumerate(road_map.zones(scene.intent.route, route)):
                 if is_open(zone, scene.place, place):

@@ -18,6 +18,16 @@ from codriving.reasoning.movers import Mover
 from codriving.reasoning.plans import PLANS, STARTS_WITH
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+HEADWAY = 0.8
+"""Time gap to whoever drives ahead that is planned for [s]; the safety check alone would allow less or ask for more."""
+
+EARLY = 0.3
+"""Weight of the mean distance within the horizon against the distance at its end."""
+
+CLEARS = 1.6
+"""Time after which a vehicle that changes lanes is off the lane that it leaves [s]; measured at 5 to 30 m/s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +69,7 @@ def expect(
         minds_conflicts: Whether conflicts are known at all; otherwise everybody only minds who drives ahead.
 
     Returns:
-        Expected motions by id: one for a CAV, one a possible route for others.
+        Expected motions by id: one a route that the vehicle may be on or reaches onto, that of its intent first.
     """
     cavs = [v for v in vehicles.values() if v.is_cav]
     found: dict[str, tuple[Expected, ...]] = {}
@@ -70,26 +80,94 @@ def expect(
     rank = {name: i for i, name in enumerate(order.sequence)}
     # Whoever is in no conflict follows the order of the lanes: the vehicle farther along its route first.
     for v in sorted(cavs, key=lambda v: (rank.get(v.id, len(rank)), -v.routes[0][1], v.id)):
-        route, place = v.routes[0]
-        places = place + forecast.travel(v.speed, v.target, PLANS)
+        travels = forecast.travel(v.speed, v.target, PLANS)
         keeps = np.ones(len(PLANS), dtype=np.bool_)
-        for other in found:
-            # A driver who may still take several routes is left to the safety check: no slowing down early for guesses.
-            if order.first_of(v.id, other) == v.id or len(vehicles[other].routes) > 1:
-                continue
-            now = dict(vehicles[other].routes)
-            for motion in found[other]:
-                for zone in binding_zones(
-                    road_map.zones(route, motion.route), place, now[motion.route], minds_conflicts
-                ):
-                    keeps &= stays_behind(zone, places, motion.places, lag, 0.0)
-        gained = np.where(keeps, places[:, -1] - place, -np.inf)
+        for k, (route, place) in enumerate(v.routes):
+            # A lane that the vehicle is leaving is minded until its body is off it.
+            until = forecast.steps + 1 if k == 0 else round(CLEARS / forecast.sample) + 1
+            motion = place + travels[:, :until]
+            minds = minds_conflicts and k == 0
+            keeps &= keeps_order(v.id, route, motion, vehicles, found, order, road_map, lag, forecast.sample, minds)
+        gained = np.where(keeps, worth(travels), -np.inf)
         best = int(np.argmax(gained)) if keeps.any() else len(PLANS) - 1
-        progress = {
-            first: float(max(gained[list(plans)])) for first, plans in STARTS_WITH.items() if keeps[list(plans)].any()
-        }
-        found[v.id] = (Expected(route, places[best], best == 0, progress),)
+        gains = progress_by_action(gained)
+        found[v.id] = tuple(
+            Expected(route, place + travels[best], best == 0, gains if k == 0 else {})
+            for k, (route, place) in enumerate(v.routes)
+        )
     return found
+
+
+def keeps_order(
+    name: str,
+    route: str,
+    places: Array,
+    vehicles: Mapping[str, Mover],
+    expected: Mapping[str, tuple[Expected, ...]],
+    order: PassingOrder,
+    road_map: RoadMap,
+    lag: int,
+    sample: float,
+    minds_conflicts: bool,
+) -> Flags:
+    """Whether a vehicle stays behind everybody who drives ahead or goes first.
+
+    Args:
+        name: Id of the vehicle.
+        route: Route that it drives on.
+        places: Its arc length there over time, for as long as it is to be minded (plans, n) [m].
+        vehicles: The vehicles that are known, by id.
+        expected: Expected motions of those that have been planned, by id.
+        order: Who goes first.
+        road_map: The precomputed road.
+        lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
+        sample: Time between two samples of a motion [s].
+        minds_conflicts: Whether zones count in which it is open who goes first.
+
+    Returns:
+        One flag a plan (plans,).
+    """
+    keeps: Flags = np.ones(len(places), dtype=np.bool_)
+    place = float(places[0, 0])
+    for other, motions in expected.items():
+        if other == name:
+            continue
+        # A driver who may still take several routes is left to the safety check: no slowing down early for guesses.
+        certain = vehicles[other].is_cav or len(motions) == 1
+        minds = minds_conflicts and certain and order.first_of(name, other) != name
+        for motion in motions:
+            for zone in binding_zones(road_map.zones(route, motion.route), place, float(motion.places[0]), minds):
+                following = is_behind(zone, place, float(motion.places[0]))
+                after = min(lag, round(HEADWAY / sample)) if following else lag
+                keeps &= stays_behind(zone, places, motion.places[: places.shape[1]], after, 0.0)
+    return keeps
+
+
+def worth(travels: Array) -> Array:
+    """Return what a plan is worth: the distance at the end of the horizon, and a little of being closer before.
+
+    Without the second part a vehicle that has to wait beyond the horizon would put off its approach for ever.
+
+    Args:
+        travels: Distance of each plan over time (plans, n) [m].
+
+    Returns:
+        Distance (plans,) [m].
+    """
+    return np.asarray((1 - EARLY) * travels[:, -1] + EARLY * travels.mean(axis=1))
+
+
+def progress_by_action(gained: Array) -> dict[Action, float]:
+    """Return how far a vehicle gets at best after each action.
+
+    Args:
+        gained: Distance of each plan; -inf where it would not keep the order (plans,) [m].
+
+    Returns:
+        Distance [m]; no entry for an action with which the order cannot be kept.
+    """
+    best = {first: float(max(gained[list(plans)])) for first, plans in STARTS_WITH.items()}
+    return {action: gain for action, gain in best.items() if gain > -np.inf}
 
 
 def binding_zones(

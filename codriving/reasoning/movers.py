@@ -36,7 +36,7 @@ def movers(scene: SceneDescription) -> dict[str, Mover]:
         scene: What one CAV knows.
     """
     ego = scene.ego
-    route = ((scene.intent.route, scene.place),)
+    route = ((scene.intent.route, scene.place), *scene.covers)
     found = {ego.id: Mover(ego.id, True, ego.speed, scene.intent.target_speed, route, ego.acceleration, 0.0)}
     for n in scene.neighbours:
         is_cav = n.kind == Kind.CAV and n.intent is not None

@@ -4,7 +4,6 @@ from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.scene_description import Neighbour
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.movers import Mover
-from codriving.reasoning.scenes import lane_at
 
 STANDS = 2.0
 """A human driver who has been standing before the zone for this long is taken to give way [s]."""
@@ -26,6 +25,8 @@ def gives_way(c: Conflict, human: Mover | Neighbour, road_map: RoadMap) -> str:
     stop comfortably before the junction, or is seen to brake for it, if it has the lower lane priority or finds the
     CAV in the junction already. Nobody else is relied on.
 
+    On unregulated roads, too, whoever has to leave a lane that ends gives way to those on the lane beside.
+
     Args:
         c: The conflict, seen from the CAV.
         human: The human driver.
@@ -36,6 +37,11 @@ def gives_way(c: Conflict, human: Mover | Neighbour, road_map: RoadMap) -> str:
     """
     if human.standing >= STANDS:
         return "the human driver has been standing and gives way"
+    change = road_map.changes.ahead(c.routes[1], c.places[1])
+    if change is not None and road_map.changes.ahead(c.routes[0], c.places[0]) is None:
+        before = change[2] - c.places[1] - FRONT
+        if before > 0 and human.speed**2 / (2 * before) <= FIRM:
+            return "the human driver has to change onto the CAV's lane, and can still wait before its own lane ends"
     if c.distances[1] <= 0:
         return ""
     if c.distances[0] <= 0 and human.speed**2 / (2 * c.distances[1]) <= COMFORT:
@@ -49,8 +55,8 @@ def gives_way(c: Conflict, human: Mover | Neighbour, road_map: RoadMap) -> str:
         return ""
     if c.places[0] > road_map.routes[c.routes[0]].entry:
         return "the CAV is in the junction already, and the human driver can still wait before it"
-    mine = road_map.lanes[lane_at(road_map, c.routes[0], c.places[0])].priority
-    theirs = road_map.lanes[lane_at(road_map, c.routes[1], c.places[1])].priority
+    mine = road_map.lanes[road_map.lane_at(c.routes[0], c.places[0])].priority
+    theirs = road_map.lanes[road_map.lane_at(c.routes[1], c.places[1])].priority
     if mine > theirs:
         return "the CAV has the right of way, and the human driver can still wait before the junction"
     return ""

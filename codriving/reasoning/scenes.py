@@ -1,13 +1,13 @@
 """Scene descriptions: states and intents put in relation to the ego vehicle, lane by lane (Section III-C.1 and 2)."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from math import cos, pi
 
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene_description import Neighbour, Role, SceneDescription
-from codriving.datatypes.vehicle import Intent
+from codriving.datatypes.scene_description import LaneChange, Neighbour, Role, SceneDescription
+from codriving.datatypes.vehicle import Intent, VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.glimpse import Glimpse
@@ -40,37 +40,47 @@ def describe_scenes(
     scenes = {}
     for ego in world.cavs:
         intent = world.intents[ego.id]
-        path = road_map.paths[intent.route]
-        place, _ = path.project(ego.x, ego.y)
+        place, _ = road_map.project(intent.route, ego.x, ego.y)
+        change = road_map.changes.ahead(intent.route, place)
         neighbours = [_neighbour(seen, intents.get(seen.id), tracking, ego.id, world.time) for seen in views[ego.id]]
-        ahead: tuple[float, str] | None = None
-        behind: tuple[float, str] | None = None
-        for n in neighbours:
-            s, side = path.project(n.x, n.y)
-            aligned = n.heading is None or cos(n.heading - float(path.heading(s))) > ALIGNED
-            if abs(side) > SAME_LANE or not aligned:
-                continue
-            gap = abs(s - place) - (n.length + ego.length) / 2
-            if s > place and (ahead is None or gap < ahead[0]):
-                ahead = (gap, n.id)
-            elif s <= place and (behind is None or gap < behind[0]):
-                behind = (gap, n.id)
-        roles = {}
-        if ahead:
-            roles[ahead[1]] = (Role.LEADING, ahead[0])
-        if behind:
-            roles[behind[1]] = (Role.REARING, behind[0])
         scenes[ego.id] = SceneDescription(
             ego=ego,
             intent=intent,
             place=place,
             adjacent_lanes=adjacent_lanes(road_map, ego.lane),
             conflict_lanes=(),
-            neighbours=tuple(
-                replace(n, role=roles[n.id][0], gap=roles[n.id][1]) if n.id in roles else n for n in neighbours
-            ),
+            covers=road_map.changes.covered(intent.route, road_map.lane_at(intent.route, place), ego.x, ego.y),
+            must_change=None if change is None else LaneChange(change[0], change[1] - place),
+            neighbours=with_roles(neighbours, ego, intent.route, place, road_map),
         )
     return scenes
+
+
+def with_roles(
+    neighbours: Iterable[Neighbour], ego: VehicleState, route: str, place: float, road_map: RoadMap
+) -> tuple[Neighbour, ...]:
+    """Mark who drives ahead of the ego vehicle and who behind it on its lane.
+
+    Args:
+        neighbours: Everybody it knows of.
+        ego: Its own state.
+        route: Id of its route.
+        place: Its arc length there [m].
+        road_map: The precomputed road.
+    """
+    plain = [n if n.role is Role.OTHER and n.gap is None else replace(n, role=Role.OTHER, gap=None) for n in neighbours]
+    path = road_map.paths[route]
+    nearest: dict[Role, tuple[float, str]] = {}
+    for n in plain:
+        s, side = road_map.project(route, n.x, n.y)
+        if abs(side) > SAME_LANE or (n.heading is not None and cos(n.heading - float(path.heading(s))) <= ALIGNED):
+            continue
+        role = Role.LEADING if s > place else Role.REARING
+        gap = abs(s - place) - (n.length + ego.length) / 2
+        if role not in nearest or gap < nearest[role][0]:
+            nearest[role] = (gap, n.id)
+    roles = {name: (role, gap) for role, (gap, name) in nearest.items()}
+    return tuple(replace(n, role=roles[n.id][0], gap=roles[n.id][1]) if n.id in roles else n for n in plain)
 
 
 def with_conflicts(scene: SceneDescription, conflicts: tuple[Conflict, ...], road_map: RoadMap) -> SceneDescription:
@@ -85,7 +95,7 @@ def with_conflicts(scene: SceneDescription, conflicts: tuple[Conflict, ...], roa
     lanes: set[LaneId] = set()
     for c in conflicts:
         zone = road_map.zones(*c.routes)[c.zone]
-        lanes.add(lane_at(road_map, c.routes[1], zone.point_j))
+        lanes.add(road_map.lane_at(c.routes[1], zone.point_j))
     neighbours = tuple(
         replace(n, role=Role.CONFLICT) if n.id in others and n.role is Role.OTHER else n for n in scene.neighbours
     )
@@ -102,18 +112,6 @@ def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
     start, end, index = lane
     sides = ((start, end, index - 1), (start, end, index + 1))
     return tuple(side for side in sides if side in road_map.lanes)
-
-
-def lane_at(road_map: RoadMap, route: str, s: float) -> LaneId:
-    """Return the lane of a route at an arc length.
-
-    Args:
-        road_map: The precomputed road.
-        route: Id of the route.
-        s: Arc length [m].
-    """
-    lanes = road_map.routes[route].lanes
-    return [lane for lane in lanes if road_map.lane_start(route, lane) <= max(s, 0.0)][-1]
 
 
 def _neighbour(seen: Glimpse, intent: Intent | None, tracking: Tracking, ego: str, time: float) -> Neighbour:

@@ -6,7 +6,11 @@ from typing import Protocol
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.vehicle import Kind, VehicleState
 from codriving.datatypes.world import WorldState
+from codriving.geometry.box import TRUE
 from codriving.reasoning.glimpse import Glimpse
+
+USUAL_LENGTH = TRUE.length
+"""Length that is assumed of a vehicle which is only sensed [m]."""
 
 Views = dict[str, tuple[Glimpse, ...]]
 """Vehicles that each CAV knows of, by id of the CAV."""
@@ -53,7 +57,7 @@ class SensedStates:
         """
         return {
             cav.id: tuple(
-                Glimpse(v.id, None, v.x, v.y, v.speed, None, None, None, v.length)
+                Glimpse(v.id, None, v.x, v.y, v.speed, None, None, None, USUAL_LENGTH)
                 for v in world.vehicles
                 if v.id != cav.id and _within(cav, v, model.detection_range)
             )

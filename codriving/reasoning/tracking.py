@@ -39,8 +39,8 @@ class Tracking:
     def places(self, ego: str, seen: Glimpse, intent: Intent | None) -> Places:
         """Return the routes on which a vehicle may be.
 
-        A shared route is believed. Otherwise every route that fits the position (and the heading, if it is known)
-        and has fitted it so far is possible.
+        A shared route is believed. Otherwise every route that fits the position (and the heading, if it is known) and
+        has fitted it so far is possible. After these come the lanes beside onto which the body reaches.
 
         Args:
             ego: Who watches.
@@ -48,8 +48,11 @@ class Tracking:
             intent: What it has shared, if anything.
         """
         if intent is not None:
-            s, _ = self.road_map.paths[intent.route].project(seen.x, seen.y)
-            return ((intent.route, s),)
+            s, _ = self.road_map.project(intent.route, seen.x, seen.y)
+            return (
+                (intent.route, s),
+                *self.road_map.changes.covered(intent.route, self.road_map.lane_at(intent.route, s), seen.x, seen.y),
+            )
         spot = (seen.x, seen.y, seen.heading)
         if spot not in self._near:
             self._near[spot] = self._fitting(*spot)
@@ -57,11 +60,17 @@ class Tracking:
         before = self._routes.get((ego, seen.id))
         kept = tuple(p for p in near if before is None or p[0] in before) or near
         self._routes[ego, seen.id] = frozenset(route for route, _ in kept)
-        return kept
+        # A body that reaches onto the lane beside is there as well, whatever its route.
+        covered = {
+            p
+            for route, s in kept
+            for p in self.road_map.changes.covered(route, self.road_map.lane_at(route, s), seen.x, seen.y)
+        }
+        return kept + tuple(sorted(p for p in covered if all(p[0] != route for route, _ in kept)))
 
     def _fitting(self, x: float, y: float, heading: float | None) -> Places:
         """Return the routes near a place, without those that fit position and heading clearly worse than the best."""
-        near = self.road_map.routes_near(x, y, heading)
+        near = self.road_map.nearby.routes(x, y, heading)
         misfits = []
         for route, s in near:
             path = self.road_map.paths[route]

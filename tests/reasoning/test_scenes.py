@@ -9,7 +9,7 @@ from worlds import Junction, car
 from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
 from codriving.datatypes.scene_description import Role, SceneDescription
 from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.scenes import adjacent_lanes, lane_at
+from codriving.reasoning.scenes import adjacent_lanes
 from codriving.reasoning.state_sharing import SensedStates
 
 
@@ -92,4 +92,4 @@ def test_adjacent_lanes_are_left_and_right_of_one_that_runs_the_same_way() -> No
 def test_lane_at_finds_the_lane_of_a_place(junction: Junction) -> None:
     places = {-5.0: "o0", 0.0: "o0", 99.0: "o0", 101.0: "ir0", 121.0: "ir0", 123.0: "il2", 500.0: "il2"}
     for place, start in places.items():
-        assert lane_at(junction.road_map, "south-north", place)[0] == start
+        assert junction.road_map.lane_at("south-north", place)[0] == start

@@ -1,17 +1,31 @@
 """The built-in rule reasoner behind ``llm=offline``: it sees what a model would be told, and nothing else."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.situation import Decision, Situation
 
 EAGERNESS = (Action.FASTER, Action.IDLE, Action.SLOWER)
-"""Actions from the most to the least progress."""
+"""Actions along the lane from the most to the least progress."""
 
+SIDES = {Action.LANE_LEFT: -1, Action.LANE_RIGHT: 1}
+"""By how much a lane change changes the index of the lane."""
 
-TOLERANCE = 1.5
-"""Progress that is given up to be closer when the way becomes free earlier than expected [m]."""
+OVERTAKES = 0.05
+"""Share of the progress that a lane change must gain to be worth it."""
+
+STANDS = 0.5
+"""Below this speed a CAV stands [m/s]."""
+
+SLOWEST_CHANGE = 3.0
+"""Lanes are not changed just to get farther below this speed [m/s]."""
+
+YIELDS = 15.0
+"""Progress that is given up for a lane change that the route asks for [m]."""
+
+TOLERANCE = 0.02
+"""Share of the progress that is given up to be closer when the way becomes free earlier than expected."""
 
 
 class RuleDecider:
@@ -29,25 +43,58 @@ class RuleDecider:
 def decide_one(situation: Situation) -> Decision:
     """Take the allowed action that gets the CAV farthest if it lets those pass who go first; if equal, the fastest.
 
+    Lanes are changed where the route asks for it as soon as that is allowed, and elsewhere to get clearly farther.
+
     Args:
         situation: What the CAV is told.
     """
     ego = situation.scene.ego.id
     allowed = [action for action in EAGERNESS if action in situation.allowed]
+    if any(a.safe and a.reasons for a in situation.assessments):
+        least = situation.allowed[0]
+        return Decision(ego, least, f"no action is safe, and {least} is the least dangerous")
+    reached = {
+        a.action: a.progress for a in situation.assessments if a.action in situation.allowed and a.progress is not None
+    }
+    change = _lane_change(situation, reached)
+    if change is not None:
+        return change
     if not allowed:
         return Decision(ego, situation.allowed[0], "the only action that the safety check left")
-    if any(a.safe and a.reasons for a in situation.assessments):
-        return Decision(ego, allowed[0], f"no action is safe, and {allowed[0]} is the least dangerous")
-    reached = {a.action: a.progress for a in situation.assessments if a.action in allowed and a.progress is not None}
     waits_for = _first(situation)
-    if not reached:
-        reason = (
-            f"the order cannot be kept with {waits_for or 'others'}; {allowed[-1]} is the slowest action that is safe"
+    ahead = {action: gain for action, gain in reached.items() if action in allowed}
+    if not ahead:
+        # Standing does not help whoever has to go first; something safe has to be done.
+        stands = situation.scene.ego.speed < STANDS
+        action, how = (allowed[0], "fastest") if stands else (allowed[-1], "slowest")
+        with_whom = waits_for or "others"
+        return Decision(
+            ego, action, f"the order cannot be kept with {with_whom}; {action} is the {how} action that is safe"
         )
-        return Decision(ego, allowed[-1], reason)
-    best = max(reached.values())
-    action = next(action for action in allowed if reached.get(action, -math.inf) >= best - TOLERANCE)
+    best = max(ahead.values())
+    action = next(action for action in allowed if ahead.get(action, -math.inf) >= best * (1 - TOLERANCE))
     return Decision(ego, action, _reason(action, allowed, waits_for))
+
+
+def _lane_change(situation: Situation, reached: Mapping[Action, float]) -> Decision | None:
+    """Change lanes if the route asks for it, or if it gets the CAV clearly farther."""
+    scene = situation.scene
+    stays = max((gain for action, gain in reached.items() if action not in SIDES), default=0.0)
+    if scene.must_change is not None:
+        for action in (side for side in SIDES if side in situation.allowed):
+            gain = reached.get(action, math.inf)
+            if scene.ego.lane[2] + SIDES[action] == scene.must_change.lane[2] and gain >= stays - YIELDS:
+                room = f"{scene.must_change.room:.0f} m before its lane ends"
+                return Decision(scene.ego.id, action, f"the route asks for {action}, which is safe now, {room}")
+        return None
+    sides = {action: gain for action, gain in reached.items() if action in SIDES}
+    # One lane change after another, and none so slowly that it would block both lanes.
+    if not sides or scene.covers or scene.ego.speed < SLOWEST_CHANGE:
+        return None
+    action = max(sides, key=lambda side: sides[side])
+    if sides[action] <= stays * (1 + OVERTAKES):
+        return None
+    return Decision(scene.ego.id, action, f"{action} gets {sides[action] - stays:.0f} m farther than staying")
 
 
 def _first(situation: Situation) -> str:

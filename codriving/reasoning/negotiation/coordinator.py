@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Protocol
 
-from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.conflict import Conflict, Relation
 from codriving.datatypes.order import PassingOrder, Precedence
 from codriving.datatypes.road import Turn
 from codriving.datatypes.scene_description import Role, SceneDescription
@@ -12,6 +12,7 @@ from codriving.geometry.road_map import RoadMap
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.negotiation.acyclic import without_cycles
 from codriving.reasoning.negotiation.human_windows import is_blocked, window
+from codriving.reasoning.negotiation.improve import improve
 from codriving.reasoning.negotiation.reasons import reason_between, reason_human
 from codriving.reasoning.negotiation.schedule import GAP, Slot, lag_length, start_time
 
@@ -65,7 +66,9 @@ class RuleCoordinator:
         separation = self._separations(slots, conflicts)
         self._add_leaders(slots, separation, scenes)
         passages = {ego: self._add_windows(slots[ego], scenes[ego], conflicts[ego]) for ego in slots}
-        times = self._list_schedule(slots, separation, self._fixed(slots, scenes, conflicts))
+        fixed = self._fixed(slots, scenes, conflicts)
+        times = self._list_schedule(slots, separation, fixed)
+        times = improve(times, slots, separation, fixed, self.previous)
         precedences = []
         for ego, other in sorted({tuple(sorted((c.ego, c.other))) for cs in conflicts.values() for c in cs}):
             if ego in slots and other in slots:
@@ -89,7 +92,9 @@ class RuleCoordinator:
         go = self.forecast.reach(speed, True)
         top = self.forecast.model.target_speeds[-1]
         eta = self.forecast.time_to(ahead, go.most) if ahead > 0 else ahead / top
-        return Slot(scene.ego.id, reference, eta, bool(go.least[-1] >= ahead), route.turn is not Turn.STRAIGHT)
+        # Turning matters where ways cross; on a ring or a ramp nobody goes straight on.
+        turning = route.turn is not Turn.STRAIGHT and any(c.relation is Relation.CROSSING for c in conflicts)
+        return Slot(scene.ego.id, reference, eta, bool(go.least[-1] >= ahead), turning)
 
     def _separations(self, slots: dict[str, Slot], conflicts: Conflicts) -> dict[tuple[str, str], float]:
         top = self.forecast.model.target_speeds[-1]

@@ -31,9 +31,9 @@ def window(c: Conflict, n: Neighbour, reference: float, road_map: RoadMap, forec
         return float("inf"), float("inf")
     zone = road_map.zones(*c.routes)[c.zone]
     top = forecast.model.target_speeds[-1]
-    reach = forecast.reach(n.speed, False)
-    enters = forecast.time_to(c.distances[1], reach.most)
-    leaves = forecast.time_to(zone.entry_i + lag_length(zone.mirrored()) - c.places[1], reach.steady)
+    slow, fast = forecast.likely(n.speed)
+    enters = forecast.time_to(c.distances[1], fast)
+    leaves = forecast.time_to(zone.entry_i + lag_length(zone.mirrored()) - c.places[1], slow)
     begin = enters - (zone.entry_j + lag_length(zone) - reference) / top - CERTAIN_GAP
     return begin, leaves + GAP - (zone.entry_i - reference) / top
 

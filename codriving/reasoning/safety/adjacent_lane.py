@@ -1,22 +1,31 @@
 """Second layer: a lane change must not collide with the vehicles of the adjacent lane (Section III-C.4)."""
 
 from codriving.datatypes.action import Action
-from codriving.datatypes.road import LaneId
 from codriving.datatypes.scene_description import Neighbour
+from codriving.reasoning.expectation import is_behind
+from codriving.reasoning.safety.beside import SIDES, beside
+from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.outlook import Outlook
+from codriving.reasoning.safety.same_lane import check_ahead
 
 MARGIN = 2.0
-"""Free distance to keep to both sides [m]."""
+"""Free distance to keep to the one behind [m]."""
 
 HEADWAY = 0.5
-"""Time gap to keep to both sides [s]."""
+"""Time gap to leave to the one behind [s]."""
 
 COMFORT = 4.0
 """Braking that the one behind may be asked for [m/s2]."""
 
+SIDE_GAP = 8.0
+"""Distance along the road within which a vehicle on the far side of the lane could change onto it as well [m]."""
+
+HELD_UP = -0.3
+"""Below this acceleration a human driver is held up and may want to change lanes [m/s2]."""
+
 
 def check_adjacent(outlook: Outlook) -> dict[Action, list[str]]:
-    """Remove lane changes into gaps in which the one behind could not brake in time.
+    """Remove lane changes after which the CAV could not stop behind who is ahead there, or cuts in on who is behind.
 
     Args:
         outlook: The CAV's view.
@@ -24,24 +33,58 @@ def check_adjacent(outlook: Outlook) -> dict[Action, list[str]]:
     Returns:
         Reasons by action; no entry where the action is safe.
     """
-    start, end, index = outlook.scene.ego.lane
     found: dict[Action, list[str]] = {}
-    for action, side in ((Action.LANE_LEFT, -1), (Action.LANE_RIGHT, 1)):
-        if action not in outlook.actions:
+    must = outlook.scene.must_change is not None
+    for action in outlook.actions:
+        if action not in SIDES:
             continue
-        lane: LaneId = (start, end, index + side)
-        reasons = [_too_close(outlook, n) for n in outlook.scene.neighbours if n.lane in (lane, None)]
-        reasons = [reason for reason in reasons if reason]
+        there = beside(outlook, action)
+        if there is None:
+            found[action] = ["adjacent lane: it does not lead where the CAV goes"]
+            continue
+        reasons = [*check_ahead(there).get(Action.IDLE, ()), *check_conflicts(there).get(Action.IDLE, ())]
+        reasons = [reason.split(": ", 1)[-1].replace(Action.IDLE, action) for reason in reasons]
+        reasons += [
+            said for n in there.scene.neighbours if (said := _cuts_in(there, n) or _meets(there, n, action, must))
+        ]
         if reasons:
             found[action] = [f"adjacent lane: {reason}" for reason in reasons]
     return found
 
 
-def _too_close(outlook: Outlook, n: Neighbour) -> str:
-    path = outlook.road_map.paths[outlook.scene.intent.route]
-    s, _ = path.project(n.x, n.y)
-    ego = outlook.scene.ego
-    gap = abs(s - outlook.scene.place) - (n.length + ego.length) / 2
-    front, back = (n.speed, ego.speed) if s > outlook.scene.place else (ego.speed, n.speed)
-    needed = MARGIN + HEADWAY * back + max(0.0, (back**2 - front**2) / (2 * COMFORT))
-    return "" if gap >= needed else f"{n.id} is {max(gap, 0.0):.0f} m away there, {needed:.0f} m are needed"
+def _cuts_in(there: Outlook, n: Neighbour) -> str:
+    """Say that a vehicle behind on the new lane could not brake in time, if it could not."""
+    ego = there.scene.ego
+    for route, place in n.routes:
+        for zone in there.road_map.zones(route, there.scene.intent.route):
+            if not is_behind(zone, place, there.scene.place) and not _alongside(there, n, route, place):
+                continue
+            gap = there.scene.place - place - (n.length + ego.length) / 2
+            needed = MARGIN + HEADWAY * n.speed + max(0.0, (n.speed**2 - ego.speed**2) / (2 * COMFORT))
+            if gap < needed:
+                return f"{n.id} is {max(gap, 0.0):.0f} m behind there, {needed:.0f} m are needed"
+    return ""
+
+
+def _alongside(there: Outlook, n: Neighbour, route: str, place: float) -> bool:
+    return (
+        route == there.scene.intent.route and abs(place - there.scene.place) < (n.length + there.scene.ego.length) / 2
+    )
+
+
+def _meets(there: Outlook, n: Neighbour, action: Action, must: bool) -> str:
+    """Say that a vehicle two lanes away might change onto the same lane, if it is near and does not have to wait.
+
+    A CAV that has to change lanes does not wait for human drivers whom nothing urges to change as well.
+    """
+    scene = there.scene
+    far = there.road_map.changes.routes_beside(scene.intent.route, scene.intent.target_lane)
+    wanted = scene.intent.target_lane[2] + SIDES[action]
+    for name, lane in far:
+        for route, place in n.routes:
+            if lane[2] == wanted and route == name and abs(place - scene.place) < SIDE_GAP:
+                waits = n.intent is not None and (place, n.id) < (scene.place, scene.ego.id)
+                calm = must and n.intent is None and (n.acceleration or 0.0) > HELD_UP
+                if not waits and not calm:
+                    return f"{n.id} is alongside on the other side and might change there, too"
+    return ""

@@ -2,13 +2,21 @@
 
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from codriving.datatypes.action import Action
 from codriving.datatypes.situation import ActionAssessment
 from codriving.reasoning.clearance import first_overlap
+from codriving.reasoning.expectation import CLEARS, binding_zones, is_behind, keeps_order, progress_by_action, worth
+from codriving.reasoning.plans import PLANS
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
+from codriving.reasoning.safety.beside import beside
 from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.outlook import LONGITUDINAL, Outlook
 from codriving.reasoning.safety.same_lane import check_ahead, check_behind
+
+Array = NDArray[np.float64]
 
 
 class SafetyCheck(Protocol):
@@ -52,7 +60,9 @@ class ThreeLayers:
         reasons: dict[Action, list[str]] = {action: [] for action in outlook.actions}
         for layer in (check_ahead, check_adjacent, check_conflicts):
             for action, why in layer(outlook).items():
-                reasons[action] += why
+                # Lane changes are judged by the second layer, as if the CAV were on the other lane already.
+                if layer is check_adjacent or action in LONGITUDINAL:
+                    reasons[action] += why
         abrupt = check_behind(outlook)
         if any(not why and action not in abrupt for action, why in reasons.items()):
             for action, why in abrupt.items():
@@ -94,14 +104,37 @@ def progress(outlook: Outlook, action: Action) -> float | None:
         action: The action.
 
     Returns:
-        Distance [m]; None if the order cannot be kept then. A lane change counts as going on at the same speed.
+        Distance [m]; None if the order cannot be kept then.
     """
-    (own,) = outlook.expected[outlook.scene.ego.id]
-    return own.progress.get(action if action in LONGITUDINAL else Action.IDLE)
+    if action in LONGITUDINAL:
+        return outlook.expected[outlook.scene.ego.id][0].progress.get(action)
+    there = beside(outlook, action)
+    if there is None:
+        return None
+    ego, forecast = outlook.scene.ego, outlook.forecast
+    travels = forecast.travel(ego.speed, outlook.scene.intent.target_speed, PLANS)
+    keeps = np.ones(len(PLANS), dtype=np.bool_)
+    for k, (route, place) in enumerate(there.others[ego.id].routes):
+        motion = place + travels[:, : forecast.steps + 1 if k == 0 else round(CLEARS / forecast.sample) + 1]
+        keeps &= keeps_order(
+            ego.id,
+            route,
+            motion,
+            there.others,
+            there.expected,
+            there.order,
+            there.road_map,
+            there.lag,
+            forecast.sample,
+            there.minds_conflicts and k == 0,
+        )
+    return progress_by_action(np.where(keeps, worth(travels), -np.inf)).get(Action.IDLE)
 
 
 def least_dangerous(outlook: Outlook) -> Action:
     """Return the action after which an overlap with anybody lies farthest ahead, braking or going on.
+
+    Others are taken to keep their speed, to brake hard and to accelerate hard; whoever drives ahead may always brake.
 
     Args:
         outlook: The CAV's view.
@@ -109,20 +142,29 @@ def least_dangerous(outlook: Outlook) -> Action:
     best: tuple[int, int, Action] | None = None
     preferred = {Action.SLOWER: 2, Action.IDLE: 1}
     for k, action in enumerate(outlook.actions):
-        margins = []
-        for motion in (outlook.stops[k : k + 1], outlook.goes[k : k + 1]):
-            soonest = motion.shape[1]
-            for name, expected in outlook.expected.items():
-                if name == outlook.scene.ego.id:
-                    continue
-                for e in expected:
-                    now = float(e.places[0])
-                    steady = now + outlook.forecast.reach(outlook.others[name].speed, False).steady
-                    for zone in outlook.road_map.zones(outlook.scene.intent.route, e.route):
-                        soonest = min(soonest, int(first_overlap(zone, motion, steady)[0]))
-            margins.append(soonest)
-        key = (max(margins), preferred.get(action, 0), action)
+        stops, goes = outlook.stops[k : k + 1], outlook.goes[k : k + 1]
+        margin = sum(max(_soonest(outlook, stops, n), _soonest(outlook, goes, n)) for n in range(3))
+        key = (margin, preferred.get(action, 0), action)
         if best is None or key[:2] > best[:2]:
             best = key
     assert best is not None  # there is always at least IDLE
     return best[2]
+
+
+def _soonest(outlook: Outlook, motion: Array, guess: int) -> int:
+    """Return the step at which a motion first overlaps with anybody's, for one of three guesses of what they do."""
+    scene, soonest = outlook.scene, int(motion.shape[1])
+    for name, expected in outlook.expected.items():
+        if name == scene.ego.id:
+            continue
+        other = outlook.others[name]
+        reach = outlook.forecast.reach(other.speed, other.is_cav)
+        travel = (reach.steady, reach.least, reach.most)[guess]
+        for e in expected:
+            now = float(e.places[0])
+            zones = outlook.road_map.zones(scene.intent.route, e.route)
+            # Whoever drives behind on the same lane has to mind the CAV, not the other way round.
+            for zone in binding_zones(zones, scene.place, now, True):
+                ahead = is_behind(zone, scene.place, now)
+                soonest = min(soonest, int(first_overlap(zone, motion, now + (reach.least if ahead else travel))[0]))
+    return soonest

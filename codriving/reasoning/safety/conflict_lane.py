@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.conflict import Conflict, Relation
 from codriving.geometry.box import TRUE, Footprint
 from codriving.geometry.zone import ConflictZone
 from codriving.reasoning.clearance import first_overlap, reacts, stays_ahead, stays_behind
@@ -39,14 +39,16 @@ def check_conflicts(outlook: Outlook) -> dict[Action, list[str]]:
     """
     found: dict[Action, list[str]] = {}
     through = np.ones(len(outlook.actions), dtype=np.bool_)
-    for c in outlook.conflicts:
+    conflicts = [c for c in outlook.conflicts if not changes_before(outlook, c)]
+    for c in conflicts:
         goes, stops = passes_and_stops(outlook, c)
         through &= goes | expected_to_pass(outlook, c)
         for action, fine in zip(outlook.actions, goes | stops, strict=True):
             if not fine:
                 add(found, action, f"{action} intensifies the {c.relation} conflict with {c.other} ({c.severity})")
-    # A CAV that waits for this one is only delayed; a human driver in between may never get out of a gridlock.
-    for c in (c for c in outlook.conflicts if not outlook.others[c.other].is_cav):
+    # A CAV that waits for this one is only delayed; a human driver in between may never get out of a gridlock. Where
+    # ways merge nobody is caught in between.
+    for c in (c for c in conflicts if c.relation is Relation.CROSSING and not outlook.others[c.other].is_cav):
         zone = outlook.road_map.zones(*c.routes)[c.zone]
         if leaves_in_time(outlook, c, zone):
             continue
@@ -54,6 +56,20 @@ def check_conflicts(outlook: Outlook) -> dict[Action, list[str]]:
             if not through[k] and outlook.scene.place < zone.entry_i < outlook.stops[k, -1] + PAD < zone.exit_i:
                 add(found, action, f"after {action} the CAV might have to stop in the way of {c.other}")
     return found
+
+
+def changes_before(outlook: Outlook, c: Conflict) -> bool:
+    """Whether one of two CAVs comes to a zone only by a lane change not yet begun, which its second layer guards.
+
+    Args:
+        outlook: The CAV's view.
+        c: One of its conflicts.
+    """
+    for k, is_cav in enumerate((True, outlook.others[c.other].is_cav)):
+        change = outlook.road_map.changes.ahead(c.routes[k], c.places[k]) if is_cav else None
+        if change is not None and c.places[k] + c.exits[k] > change[1]:
+            return True
+    return False
 
 
 def expected_to_pass(outlook: Outlook, c: Conflict) -> Flags:
@@ -81,7 +97,7 @@ def leaves_in_time(outlook: Outlook, c: Conflict, zone: ConflictZone) -> bool:
         c: The conflict with the human driver.
         zone: Its zone, seen from the CAV.
     """
-    (own,) = outlook.expected[c.ego]
+    own = outlook.expected[c.ego][0]
     most = c.places[1] + outlook.forecast.reach(outlook.others[c.other].speed, False).most
     return bool(stays_ahead(zone, own.places[None], most, 0, 0.0)[0])
 
@@ -160,4 +176,4 @@ def keeps_clear(outlook: Outlook, c: Conflict, motions: Array, other: Array) -> 
 def _goes_on(outlook: Outlook, other: Mover) -> bool:
     """Whether a CAV can be relied on to go on: it waits for nobody and has said that it wants to keep its speed."""
     expected = outlook.expected.get(other.id, ())
-    return other.is_cav and len(expected) == 1 and expected[0].free and other.target >= other.speed - 0.5
+    return other.is_cav and bool(expected) and expected[0].free and other.target >= other.speed - 0.5

@@ -1,6 +1,6 @@
 """What the safety layers look at: where one CAV would go after each action, and what it knows of the others."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,8 @@ class Outlook:
         road_map: The precomputed road.
         forecast: Predictions of this step.
         lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
+        minds_conflicts: Whether it can be seen at all who else comes to a conflict zone.
+        sides: What it would look like from the lanes beside, filled in when it is asked for.
     """
 
     scene: SceneDescription
@@ -63,6 +65,8 @@ class Outlook:
     road_map: RoadMap
     forecast: Forecast
     lag: int
+    minds_conflicts: bool
+    sides: "dict[Action, Outlook | None]" = field(default_factory=dict)
 
 
 def motions(scene: SceneDescription, actions: tuple[Action, ...], forecast: Forecast) -> tuple[Array, Array]:

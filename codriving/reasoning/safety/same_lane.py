@@ -6,13 +6,16 @@ from numpy.typing import NDArray
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import Neighbour, Role
 from codriving.reasoning.clearance import stays_behind
-from codriving.reasoning.expectation import is_behind
+from codriving.reasoning.expectation import CLEARS, is_behind
 from codriving.reasoning.safety.outlook import Outlook
 
 Array = NDArray[np.float64]
 
 STANDSTILL_GAP = 1.0
 """Free distance that must be left to the leading vehicle when both have stopped [m]."""
+
+LANE_END_GAP = 2.0
+"""Room that a CAV which has to change lanes and cannot must still have when it has stopped [m]."""
 
 ABRUPT = 4.0
 """Braking that must not be forced on the rearing vehicle [m/s2]."""
@@ -31,20 +34,30 @@ def check_ahead(outlook: Outlook) -> dict[Action, list[str]]:
         Reasons by action; no entry where the action is safe.
     """
     found: dict[Action, list[str]] = {}
+    travelled = outlook.stops - outlook.scene.place
     for n in outlook.scene.neighbours:
         least = outlook.forecast.reach(n.speed, outlook.others[n.id].is_cav).least
         keeps = np.ones(len(outlook.actions), dtype=np.bool_)
         if n.role is Role.LEADING and n.gap is not None:
-            travelled = outlook.stops - outlook.scene.place
             keeps &= (n.gap + least - travelled >= min(STANDSTILL_GAP, n.gap)).all(axis=1)
-        for route, place in outlook.others[n.id].routes:
-            for zone in outlook.road_map.zones(outlook.scene.intent.route, route):
-                if is_behind(zone, outlook.scene.place, place):
-                    keeps &= stays_behind(zone, outlook.stops, place + least, 0, 0.0)
+        # While it changes lanes, the CAV is on two of them.
+        for k, (own, place) in enumerate(outlook.others[outlook.scene.ego.id].routes):
+            until = len(least) if k == 0 else round(CLEARS / outlook.forecast.sample) + 1
+            for route, other in outlook.others[n.id].routes:
+                for zone in outlook.road_map.zones(own, route):
+                    if is_behind(zone, place, other):
+                        keeps &= stays_behind(zone, place + travelled[:, :until], other + least[:until], 0, 0.0)
         for action, safe in zip(outlook.actions, keeps, strict=True):
             if not safe:
                 found.setdefault(action, []).append(
                     f"same lane: {action} leaves too little room to stop behind {n.id} at {n.speed:.1f} m/s"
+                )
+    change = outlook.scene.must_change
+    if change is not None:
+        for action, reached in zip(outlook.actions, travelled[:, -1], strict=True):
+            if reached > change.room - LANE_END_GAP:
+                found.setdefault(action, []).append(
+                    f"same lane: after {action} the CAV could not stop before its lane ends, {change.room:.0f} m ahead"
                 )
     return found
 
