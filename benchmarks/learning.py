@@ -1,0 +1,68 @@
+"""CPU time of a decision step as an environment for learning, against the bare environment on the same episodes."""
+
+import argparse
+import json
+from time import process_time
+
+import numpy as np
+
+import codriving
+from codriving.config.choices import choices
+from codriving.envs.actions import ACTIONS
+
+SEEDS = (0, 1, 2)
+ROUNDS = 3
+DECISIONS = 10
+
+
+def measure(name: str, rounds: int = ROUNDS) -> dict[str, float]:
+    """Step both alternately with the same actions.
+
+    Args:
+        name: Name of the scenario.
+        rounds: Rounds over the same seeds; the fastest one of each side counts.
+
+    Returns:
+        CPU time a decision step [ms] of the bare environment and of the PettingZoo face, and the latter's share.
+    """
+    face, bare = codriving.parallel_env(name), codriving.parallel_env(name).environment
+    best = {"bare": np.inf, "face": np.inf}
+    for _ in range(rounds):
+        spent, steps = dict.fromkeys(best, 0.0), 0
+        for seed in SEEDS:
+            rng = np.random.default_rng(seed)
+            face.reset(seed=seed)
+            bare.reset(seed)
+            for _ in range(DECISIONS):
+                if not face.agents:
+                    break
+                numbers = {agent: int(rng.integers(2)) for agent in face.agents}
+                actions = {agent: ACTIONS[number] for agent, number in numbers.items()}
+                before = process_time()
+                bare.step(actions)
+                between = process_time()
+                face.step(numbers)
+                spent["bare"] += between - before
+                spent["face"] += process_time() - between
+                steps += 1
+        best = {side: min(best[side], 1e3 * spent[side] / steps) for side in best}
+    share = 1 - best["bare"] / best["face"]
+    return {"bare_ms": round(best["bare"], 3), "face_ms": round(best["face"], 3), "share": round(share, 3)}
+
+
+def main(arguments: list[str]) -> None:
+    """Measure and print.
+
+    Args:
+        arguments: ``--json`` prints JSON instead of a table.
+    """
+    parser = argparse.ArgumentParser(prog="python -m benchmarks")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    wanted = parser.parse_args(arguments)
+    found = {name: measure(name) for name in choices("scenario")}
+    if wanted.json:
+        print(json.dumps({"learning": found}))
+        return
+    print("learning: CPU time of a decision step [ms], and what observations, rewards and masks add to it")
+    for name, one in found.items():
+        print(f"  {name:14}{one['bare_ms']:8.2f} bare{one['face_ms']:8.2f} with PettingZoo{one['share']:8.0%}")

@@ -1,0 +1,45 @@
+"""The five decisions as numbers, and which of them the road allows."""
+
+from collections.abc import Collection
+from operator import index
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.action import Action
+from codriving.errors import EpisodeError
+
+ACTIONS = tuple(Action)
+"""What the numbers 0 to 4 mean."""
+
+
+def action_mask(available: Collection[Action]) -> NDArray[np.int8]:
+    """Mark the actions that the road allows.
+
+    Args:
+        available: The allowed actions; nobody is left without any, so nothing allowed means IDLE.
+
+    Returns:
+        1 where the action of that number is allowed, else 0 (5,).
+    """
+    return np.array([action in (available or (Action.IDLE,)) for action in ACTIONS], dtype=np.int8)
+
+
+def action_of(agent: str, number: object) -> Action:
+    """Return the action of a number.
+
+    Args:
+        agent: Whose action it is, for the message.
+        number: What was given: anything that is a whole number.
+
+    Raises:
+        EpisodeError: If it is not the number of an action.
+    """
+    try:
+        found = index(number)  # type: ignore[arg-type]
+    except TypeError:
+        found = -1
+    if not 0 <= found < len(ACTIONS):
+        names = ", ".join(f"{i} {action}" for i, action in enumerate(ACTIONS))
+        raise EpisodeError(f"the action of {agent} must be one of {names}; got {number!r}")
+    return ACTIONS[found]

@@ -1,0 +1,116 @@
+"""What a CAV is rewarded for; every weight can be set."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from math import isfinite
+from typing import Any
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.vehicle import VehicleState
+from codriving.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True)
+class RewardWeights:
+    """What is added to the reward of a CAV for one decision; the defaults are those of the learning baseline.
+
+    Attributes:
+        arrival: Once, when it arrives.
+        collision: When it takes part in a collision or leaves the road.
+        time: For each second on the road [1/s].
+        speed: For each second at the highest target speed, in proportion below it [1/s].
+        lane_change: For each lane change that it begins.
+        comfort: For each second, times the square of its mean acceleration in the step [s3/m2].
+        cooperation: Share of the mean of all CAVs on the road in each one's own reward, 0 to 1.
+
+    Raises:
+        ConfigError: If a weight is not a finite number, or the share is not one.
+    """
+
+    arrival: float = 1.0
+    collision: float = -3.0
+    time: float = -0.025
+    speed: float = 0.0375
+    lane_change: float = -0.02
+    comfort: float = 0.0
+    cooperation: float = 0.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+                raise ConfigError(f"reward.{field.name} must be a finite number, got {value!r}")
+        if not 0 <= self.cooperation <= 1:
+            raise ConfigError(f"reward.cooperation must be 0 to 1, got {self.cooperation:g}")
+
+
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """What one CAV did in one decision step.
+
+    Attributes:
+        before: Its state when it decided.
+        after: Its state now; None if it has arrived and left the road.
+        action: What it carried out.
+        failed: Whether it took part in a collision or left the road.
+    """
+
+    before: VehicleState
+    after: VehicleState | None
+    action: Action
+    failed: bool
+
+
+def reward_weights(given: RewardWeights | Mapping[str, Any] | None) -> RewardWeights:
+    """Return the weights, the defaults where nothing is said.
+
+    Args:
+        given: Weights, or some of them by name.
+
+    Raises:
+        ConfigError: If there is no such weight, or a value cannot be used.
+    """
+    if isinstance(given, RewardWeights):
+        return given
+    if given is not None and not isinstance(given, Mapping):
+        raise ConfigError(f"reward must be RewardWeights or a mapping of weights by name, got {given!r}")
+    names = [field.name for field in fields(RewardWeights)]
+    unknown = [str(name) for name in given or {} if name not in names]
+    if unknown:
+        raise ConfigError(f"unknown weight reward.{unknown[0]}; weights: {', '.join(names)}")
+    return RewardWeights(**(given or {}))
+
+
+def rewards(weights: RewardWeights, driven: Sequence[Driven], duration: float, top_speed: float) -> list[float]:
+    """Reward one decision step.
+
+    Args:
+        weights: What counts how much.
+        driven: What each CAV on the road did.
+        duration: Simulated time of the step [s].
+        top_speed: Highest target speed [m/s].
+
+    Returns:
+        One reward for each CAV, in the same order.
+    """
+    own = [_reward(weights, one, duration, top_speed) for one in driven]
+    if not own or not weights.cooperation:
+        return own
+    mean = sum(own) / len(own)
+    return [(1 - weights.cooperation) * value + weights.cooperation * mean for value in own]
+
+
+def _reward(weights: RewardWeights, one: Driven, duration: float, top_speed: float) -> float:
+    # Who has left the road is taken to have kept its speed.
+    start, end = one.before.speed, (one.after or one.before).speed
+    acceleration = (end - start) / duration
+    value = duration * (
+        weights.time + weights.speed * (start + end) / 2 / top_speed + weights.comfort * acceleration * acceleration
+    )
+    if one.action in (Action.LANE_LEFT, Action.LANE_RIGHT):
+        value += weights.lane_change
+    if one.failed:
+        value += weights.collision
+    elif one.after is None:
+        value += weights.arrival
+    return value
