@@ -1,0 +1,63 @@
+"""Frames a second of a replay: drawing alone (CPU) and the whole film (wall clock), for every scenario."""
+
+import argparse
+import json
+import tempfile
+from fractions import Fraction
+from pathlib import Path
+from time import perf_counter, process_time
+
+from codriving.config.choices import choices
+from codriving.experiment import run_frames
+from codriving.experiment.stored import find_episode, screening
+
+RATE, SECONDS = Fraction(25), 10
+SCALES = (1.0, 2.0)
+
+
+def measure(scenario: str, folder: Path) -> dict[str, float]:
+    """Drive one short episode and film it.
+
+    Args:
+        scenario: Name of the scenario.
+        folder: Where to drive and to write.
+
+    Returns:
+        Frames a second of drawing and of the whole, and the size of the film [MB], for each scale.
+    """
+    tokens = [f"scenario={scenario}", "episodes=1", f"scenario.time_limit={SECONDS}", "launcher=serial"]
+    results = run_frames(*tokens, f"output={folder}", f"run={scenario}")
+    found: dict[str, float] = {}
+    for scale in SCALES:
+        show = screening(find_episode(results.folder, None, None), scale)
+        show.frame(0.0)
+        count, before = 0, process_time()
+        for _ in show.frames(RATE, 1.0):
+            count += 1
+        found[f"drawn_{scale:g}x"] = round(count / (process_time() - before), 1)
+        film = folder / "film.mp4"
+        before = perf_counter()
+        show.write(film, "mp4", RATE, 1.0)
+        found[f"filmed_{scale:g}x"] = round(count / (perf_counter() - before), 1)
+        found[f"mb_{scale:g}x"] = round(film.stat().st_size / 1e6, 2)
+    return found
+
+
+def main(arguments: list[str]) -> None:
+    """Measure and print.
+
+    Args:
+        arguments: ``--json`` prints JSON instead of a table.
+    """
+    parser = argparse.ArgumentParser(prog="python -m benchmarks")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    wanted = parser.parse_args(arguments)
+    with tempfile.TemporaryDirectory() as folder:
+        found = {name: measure(name, Path(folder)) for name in choices("scenario")}
+    if wanted.json:
+        print(json.dumps({"pictures": found}))
+        return
+    print(f"pictures: frames a second of a film of {SECONDS} s at 1280 x 720, and at twice that")
+    for name, row in found.items():
+        drawn, filmed = (" / ".join(f"{row[f'{what}_{s:g}x']:.0f}" for s in SCALES) for what in ("drawn", "filmed"))
+        print(f"  {name:<14} drawn {drawn:>10}   filmed {filmed:>10}   {row['mb_1x']:.1f} / {row['mb_2x']:.1f} MB")

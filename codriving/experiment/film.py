@@ -1,0 +1,102 @@
+"""A film of each episode of a run, beside its record: ``render=true``."""
+
+import traceback
+from contextlib import suppress
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from codriving.datatypes.outcome import Ending
+from codriving.episodes.unit import Unit
+from codriving.errors import UserError
+from codriving.experiment.stored import StoredEpisode, screening
+from codriving.storage.atomic import whole_file, write_text
+from codriving.storage.manifest import CellEntry
+from codriving.storage.records import RECORD, read_record
+from codriving.storage.run_folder import EPISODES
+from codriving.storage.trajectory_file import TRAJECTORY
+
+FILM, FILM_ERROR = "replay.mp4", "replay-error.txt"
+
+_RATE = Fraction(25)
+"""Frames a second."""
+
+
+@dataclass(frozen=True)
+class FilmEpisode:
+    """Makes the film of an episode from what was kept of it; records are read and never written.
+
+    Attributes:
+        folder: The run folder.
+        cells: The cells that films are made of, by folder.
+    """
+
+    folder: Path
+    cells: dict[str, CellEntry]
+
+    def path(self, unit: Unit) -> Path:
+        """Where the film of an episode is, or will be.
+
+        Args:
+            unit: Cell and seed.
+        """
+        return self._place(unit) / FILM
+
+    def lacks(self, unit: Unit) -> bool:
+        """Tell whether an episode that is saved has no film though there is something to show.
+
+        Args:
+            unit: Cell and seed.
+        """
+        folder = self._place(unit)
+        return (folder / TRAJECTORY).exists() and not self.path(unit).exists()
+
+    def kept(self, unit: Unit) -> Ending | None:
+        """Tell how an episode ended that need not be driven again.
+
+        Args:
+            unit: Cell and seed.
+
+        Returns:
+            Its ending; None if it has not been driven, or ended in an error.
+        """
+        folder = self._place(unit)
+        if not (folder / RECORD).exists():
+            return None
+        ending = read_record(folder).outcome.ending
+        return None if ending is Ending.ERROR else ending
+
+    def finish(self, unit: Unit) -> None:
+        """Make the film of an episode that lacks one; ``replay-error.txt`` says why if that fails.
+
+        Args:
+            unit: Cell and seed.
+        """
+        if not self.lacks(unit):
+            return
+        folder = self._place(unit)
+        try:
+            show = screening(StoredEpisode(self.cells[unit.cell], unit.seed, folder))
+            # The unfinished film lies in the folder of the cell, which is swept when the run goes on.
+            with whole_file(folder / FILM, beside=folder.parent) as partial:
+                show.write(partial, "mp4", _RATE, 1.0)
+            (folder / FILM_ERROR).unlink(missing_ok=True)
+        except (UserError, OSError) as error:
+            self.abandon(unit, error)
+        except Exception as error:
+            self.abandon(unit, error, traceback.format_exc())
+
+    def abandon(self, unit: Unit, error: Exception, trace: str = "") -> None:
+        """Note why there is no film.
+
+        Args:
+            unit: Cell and seed.
+            error: What went wrong.
+            trace: Where, if it is not the user's to mend.
+        """
+        # On a full disk there is no room for this either; that the film is missing is reported all the same.
+        with suppress(OSError):
+            write_text(self._place(unit) / FILM_ERROR, trace or f"{error}\n")
+
+    def _place(self, unit: Unit) -> Path:
+        return self.folder / EPISODES / unit.cell / str(unit.seed)

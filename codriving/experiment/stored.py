@@ -1,0 +1,184 @@
+"""Stored episodes: found in a run folder by cell and seed, and read back without the simulator."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from codriving.config.build import build
+from codriving.config.plugins import find_beside
+from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.road import Road
+from codriving.datatypes.trajectory import Trajectory
+from codriving.errors import RunFolderError
+from codriving.storage.decisions_file import read_decisions
+from codriving.storage.manifest import MANIFEST, CellEntry, Manifest, read_manifest
+from codriving.storage.records import read_record
+from codriving.storage.redaction import nested
+from codriving.storage.run_folder import EPISODES
+from codriving.storage.trajectory_file import TRAJECTORY, read_trajectory
+
+if TYPE_CHECKING:
+    from codriving.pictures.screening import Screening
+
+
+@dataclass(frozen=True, slots=True)
+class StoredEpisode:
+    """An episode of a run folder.
+
+    Attributes:
+        cell: Its cell.
+        seed: Its seed.
+        folder: Its folder.
+    """
+
+    cell: CellEntry
+    seed: int
+    folder: Path
+
+
+def find_run(run: Path) -> tuple[Path, Manifest]:
+    """Find a run folder by its path, or by its name below ``outputs/``.
+
+    Args:
+        run: What the user calls it.
+
+    Returns:
+        The folder and its manifest.
+
+    Raises:
+        RunFolderError: If there is no run there, or its manifest is damaged.
+    """
+    named = sorted(Path("outputs").glob(f"*/{run}")) if len(run.parts) == 1 and not run.exists() else []
+    places = [run] if run.exists() else [place for place in named if (place / MANIFEST).is_file()]
+    if len(places) > 1:
+        raise RunFolderError(f"several runs are called {run}: {_names(places)}; give the path of one")
+    if not places:
+        nearby = sorted(p.parent for p in (run.parent if run.parent.is_dir() else Path()).glob(f"*/{MANIFEST}"))
+        nearby = nearby or sorted(p.parent for p in Path("outputs").glob(f"*/*/{MANIFEST}"))
+        raise RunFolderError(f"there is no run folder {run}; runs: {_names(nearby)}")
+    manifest = read_manifest(places[0])
+    if manifest is None:
+        inside = sorted(path.parent for path in places[0].glob(f"**/{MANIFEST}"))
+        raise RunFolderError(f"{places[0]} has no {MANIFEST}, so it is no run folder; runs in it: {_names(inside)}")
+    return places[0], manifest
+
+
+def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode:
+    """Find an episode.
+
+    Args:
+        run: The run folder.
+        cell: Name of the cell or a part of it that no other has; None if there is but one.
+        seed: Seed; None takes the first that was driven.
+
+    Returns:
+        Where it is.
+
+    Raises:
+        RunFolderError: If there is no such episode; the message lists what there is.
+    """
+    run, manifest = find_run(run)
+    entry = _cell(run, manifest, cell)
+    episodes = run / EPISODES / entry.folder
+    seeds = sorted(int(path.name) for path in episodes.glob("*") if path.is_dir() and path.name.isdigit())
+    if not seeds:
+        raise RunFolderError(
+            f"no episode of {entry.folder} in {run} is finished yet; the command of the run with the same run=<name> "
+            "goes on with it"
+        )
+    if seed is not None and seed not in seeds:
+        raise RunFolderError(f"{entry.folder} in {run} has no episode with seed {seed}; seeds: {_ranges(seeds)}")
+    driven = [s for s in seeds if (episodes / str(s) / TRAJECTORY).exists()]
+    chosen = [*driven, *seeds][0] if seed is None else seed
+    return StoredEpisode(entry, chosen, episodes / str(chosen))
+
+
+def screening(episode: StoredEpisode, scale: float = 1.0, config_dir: Path | None = None) -> "Screening":
+    """Read an episode for its pictures.
+
+    Args:
+        episode: Where it is.
+        scale: Real pixels a pixel of the layout.
+        config_dir: The user's own configs, if any.
+
+    Returns:
+        Its pictures.
+
+    Raises:
+        RunFolderError: If there is nothing to show, or a file is damaged.
+        ConfigError: If its scenario cannot be built any more.
+    """
+    from codriving.pictures.screening import Screening
+
+    record, trajectory = read_driven(episode.folder)
+    return Screening(road_of(episode.cell, config_dir), trajectory, read_decisions(episode.folder), record, scale)
+
+
+def read_driven(folder: Path) -> tuple[EpisodeRecord, Trajectory]:
+    """Read the record of an episode and what was driven.
+
+    Args:
+        folder: Folder of the episode.
+
+    Raises:
+        RunFolderError: If nothing was driven, or a file is damaged.
+    """
+    record = read_record(folder)
+    trajectory = read_trajectory(folder, record)
+    if trajectory is None:
+        why = f"it ended in an error ({record.outcome.message})" if record.outcome.message else "nothing was driven"
+        raise RunFolderError(f"{folder} has no {TRAJECTORY}, so there is nothing to show: {why}")
+    return record, trajectory
+
+
+def road_of(cell: CellEntry, config_dir: Path | None = None) -> Road:
+    """Build the road of a cell from the settings in the manifest.
+
+    Args:
+        cell: The cell.
+        config_dir: The user's own configs, if any; a package of theirs may stand beside it.
+
+    Raises:
+        ConfigError: If the scenario cannot be built any more, for instance since its package is missing.
+    """
+    settings = nested(cell.settings)
+    scenario, listed = settings.get("scenario"), settings.get("plugins")
+    plugins = listed if isinstance(listed, list) else []
+    if not isinstance(scenario, Mapping):
+        raise RunFolderError(f"the manifest does not say what scenario {cell.folder} was; drive it again")
+    find_beside(plugins, config_dir)
+    road: Road = build(scenario, plugins, "scenario").road
+    return road
+
+
+def _cell(run: Path, manifest: Manifest, name: str | None) -> CellEntry:
+    folders = [cell.folder for cell in manifest.cells]
+    if name is None:
+        if len(folders) > 1:
+            raise RunFolderError(f"{run} holds {len(folders)} cells; choose one with --cell: {', '.join(folders)}")
+        return manifest.cells[0]
+    matches = [cell for cell in manifest.cells if cell.folder == name]
+    matches = matches or [cell for cell in manifest.cells if name in cell.folder]
+    if len(matches) == 1:
+        return matches[0]
+    if matches:
+        raise RunFolderError(f"several cells of {run} are called like {name}: {', '.join(c.folder for c in matches)}")
+    raise RunFolderError(f"{run} has no cell {name}; cells: {', '.join(folders)}")
+
+
+def _names(paths: list[Path]) -> str:
+    shown = ", ".join(str(path) for path in paths[-10:])
+    return f"{shown} and {len(paths) - 10} more" if len(paths) > 10 else shown or "none"
+
+
+def _ranges(seeds: list[int]) -> str:
+    """``0 to 19, 25`` for rising numbers."""
+    parts: list[list[int]] = []
+    for seed in seeds:
+        if parts and seed == parts[-1][-1] + 1:
+            parts[-1].append(seed)
+        else:
+            parts.append([seed])
+    shown = [str(p[0]) if len(p) == 1 else f"{p[0]} to {p[-1]}" for p in parts[:20]]
+    return ", ".join(shown) + (", ..." if len(parts) > 20 else "")

@@ -1,0 +1,66 @@
+"""Colours and strokes: the palette of Okabe and Ito (2008), and a second cue for everything that a colour says."""
+
+from dataclasses import dataclass
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.conflict import Severity
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.vehicle import Kind
+
+PAPER, GROUND, ASPHALT, PAINT = "#ffffff", "#f3f2ec", "#cfd3d9", "#ffffff"
+"""Panel, land, road and painted lines."""
+
+BAND = "90"
+"""Opacity of the bands along which two vehicles come together; the plans on them stay in sight."""
+
+HALO = "#ffffffc8"
+"""Around words on the road."""
+
+INK, FAINT, HAIR = "#1d2126", "#5d656f", "#d9dbdf"
+"""Words, words that matter less, and thin rules."""
+
+BLUE, ORANGE, GREEN, VERMILION, SKY = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9"
+
+KINDS = {Kind.CAV: BLUE, Kind.HDV: ORANGE}
+"""CAVs are filled and pointed, human drivers hollow and square."""
+
+ACTIONS = {
+    Action.FASTER: GREEN,
+    Action.SLOWER: VERMILION,
+    Action.IDLE: FAINT,
+    Action.LANE_LEFT: BLUE,
+    Action.LANE_RIGHT: BLUE,
+}
+"""Each has a glyph of its own shape and its name in words, too."""
+
+ENDINGS = {Ending.SUCCESS: GREEN}
+"""What is not here ended badly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """How a conflict is drawn.
+
+    Attributes:
+        colour: One hue, darker with danger.
+        width: Width of the line [px]; wider with danger.
+        dash: Lengths of dashes and gaps [px]; shorter dashes with less danger, none for a full line.
+        mark: Half the width of the mark [px].
+        word: The word beside it.
+        limit: The time difference up to which it holds, in words.
+    """
+
+    colour: str
+    width: float
+    dash: tuple[float, ...]
+    mark: float
+    word: str
+    limit: str
+
+
+SEVERITIES = {
+    Severity.SERIOUS: Stroke("#7a1f5c", 6.0, (), 9.5, "serious", "up to 2 s"),
+    Severity.GENERAL: Stroke("#a83a86", 4.5, (9.0, 4.0), 8.0, "general", "up to 5 s"),
+    Severity.SLIGHT: Stroke("#b86fa3", 3.5, (3.0, 4.0), 6.5, "slight", "up to 8 s"),
+}
+"""The bands of danger that are drawn; beyond 8 s nothing is."""

@@ -1,0 +1,124 @@
+"""Stored episodes are found by what people call them; what is not there is answered with what is."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from codriving.errors import RunFolderError
+from codriving.experiment import run_experiment
+from codriving.experiment.stored import find_episode, find_run, road_of, screening
+from codriving.scenarios.intersection import Intersection
+from codriving.storage.decisions_file import DECISIONS
+from codriving.storage.manifest import MANIFEST
+from codriving.storage.records import RECORD
+from codriving.storage.trajectory_file import TRAJECTORY
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of two cells with two short episodes each."""
+    output = tmp_path_factory.mktemp("outputs")
+    tokens = [f"output={output}", "run=first", "episodes=2", "seed=3", "launcher=serial", "scenario.time_limit=1"]
+    assert run_experiment([*tokens, "scenario.cavs=2,3", "scenario.leg_length=100,120"]) == 0
+    return output / "run" / "first"
+
+
+@pytest.fixture
+def single(tmp_path: Path) -> Path:
+    """A run of one cell, to be spoilt."""
+    tokens = [f"output={tmp_path}", "run=one", "episodes=3", "launcher=serial", "scenario.time_limit=1"]
+    assert run_experiment(tokens) == 0
+    return tmp_path / "run" / "one"
+
+
+def test_an_episode_is_found_by_cell_and_seed(swept: Path) -> None:
+    found = find_episode(swept, "cavs=3-scenario.leg_length=120", 4)
+    assert (found.seed, found.folder.name) == (4, "4")
+    assert found.cell.swept == {"scenario.cavs": "3", "scenario.leg_length": "120"}
+    assert (found.folder / RECORD).exists()
+
+
+def test_every_cell_has_its_own_road(swept: Path) -> None:
+    lengths = []
+    for name in ("cavs=2-scenario.leg_length=100", "cavs=2-scenario.leg_length=120"):
+        road = road_of(find_episode(swept, name, 3).cell)
+        lengths.append(max(abs(lane.shape.start[1]) for lane in road.lanes if hasattr(lane.shape, "start")))
+    assert lengths[1] - lengths[0] == pytest.approx(20.0)
+    assert road.name == Intersection.name
+
+
+@pytest.mark.parametrize(
+    ("cell", "seed", "said"),
+    [
+        (None, 3, "holds 4 cells; choose one with --cell: intersection-codriving-full-scenario.cavs=2"),
+        ("nothing", 3, "has no cell nothing; cells: intersection-codriving-full"),
+        ("cavs=2", 3, "several cells of .* are called like cavs=2: .*=100.*=120"),
+        ("cavs=2-scenario.leg_length=100", 9, "has no episode with seed 9; seeds: 3 to 4"),
+    ],
+)
+def test_what_is_not_there_is_answered_with_what_is(swept: Path, cell: str | None, seed: int, said: str) -> None:
+    with pytest.raises(RunFolderError, match=said):
+        find_episode(swept, cell, seed)
+
+
+def test_a_run_is_found_by_its_name_below_outputs(swept: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    shutil.copytree(swept, tmp_path / "outputs" / "run" / "first")
+    monkeypatch.chdir(tmp_path)
+    assert find_run(Path("first"))[0] == Path("outputs", "run", "first")
+    with pytest.raises(RunFolderError, match="there is no run folder second; runs: outputs/run/first"):
+        find_run(Path("second"))
+    with pytest.raises(RunFolderError, match=r"outputs has no manifest.json, .*; runs in it: outputs/run/first"):
+        find_run(Path("outputs"))
+    shutil.copytree(swept, tmp_path / "outputs" / "ablate" / "first")
+    with pytest.raises(RunFolderError, match="several runs are called first: outputs/ablate/first, outputs/run/first"):
+        find_run(Path("first"))
+
+
+def test_without_a_seed_the_first_that_was_driven_is_taken(single: Path) -> None:
+    assert find_episode(single, None, None).seed == 0
+    (find_episode(single, None, 0).folder / TRAJECTORY).unlink()
+    assert find_episode(single, None, None).seed == 1
+
+
+def test_an_episode_that_is_not_finished_says_how_to_go_on(single: Path) -> None:
+    shutil.rmtree(find_episode(single, None, 1).folder)
+    with pytest.raises(RunFolderError, match="no episode with seed 1; seeds: 0, 2"):
+        find_episode(single, None, 1)
+    for seed in (0, 2):
+        shutil.rmtree(find_episode(single, None, seed).folder)
+    with pytest.raises(RunFolderError, match=r"no episode of .* is finished yet; .* goes on with it"):
+        find_episode(single, None, None)
+
+
+@pytest.mark.parametrize(
+    ("file", "content", "said"),
+    [
+        (TRAJECTORY, None, r"has no trajectory\.csv, so there is nothing to show"),
+        (DECISIONS, None, r"decisions\.jsonl is damaged \(it is missing\); .*run again"),
+        (DECISIONS, "{", r"decisions\.jsonl is damaged"),
+        (RECORD, "{}", r"record\.json is damaged"),
+        (TRAJECTORY, "time\n", r"trajectory\.csv is damaged"),
+    ],
+)
+def test_a_spoilt_episode_is_named(single: Path, file: str, content: str | None, said: str) -> None:
+    episode = find_episode(single, None, 0)
+    path = episode.folder / file
+    path.unlink()
+    if content is not None:
+        path.write_text(content)
+    with pytest.raises(RunFolderError, match=said):
+        screening(episode)
+
+
+def test_no_decisions_at_all_are_no_reason_not_to_show_it(single: Path) -> None:
+    episode = find_episode(single, None, 0)
+    (episode.folder / DECISIONS).write_text("")
+    assert screening(episode).frame(0.5).shape == (720, 1280, 4)
+
+
+def test_a_manifest_without_settings_says_what_is_missing(single: Path) -> None:
+    manifest = single / MANIFEST
+    manifest.write_text(manifest.read_text().replace('"scenario.', '"scene.'))
+    with pytest.raises(RunFolderError, match="does not say what scenario"):
+        screening(find_episode(single, None, 0))
