@@ -10,6 +10,7 @@ from codriving import __version__
 from codriving.cli.ablate import ablate
 from codriving.cli.compare import compare
 from codriving.cli.list import list_choices
+from codriving.cli.replay import replay
 from codriving.cli.run import run
 from codriving.errors import UserError
 
@@ -66,6 +67,7 @@ def _options(
 app.command(epilog="Example: codriving run scenario=intersection episodes=50 seed=0 workers=2 run=first")(run)
 app.command(epilog="Example: codriving ablate scenario=intersection episodes=20")(ablate)
 app.command(epilog="Example: codriving compare baselines")(compare)
+app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
 app.command("list", epilog="Example: codriving list scenarios")(list_choices)
 
 

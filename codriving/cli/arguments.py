@@ -5,14 +5,14 @@ from typing import Annotated
 
 import typer
 
-from codriving.cli.completion import complete_override
+from codriving.cli.completion import complete_in_line
 
 Overrides = Annotated[
     list[str] | None,
     typer.Argument(
         metavar="[KEY=VALUE]...",
         help="Settings, for instance scenario=intersection, episodes=50 or cda.negotiation=false.",
-        autocompletion=complete_override,
+        autocompletion=complete_in_line,
     ),
 ]
 

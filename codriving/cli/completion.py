@@ -2,9 +2,14 @@
 
 import os
 from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
 
-from codriving.config.choices import EXPERIMENTS, LISTED, choices, default_choice, describe, values
+import typer
+
+from codriving.config.choices import ALL, EXPERIMENTS, LISTED, SWEPT, choices, default_choice, describe, values
 from codriving.config.locate import conf_dir
+from codriving.config.plugins import PLUGINS
 from codriving.config.schema import GROUPS, ROOT
 from codriving.errors import ConfigError
 
@@ -30,18 +35,62 @@ def complete_group(incomplete: str) -> list[str]:
     return [plural for plural in PLURALS if plural.startswith(incomplete)]
 
 
-def complete_override(incomplete: str) -> list[tuple[str, str]]:
+def complete_format(incomplete: str) -> list[str]:
+    """Offer the formats of `codriving replay`.
+
+    Args:
+        incomplete: What has been typed.
+    """
+    return [name for name in ("mp4", "gif") if name.startswith(incomplete)]
+
+
+def complete_in_line(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
+    """Offer overrides that begin with what has been typed, by what stands before it in the line.
+
+    Args:
+        ctx: The line so far.
+        incomplete: The word under the cursor, as the shell hands it over.
+    """
+    # Bash splits words at ``=``, also those before the cursor.
+    line = " ".join(ctx.params.get("overrides") or ()).replace(" = ", "=")
+    return complete_override(incomplete, Line(ctx.params.get("config_dir"), tuple(line.split())))
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """What has been typed before the word under the cursor.
+
+    Attributes:
+        config_dir: The user's own configs, if any.
+        overrides: ``key=value`` tokens.
+    """
+
+    config_dir: Path | None = None
+    overrides: tuple[str, ...] = ()
+
+    def choices(self, group: str) -> dict[str, Path]:
+        """Return what a group offers."""
+        return choices(group, self.config_dir.expanduser() if self.config_dir else None)
+
+    def chosen(self, group: str) -> str | None:
+        """Return what a group is set to; of several values the first."""
+        typed = [token.partition("=")[2] for token in self.overrides if token.partition("=")[0] == group]
+        return typed[-1].split(",")[0] if typed else default_choice(group)
+
+
+def complete_override(incomplete: str, line: Line = Line()) -> list[tuple[str, str]]:
     """Offer overrides that begin with what has been typed.
 
     Args:
         incomplete: The word under the cursor, as the shell hands it over.
+        line: What stands before it.
 
     Returns:
         Pairs of the word to insert and a sentence on it.
     """
     before, typed = _whole_word(incomplete)
     try:
-        return [(word[len(before) :], text) for word, text in _offers(typed) if word.startswith(typed)]
+        return [(word[len(before) :], text) for word, text in _offers(typed, line) if word.startswith(typed)]
     except (ConfigError, OSError):
         return []
 
@@ -66,24 +115,44 @@ def _whole_word(incomplete: str) -> tuple[str, str]:
     return "", incomplete
 
 
-def _offers(typed: str) -> Iterator[tuple[str, str]]:
-    head = typed.partition("=")[0].partition(".")[0]
-    if "." in typed.partition("=")[0] and head in GROUPS:
-        yield from _keys(head)
+def _offers(typed: str, line: Line) -> Iterator[tuple[str, str]]:
+    left, _, value = typed.partition("=")
+    head = left.partition(".")[0]
+    if "," in value and "[" not in value:
+        yield from _further(left, value, line)
+        return
+    if "." in left and head in GROUPS:
+        yield from _keys(head, line)
         return
     for group in LISTED:
-        for name, file in choices(group).items():
+        for name, file in line.choices(group).items():
             yield f"{group}={name}", describe(file)
+        if group in SWEPT and len(line.choices(group)) > 1:
+            yield f"{group}={ALL}", "Every one of these: one row of the table each."
     defaults = values(conf_dir() / "config.yaml")
     for name, key in ROOT.items():
         yield f"{name}={defaults.get(name, '')}", key.meaning
 
 
-def _keys(group: str) -> Iterator[tuple[str, str]]:
-    """Offer the keys of what a group is set to by default, with the values they have."""
-    chosen = default_choice(group)
-    files = choices(group)
+def _further(key: str, value: str, line: Line) -> Iterator[tuple[str, str]]:
+    """Offer, after a comma, the choices that have not been named yet."""
+    before, _, _ = value.rpartition(",")
+    named = before.split(",")
+    if key in SWEPT:
+        yield from ((f"{key}={before},{n}", describe(file)) for n, file in line.choices(key).items() if n not in named)
+    elif "." in key and key.partition(".")[0] in SWEPT:
+        for word, text in _keys(key.partition(".")[0], line):
+            option = word.removeprefix(f"{key}=")
+            if option != word and option not in named:
+                yield f"{key}={before},{option}", text
+
+
+def _keys(group: str, line: Line) -> Iterator[tuple[str, str]]:
+    """Offer the keys of what a group is set to, with the values they have."""
+    chosen, files = line.chosen(group), line.choices(group)
     if chosen in files:
         for name, value in values(files[chosen]).items():
+            if name == PLUGINS:
+                continue
             for option in ("true", "false") if value in ("true", "false") else (value.replace(" ", ""),):
                 yield f"{group}.{name}={option}", ""

@@ -2,22 +2,28 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from codriving.config.sweep import Point
 
 
-def print_config(overrides: Sequence[str], config_dir: Path | None) -> None:
-    """Print the composed config, once it is known to be valid.
+def print_configs(points: "Sequence[Point]", config_dir: Path | None) -> None:
+    """Print the composed config of every cell, once all of them are known to be valid.
 
     Args:
-        overrides: ``key=value`` tokens.
+        points: What the cells are made of; several become YAML documents, each with its cell in a comment.
         config_dir: The user's own configs, if any.
 
     Raises:
-        ConfigError: If the config cannot be used.
+        ConfigError: If one of them cannot be used.
     """
-    from codriving.config.compose import compose
     from codriving.config.show import show
-    from codriving.config.validate import validate
+    from codriving.experiment.configs import cell_name, composed, validated
 
-    resolved = compose(overrides, config_dir)
-    validate(resolved)
-    print(show(resolved), end="")
+    configs = composed(points, config_dir)
+    validated(points, configs)
+    for index, (point, config) in enumerate(zip(points, configs, strict=True)):
+        if len(points) > 1:
+            print(f"---\n# cell {index + 1} of {len(points)}: {cell_name(point)}")
+        print(show(config), end="")

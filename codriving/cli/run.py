@@ -11,9 +11,10 @@ def run(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConf
     The same command with the same run=NAME goes on where it was interrupted.
     """
     if cfg:
-        from codriving.cli.config_page import print_config
+        from codriving.cli.config_page import print_configs
+        from codriving.config.sweep import expand
 
-        print_config(overrides or [], config_dir)
+        print_configs(expand(overrides or [], config_dir), config_dir)
         return
     from codriving.experiment import run_experiment
 

@@ -13,6 +13,22 @@ EXPERIMENTS = "experiments"
 LISTED = (*GROUPS, EXPERIMENTS)
 """Every group that has choices."""
 
+SWEPT = tuple(group for group in GROUPS if group != "launcher")
+"""Groups of which one command can take several choices."""
+
+ALL = "all"
+"""The word for every choice of a group; no YAML may be called so."""
+
+FIRST = {
+    "scenario": ("intersection", "roundabout", "highway", "merge"),
+    "method": ("codriving",),
+    "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
+    "llm": ("offline",),
+    "memory": ("off",),
+    "metrics": ("standard",),
+}
+"""Choices that come before the others: in the paper's order, or from the least to the most; the rest goes by name."""
+
 _LINE = re.compile(r"^(\w+):\s*([^#\n]*)")
 _DEFAULT = re.compile(r"^\s*-\s*(\w+):\s*\"?(\w+)")
 
@@ -30,7 +46,7 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
         config_dir: The user's own configs, if any.
 
     Returns:
-        The YAML file of each choice, by name, in alphabetical order.
+        The YAML file of each choice, by name, in the order in which tables and lists show them.
 
     Raises:
         ConfigError: If there is no such group.
@@ -38,7 +54,8 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
     if group not in LISTED:
         raise ConfigError(f"unknown group {group}; groups: {', '.join(LISTED)}")
     found = {file.stem: file for folder in _folders(group, config_dir) for file in sorted(folder.glob("*.yaml"))}
-    return dict(sorted(found.items()))
+    first = [name for name in FIRST.get(group, ()) if name in found]
+    return {name: found[name] for name in dict.fromkeys([*first, *sorted(found)])}
 
 
 def describe(file: Path) -> str:
@@ -80,5 +97,7 @@ def check_config_dir(config_dir: Path) -> None:
     for group in LISTED:
         ours = choices(group)
         for name, file in choices(group, config_dir).items():
+            if name == ALL:
+                raise ConfigError(f"{file} is called {ALL}, which stands for every {group}; give it another name")
             if name in ours and file != ours[name] and file.resolve() != ours[name].resolve():
                 raise ConfigError(f"{file} has the name of a built-in {group}; give it another name")

@@ -8,6 +8,7 @@ from typing import Any
 from codriving.config.choices import check_config_dir
 from codriving.config.locate import conf_dir, experiments_root
 from codriving.config.overrides import prepare
+from codriving.config.plugins import find_beside, gathered
 from codriving.config.rules import check_rules
 from codriving.config.schema import check_root
 from codriving.errors import ConfigError
@@ -51,9 +52,10 @@ def compose(overrides: Sequence[str], config_dir: Path | None = None) -> dict[st
         raise ConfigError(_one_line(err)) from err
     if not isinstance(resolved, dict):
         raise ConfigError("the config must be a mapping")
-    plain = {str(key): value for key, value in resolved.items()}
+    plain = gathered({str(key): value for key, value in resolved.items()})
     check_root(plain)
     check_rules(plain)
+    find_beside(plain["plugins"], config_dir)
     return plain
 
 

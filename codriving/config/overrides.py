@@ -10,6 +10,8 @@ from codriving.errors import ConfigError
 
 KEY_VALUE = "write key=value, for instance scenario=intersection or episodes=20"
 
+TEXT_WITH_COMMAS = "for a text with commas write {key}='\"a,b\"'"
+
 
 def prepare(tokens: Sequence[str], config_dir: Path | None = None) -> list[str]:
     """Turn override tokens into overrides that Hydra composes without judging keys.
@@ -31,17 +33,18 @@ def prepare(tokens: Sequence[str], config_dir: Path | None = None) -> list[str]:
 
 
 def _prepare(token: str, config_dir: Path | None) -> str:
-    override = _parse(token)
+    override = parse(token)
     key = override.key_or_group
     if override.is_delete():
         raise ConfigError(f"{token}: keys cannot be removed, only set; {KEY_VALUE}")
     if override.package is not None or key == "hydra" or key.startswith(("hydra.", "hydra/")):
         raise ConfigError(f"{token}: Hydra's own settings and packages are not used here; {KEY_VALUE}")
     if override.is_sweep_override():
-        raise ConfigError(f"{token}: a key takes one value; for a text with commas write {key}='\"a,b\"'")
+        hint = "" if key in LISTED else f"; {TEXT_WITH_COMMAS.format(key=key)}"
+        raise ConfigError(f"{token}: {key} takes one value here{hint}")
     plain = token.lstrip("+")
     if key in LISTED:
-        _check_choice(key, override.value(), config_dir)
+        check_choice(key, override.value(), config_dir)
         return plain
     if "/" in key:
         return plain
@@ -55,22 +58,45 @@ def _prepare(token: str, config_dir: Path | None) -> str:
     return f"++{plain}"
 
 
-def _parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not typed
+def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not typed
+    """Read one override with Hydra's grammar.
+
+    Args:
+        token: ``key=value`` as typed.
+
+    Returns:
+        Hydra's ``Override``.
+
+    Raises:
+        ConfigError: If it is not one.
+    """
     from hydra.core.override_parser.overrides_parser import OverridesParser
     from hydra.errors import HydraException
 
     try:
         return OverridesParser.create().parse_override(token)
     except HydraException as err:
-        reason = str(err.__cause__ or err).splitlines()[0]
+        said = [str(error) for error in (err.__cause__, err) if error is not None and str(error) not in ("", "None")]
+        # What the parser would have expected instead is its whole alphabet.
+        reason = said[0].splitlines()[0].partition(" expecting ")[0] if said else "it has no form known here"
         raise ConfigError(f"cannot read {token!r} ({reason}); {KEY_VALUE}") from err
 
 
-def _check_choice(group: str, value: object, config_dir: Path | None) -> None:
+def check_choice(group: str, value: object, config_dir: Path | None = None) -> None:
+    """Refuse what is not the name of a YAML file of a group.
+
+    Args:
+        group: The group.
+        value: What it is set to, as Hydra reads it.
+        config_dir: The user's own configs, if any.
+
+    Raises:
+        ConfigError: With the choices that there are.
+    """
     known = choices(group, config_dir)
     if value is None and group == "experiments":
         return
     if isinstance(value, list | dict):
-        raise ConfigError(f"{group} takes one name, got {value!r}; choices: {', '.join(known) or 'none'}")
+        raise ConfigError(f"{group} takes names without brackets, got {value!r}; choices: {', '.join(known) or 'none'}")
     if str(value) not in known:
         raise ConfigError(f"unknown {group} {str(value)!r}; choices: {', '.join(known) or 'none'}")

@@ -49,7 +49,9 @@ class Key:
     @property
     def rule(self) -> str:
         """The rule in words, as it stands in messages and in the docs."""
-        if self.kind is int:
+        if self.kind is bool:
+            rule = "true or false"
+        elif self.kind is int:
             upper = f"to {self.high}" if self.high is not None else "or more"
             rule = f"a whole number, {self.low} {upper}"
         elif self.kind is list:
@@ -68,10 +70,12 @@ class Key:
             return True
         if self.kind is list:
             return isinstance(value, list) and all(isinstance(v, str) and _PACKAGE.fullmatch(v) for v in value)
-        if not isinstance(value, self.kind) or isinstance(value, bool):
+        if not isinstance(value, self.kind) or isinstance(value, bool) != (self.kind is bool):
             return False
         if self.kind is int:
             return (self.low or 0) <= value <= (math.inf if self.high is None else self.high)  # type: ignore[operator]
+        if self.kind is bool:
+            return True
         return bool(value) and (self.pattern is None or re.fullmatch(self.pattern, str(value)) is not None)
 
 
@@ -85,6 +89,7 @@ KEYS = (
     Key("run", "name of the run folder; the same name resumes; null takes the time", str, pattern=_NAME, optional=True),
     Key("output", "folder under which the run folders are written", str),
     Key("experiment", "folder below output, one an experiment", str, pattern=_NAME),
+    Key("render", "whether each episode leaves a film, replay.mp4 beside its record", bool),
     Key("plugins", "packages of yours whose classes a config may name", list),
 )
 

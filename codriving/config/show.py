@@ -5,8 +5,8 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-WITHOUT_EFFECT = ("workers", "output", "run", "launcher", "render")
-"""Keys that change where and how fast a run is made, never what comes out."""
+WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render")
+"""Keys that change how much of a run is made, where and how fast, never what an episode is."""
 
 
 def show(resolved: Mapping[str, Any]) -> str:

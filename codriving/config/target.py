@@ -27,7 +27,8 @@ def find_class(target: object, key: str, plugins: Sequence[str] = ()) -> type:
     allowed = (OURS, *plugins)
     if not _within(target, allowed):
         raise ConfigError(
-            f"{key}._target_ may name classes of {', '.join(allowed)}, got {target}; list other packages under plugins"
+            f"{key}._target_ may name classes of {', '.join(allowed)}, got {target}; "
+            f"list other packages under plugins, in the same file as plugins: [{target.partition('.')[0]}]"
         )
     module_name, _, class_name = target.rpartition(".")
     try:
@@ -36,7 +37,10 @@ def find_class(target: object, key: str, plugins: Sequence[str] = ()) -> type:
         # A package that the user has not installed is for them to mend; one that is missing inside it is a bug there.
         if err.name is None or not (module_name == err.name or module_name.startswith(f"{err.name}.")):
             raise
-        raise ConfigError(f"{key}._target_ is {target}, but there is no module {err.name}; install or mend it") from err
+        raise ConfigError(
+            f"{key}._target_ is {target}, but there is no module {err.name}; "
+            "install it, or put it beside the folder that --config-dir names"
+        ) from err
     found = getattr(module, class_name, None)
     # A name that a module merely imported (a function of the standard library, say) is not one that it offers.
     if not isinstance(found, type) or not _within(found.__module__, allowed):

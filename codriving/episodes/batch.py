@@ -57,5 +57,5 @@ def run_batch(
             done += 1
             if report.ending is Ending.ERROR:
                 failed.append(report)
-            progress.update(done, len(failed))
+            progress.update(report.unit.cell, report.ending is Ending.ERROR)
     return BatchReport(done, tuple(sorted(failed, key=lambda r: (r.unit.cell, r.unit.seed))))

@@ -3,11 +3,28 @@
 import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 from codriving.datatypes.outcome import Ending
 from codriving.episodes.episode import EpisodeResult, failed_result, run_episode
 from codriving.episodes.unit import Labels, Objects, Unit
 from codriving.errors import UserError
+
+
+class After(Protocol):
+    """What is done with an episode once it is saved, for instance a film; it never changes what was saved."""
+
+    def kept(self, unit: Unit) -> Ending | None:
+        """Tell how an episode ended that is saved already and need not be driven; None if there is none."""
+        ...
+
+    def finish(self, unit: Unit) -> None:
+        """Do it; what goes wrong is noted where the result would be, and stops nobody."""
+        ...
+
+    def abandon(self, unit: Unit, error: Exception) -> None:
+        """Note that it cannot be done."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -18,11 +35,13 @@ class Job:
         labels: Labels of each cell, by name.
         build: Builds the objects of a cell from its name.
         save: Keeps a result; must be atomic, and raise a UserError where the user can mend what is wrong.
+        after: What is done with each episode once it is saved, if anything.
     """
 
     labels: Mapping[str, Labels]
     build: Callable[[str], Objects]
     save: Callable[[Unit, EpisodeResult], None]
+    after: After | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +57,10 @@ class Report:
     unit: Unit
     ending: Ending
     message: str = ""
+
+
+KEPT = 4
+"""Cells whose objects a process keeps."""
 
 
 class Worker:
@@ -64,6 +87,14 @@ class Worker:
         Raises:
             UserError: If the config cannot be built or the result cannot be saved: the whole batch has to stop.
         """
+        after = self._job.after
+        kept = after.kept(unit) if after else None
+        report = self._save(unit) if kept is None else Report(unit, kept)
+        if after:
+            after.finish(unit)
+        return report
+
+    def _save(self, unit: Unit) -> Report:
         result = self._drive(unit)
         try:
             self._job.save(unit, result)
@@ -89,6 +120,11 @@ class Worker:
         Raises:
             UserError: If the record cannot be saved.
         """
+        after = self._job.after
+        kept = after.kept(unit) if after else None
+        if after and kept is not None:
+            after.abandon(unit, error)
+            return Report(unit, kept)
         result = failed_result(self._job.labels[unit.cell], unit.seed, error)
         self._job.save(unit, result)
         return Report(unit, Ending.ERROR, result.record.outcome.message)
@@ -97,6 +133,9 @@ class Worker:
         labels = self._job.labels[unit.cell]
         try:
             if unit.cell not in self._objects:
+                # Units come cell by cell: what came first is not wanted again, and a sweep may have hundreds.
+                while len(self._objects) >= KEPT:
+                    del self._objects[next(iter(self._objects))]
                 self._objects[unit.cell] = self._job.build(unit.cell)
         except UserError:
             raise

@@ -1,7 +1,7 @@
 """How far a batch is: a bar on a terminal, a few plain lines in a pipe."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Protocol, TextIO
 
@@ -9,12 +9,12 @@ from typing import Protocol, TextIO
 class Progress(Protocol):
     """Somebody who is told of each unit that has ended."""
 
-    def update(self, done: int, failed: int) -> None:
+    def update(self, cell: str, failed: bool) -> None:
         """Take note.
 
         Args:
-            done: Units that have ended, failed ones included.
-            failed: Units that ended in an error.
+            cell: The cell of a unit that has ended.
+            failed: Whether it ended in an error.
         """
         ...
 
@@ -22,37 +22,63 @@ class Progress(Protocol):
 class Silent:
     """Nobody wants to know."""
 
-    def update(self, done: int, failed: int) -> None:
+    def update(self, cell: str, failed: bool) -> None:
         """Do nothing."""
+
+
+class _Count:
+    """Units and cells that have ended."""
+
+    def __init__(self, units: Mapping[str, int]) -> None:
+        self._left = dict(units)
+        self.total = sum(units.values())
+        self.done = self.failed = 0
+
+    def add(self, cell: str, failed: bool) -> None:
+        """Count one unit."""
+        self._left[cell] -= 1
+        self.done += 1
+        self.failed += failed
+
+    @property
+    def cells(self) -> str:
+        """How many cells are complete, where there are several."""
+        complete = sum(left == 0 for left in self._left.values())
+        return f"{complete} of {len(self._left)} cells" if len(self._left) > 1 else ""
 
 
 class _Lines:
     """About ten lines a batch, for logs."""
 
-    def __init__(self, total: int, stream: TextIO) -> None:
-        self._total = total
+    def __init__(self, count: _Count, stream: TextIO) -> None:
+        self._count = count
         self._stream = stream
-        self._every = max(1, total // 10)
+        self._every = max(1, count.total // 10)
 
-    def update(self, done: int, failed: int) -> None:
-        if done % self._every == 0 or done == self._total:
-            print(f"{done} of {self._total} episodes done, {failed} failed", file=self._stream, flush=True)
+    def update(self, cell: str, failed: bool) -> None:
+        count = self._count
+        count.add(cell, failed)
+        if count.done % self._every == 0 or count.done == count.total:
+            cells = f", {count.cells} complete" if count.cells else ""
+            text = f"{count.done} of {count.total} episodes done, {count.failed} failed{cells}"
+            print(text, file=self._stream, flush=True)
 
 
 @contextmanager
-def show_progress(total: int, stream: TextIO | None = None) -> Iterator[Progress]:
+def show_progress(units: Mapping[str, int], stream: TextIO | None = None) -> Iterator[Progress]:
     """Show how far a batch is while the block lasts.
 
     Args:
-        total: Number of units.
+        units: Number of units of each cell.
         stream: Where to show it; standard error by default, so that a pipe gets the table alone.
 
     Yields:
         Whom to tell.
     """
     stream = stream or sys.stderr
+    count = _Count(units)
     if not stream.isatty():
-        yield _Lines(total, stream)
+        yield _Lines(count, stream)
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -63,15 +89,17 @@ def show_progress(total: int, stream: TextIO | None = None) -> Iterator[Progress
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("{task.fields[failed]} failed"),
+        *([TextColumn("{task.fields[cells]}")] if count.cells else []),
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
     )
     with Bar(*columns, console=Console(file=stream)) as bar:
-        task = bar.add_task("episodes", total=total, failed=0)
+        task = bar.add_task("episodes", total=count.total, failed=0, cells=count.cells)
 
         class _Bar:
-            def update(self, done: int, failed: int) -> None:
-                bar.update(task, completed=done, failed=failed)
+            def update(self, cell: str, failed: bool) -> None:
+                count.add(cell, failed)
+                bar.update(task, completed=count.done, failed=count.failed, cells=count.cells)
 
         yield _Bar()

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+from codriving.config.sweep import Point
+
 OWN_ORDERS = ("own_view", "same_rule", "independent")
 """The readings of "each CAV generates its expected passing order"; all are reported, none is chosen afterwards."""
 
@@ -16,15 +18,19 @@ REMOVALS: tuple[tuple[str, ...], ...] = (
 """What each cell of the ablation changes."""
 
 
-def ablation_variations(overrides: Sequence[str]) -> list[list[str]]:
-    """Give the overrides of each cell of the ablation.
+def ablation_points(points: Sequence[Point]) -> list[Point]:
+    """Take the sub-modules out of each config in turn.
 
     Args:
-        overrides: What the user gave; it holds for every cell.
+        points: What the user asked for, for instance one config a scenario.
 
     Returns:
-        The full method first.
+        The cells, those of one config together and the full method first.
     """
-    named = any(override.lstrip("+").startswith("experiment=") for override in overrides)
-    base = [*([] if named else ["experiment=ablate"]), *overrides]
-    return [[*base, *removal] for removal in REMOVALS]
+    return [_without(point, removal) for point in points for removal in REMOVALS]
+
+
+def _without(point: Point, removal: tuple[str, ...]) -> Point:
+    named = any(override.lstrip("+").startswith("experiment=") for override in point.overrides)
+    base = () if named else ("experiment=ablate",)
+    return Point((*base, *point.overrides, *removal), point.swept, removal)

@@ -1,15 +1,16 @@
 """A cell: one row of a table, which is one resolved config on many seeds."""
 
-import re
-from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from codriving.config.build import build
-from codriving.config.show import WITHOUT_EFFECT, fingerprint
+from codriving.config.show import WITHOUT_EFFECT, fingerprint, show
+from codriving.config.sweep import Point
 from codriving.episodes.unit import Labels
 from codriving.errors import ConfigError
+from codriving.experiment.naming import folder_name
+from codriving.experiment.swept import swept_values
 from codriving.storage.manifest import CellEntry
 from codriving.storage.redaction import flat, redact
 
@@ -23,12 +24,24 @@ class Cell:
         labels: What its records are labelled with.
         resolved: Its resolved config of plain values.
         metrics: Name of the definitions that it is scored by.
+        swept: Its value of each key that the command gives several.
     """
 
     folder: str
     labels: Labels
     resolved: Mapping[str, Any]
     metrics: str = "standard"
+    swept: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def config_text(self) -> str:
+        """Its config as YAML, without secrets."""
+        return show(redact(self.resolved))
+
+    @property
+    def fingerprint(self) -> str:
+        """What tells its config from all others."""
+        return fingerprint(self.resolved)
 
     def entry(self) -> CellEntry:
         """Describe it for the manifest."""
@@ -39,16 +52,18 @@ class Cell:
             method=self.labels.method,
             variant=self.labels.variant,
             reasoner=self.labels.reasoner,
-            fingerprint=fingerprint(self.resolved),
+            fingerprint=self.fingerprint,
+            swept=dict(self.swept),
             settings=flat(redact(relevant)),
         )
 
 
-def make_cell(resolved: Mapping[str, Any]) -> Cell:
+def make_cell(resolved: Mapping[str, Any], point: Point | None = None) -> Cell:
     """Make the cell of a config; its labels are what its objects call themselves.
 
     Args:
         resolved: A validated config of plain values.
+        point: What it was composed of.
 
     Returns:
         The cell.
@@ -66,7 +81,7 @@ def make_cell(resolved: Mapping[str, Any]) -> Cell:
         reasoner=_label(method, "reasoner", "method"),
     )
     metrics = _label(build(resolved["metrics"], plugins, "metrics"), "name", "metrics")
-    return Cell(folder_name(labels), labels, resolved, metrics)
+    return Cell(folder_name(labels), labels, resolved, metrics, swept_values(point.swept, resolved) if point else {})
 
 
 def _label(made: object, attribute: str, key: str) -> str:
@@ -76,35 +91,3 @@ def _label(made: object, attribute: str, key: str) -> str:
             f"{key}: {type(made).__name__} needs an attribute {attribute!r} of type str for the tables, got {value!r}"
         )
     return value
-
-
-def folder_name(labels: Labels) -> str:
-    """Name the folder of a cell so that a person finds it and every file system takes it.
-
-    Args:
-        labels: What the records are labelled with.
-
-    Returns:
-        ``<scenario>-<method>-<variant>`` with everything unusual replaced.
-    """
-    words = (labels.scenario, labels.method, labels.variant)
-    return "-".join(re.sub(r"[^A-Za-z0-9._]+", "_", word).lstrip(".") for word in words if word)
-
-
-def distinct(cells: Sequence[Cell]) -> tuple[Cell, ...]:
-    """Drop cells that are the same config again, and tell apart those that are only called the same.
-
-    Args:
-        cells: Cells in the order of the table.
-
-    Returns:
-        The cells with unique folders, in the same order.
-    """
-    once: dict[str, Cell] = {}
-    for cell in cells:
-        once.setdefault(fingerprint(cell.resolved), cell)
-    names = Counter(cell.folder for cell in once.values())
-    return tuple(
-        cell if names[cell.folder] == 1 else replace(cell, folder=f"{cell.folder}-{print_[:8]}")
-        for print_, cell in once.items()
-    )

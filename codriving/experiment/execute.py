@@ -1,10 +1,12 @@
 """A plan to a finished run folder: what is missing is driven, what is there is kept, tables are made from records."""
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
@@ -12,14 +14,16 @@ from codriving.episodes.batch import run_batch
 from codriving.episodes.job import Job, Report
 from codriving.episodes.progress import Progress, Silent
 from codriving.episodes.unit import Objects, Unit
+from codriving.experiment.cells import Cell
+from codriving.experiment.film import FilmEpisode
 from codriving.experiment.keep import KeepEpisode
 from codriving.experiment.plan import Plan
 from codriving.reports.paper import Paper
-from codriving.reports.rows import csv_text
+from codriving.reports.rows import Row, csv_text
 from codriving.reports.run_tables import RunTables, run_tables, write_tables
-from codriving.reports.timing_table import COLUMNS as TIMING_COLUMNS
-from codriving.reports.timing_table import timing_rows
+from codriving.reports.timing_table import timing_columns, timing_rows
 from codriving.storage.atomic import write_text
+from codriving.storage.continuation import changed_versions
 from codriving.storage.manifest import FORMAT, CellEntry, Manifest
 from codriving.storage.provenance import commit, machine, versions
 from codriving.storage.run_folder import RunFolder, new_run_path, unwritable
@@ -36,6 +40,10 @@ class Finished:
         driven: Episodes driven now.
         kept: Episodes that were there already.
         failed: Those that ended in an error.
+        further: Episodes in the folder that were not asked for, and are in no table.
+        changed: What has another version than when the run began, if episodes of both are in the table.
+        filmed: Films made now.
+        unfilmed: Episodes of which films were asked for and could not be made.
     """
 
     folder: Path
@@ -43,6 +51,10 @@ class Finished:
     driven: int
     kept: int
     failed: tuple[Report, ...]
+    further: int = 0
+    changed: tuple[str, ...] = ()
+    filmed: int = 0
+    unfilmed: tuple[Unit, ...] = ()
 
 
 class Interrupted(KeyboardInterrupt):
@@ -64,19 +76,20 @@ class Interrupted(KeyboardInterrupt):
 
 def execute(
     plan: Plan,
-    build: Callable[[str], Objects],
+    build: Callable[[Mapping[str, Mapping[str, Any]]], Callable[[str], Objects]],
     preload: Sequence[str] = (),
     paper: Paper | None = None,
-    progress: Callable[[int], AbstractContextManager[Progress]] = lambda _: nullcontext(Silent()),
+    progress: Callable[[Mapping[str, int]], AbstractContextManager[Progress]] = lambda _: nullcontext(Silent()),
 ) -> Finished:
     """Run a plan, or what is left of it.
 
     Args:
         plan: What to run.
-        build: Builds the objects of a cell from the name of its folder; picklable.
+        build: Given the config of each cell by the name of its folder, gives what builds the objects of a cell from
+            that name; the latter is picklable.
         preload: Modules imported once for all processes.
         paper: The paper's numbers, to stand beside ours.
-        progress: Opens a display of the progress of so many units.
+        progress: Opens a display of the progress of so many units of each cell.
 
     Returns:
         The finished run.
@@ -85,30 +98,40 @@ def execute(
         UserError: If the folder cannot be used or the objects cannot be built.
         Interrupted: If the user stops it; finished episodes are kept.
     """
-    entries = tuple(cell.entry() for cell in plan.cells)
-    with RunFolder(_path(plan), _manifest(plan, entries), plan.config_text) as folder:
+    configs = {cell.folder: cell.config_text for cell in plan.cells}
+    asked = _manifest(plan)
+    with RunFolder(_path(plan), asked, configs) as folder:
+        # A cell that is there already keeps its folder, whatever it would be called in this run.
+        cells = [replace(cell, folder=name) for cell, name in zip(plan.cells, folder.manifest.rows, strict=True)]
+        entries = tuple(cell.entry() for cell in cells)
         records = _records(folder, entries, plan.seeds, {})
-        units = [Unit(cell.folder, seed) for cell in entries for seed in plan.seeds]
+        # One batch of all cells: nobody waits for the last episode of a cell.
+        units = [Unit(cell.folder, seed) for cell in cells for seed in plan.seeds]
         missing = [unit for unit in units if unit not in records]
-        job = Job({cell.folder: cell.labels for cell in plan.cells}, build, KeepEpisode(folder.path))
+        film = FilmEpisode(folder.path, {entry.folder: entry for entry in entries}) if plan.render else None
+        unfilmed = [unit for unit in units if film and unit in records and film.lacks(unit)]
+        resolved = {cell.folder: cell.resolved for cell in cells}
+        job = Job({cell.folder: cell.labels for cell in cells}, build(resolved), KeepEpisode(folder.path), film)
         failed: tuple[Report, ...] = ()
+        todo = missing + unfilmed
         try:
-            if missing:
-                with progress(len(missing)) as display:
-                    failed = run_batch(missing, job, plan.launcher, plan.workers, preload, display).failed
+            if todo:
+                with progress(Counter(unit.cell for unit in todo)) as display:
+                    failed = run_batch(todo, job, plan.launcher, plan.workers, preload, display).failed
         except KeyboardInterrupt:
             finished = len(_records(folder, entries, plan.seeds, records))
             raise Interrupted(folder.path, finished, len(units)) from None
         finally:
             folder.clean()
         everything = _records(folder, entries, plan.seeds, records, errors=True)
-        tables = run_tables(
-            [[everything[Unit(c.folder, seed)] for seed in plan.seeds] for c in entries],
-            paper or Paper(),
-            ", ".join(dict.fromkeys(cell.metrics for cell in plan.cells)),
-        )
-        _write(folder, tables, [(unit, everything[unit]) for unit in units])
-        return Finished(folder.path, tables, len(missing), len(units) - len(missing), failed)
+        rows = [[everything[Unit(cell.folder, seed)] for seed in plan.seeds] for cell in cells]
+        tables = _tables(plan, cells, rows, paper or Paper())
+        _write(folder, tables, _timing(folder, cells, rows))
+        kept = len(units) - len(missing)
+        changed = changed_versions(folder.manifest, asked) if kept and missing else ()
+        further, filmed = folder.further(plan.seeds), sum(film.path(unit).exists() for unit in todo) if film else 0
+        lacking = tuple(unit for unit in units if film and film.lacks(unit))
+        return Finished(folder.path, tables, len(missing), kept, failed, further, changed, filmed, lacking)
 
 
 def _path(plan: Plan) -> Path:
@@ -116,14 +139,15 @@ def _path(plan: Plan) -> Path:
     return experiment / plan.run if plan.run else new_run_path(experiment, datetime.now())
 
 
-def _manifest(plan: Plan, entries: tuple[CellEntry, ...]) -> Manifest:
+def _manifest(plan: Plan) -> Manifest:
     return Manifest(
         format=FORMAT,
         experiment=plan.experiment,
         created=datetime.now(UTC).isoformat(timespec="seconds"),
         first_seed=plan.first_seed,
         episodes=plan.episodes,
-        cells=entries,
+        rows=tuple(cell.folder for cell in plan.cells),
+        cells=tuple(cell.entry() for cell in plan.cells),
         versions=versions(),
         commit=commit(),
         machine=machine(),
@@ -150,10 +174,23 @@ def _records(
     return found
 
 
-def _write(folder: RunFolder, tables: RunTables, records: Sequence[tuple[Unit, EpisodeRecord]]) -> None:
-    timed = [(record, read_timing(folder.episode(unit.cell, unit.seed))) for unit, record in records]
+def _tables(plan: Plan, cells: Sequence[Cell], rows: Sequence[Sequence[EpisodeRecord]], paper: Paper) -> RunTables:
+    metrics = ", ".join(dict.fromkeys(cell.metrics for cell in cells))
+    return run_tables(rows, paper, metrics, [cell.swept for cell in cells], plan.notes)
+
+
+def _timing(folder: RunFolder, cells: Sequence[Cell], rows: Sequence[Sequence[EpisodeRecord]]) -> str:
+    columns = timing_columns(list(cells[0].swept))
+    lines: list[Row] = []
+    for cell, records in zip(cells, rows, strict=True):
+        timed = [(record, read_timing(folder.episode(cell.folder, record.seed))) for record in records]
+        lines += timing_rows(timed, cell.swept)
+    return csv_text(columns, lines)
+
+
+def _write(folder: RunFolder, tables: RunTables, timing: str) -> None:
     try:
         write_tables(tables, folder.path)
-        write_text(folder.path / "timing.csv", csv_text(TIMING_COLUMNS, timing_rows(timed)))
+        write_text(folder.path / "timing.csv", timing)
     except OSError as error:
         raise unwritable(folder.path, error) from error

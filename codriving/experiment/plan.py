@@ -1,18 +1,18 @@
 """What is to be run: cells, seeds and where to, worked out before anything is driven."""
 
+import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from codriving.config.build import build
-from codriving.config.compose import compose
-from codriving.config.show import show
-from codriving.config.validate import validate
+from codriving.config.sweep import Point
 from codriving.episodes.launcher import Launcher
-from codriving.experiment.cells import Cell, distinct, make_cell
+from codriving.experiment.cells import Cell, make_cell
+from codriving.experiment.configs import composed, each_cell, validated
+from codriving.experiment.naming import distinct, repeated
 from codriving.experiment.objects import modules_to_preload
-from codriving.storage.redaction import redact
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,8 @@ class Plan:
         output: Folder of all experiments.
         experiment: Name of the experiment.
         run: Name of the run, or None for its time.
-        config_text: Resolved config of the first cell as YAML, without secrets.
+        notes: What a reader of its table has to know.
+        render: Whether each episode leaves a film.
     """
 
     cells: tuple[Cell, ...]
@@ -39,7 +40,8 @@ class Plan:
     output: Path
     experiment: str
     run: str | None
-    config_text: str
+    notes: tuple[str, ...] = ()
+    render: bool = False
 
     @property
     def seeds(self) -> range:
@@ -52,11 +54,11 @@ class Plan:
         return {cell.folder: cell.resolved for cell in self.cells}
 
 
-def make_plan(variations: Sequence[Sequence[str]], config_dir: Path | None = None) -> Plan:
-    """Plan a run with one cell a variation.
+def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
+    """Plan a run with one cell a point.
 
     Args:
-        variations: The overrides of each cell; they share everything that belongs to the run as a whole.
+        points: What the cells are made of; they share everything that belongs to the run as a whole.
         config_dir: A folder of the user's own configs.
 
     Returns:
@@ -65,16 +67,17 @@ def make_plan(variations: Sequence[Sequence[str]], config_dir: Path | None = Non
     Raises:
         ConfigError: If an override, a value or a combination cannot be used.
     """
-    configs = [compose(list(overrides), config_dir) for overrides in variations]
+    configs = composed(points, config_dir)
     first = configs[0]
     launcher: Launcher = build(first["launcher"], first["plugins"], "launcher")
-    if not _has_table(first):
+    if not _is_complete(first, len(configs)):
         # The simulator's import takes a second: let it pass while the configs are checked here.
         launcher.prepare(first["workers"], first["episodes"] * len(configs), modules_to_preload(configs))
-    for config in configs:
-        validate(config)
+    validated(points, configs)
+    pairs = list(zip(configs, points, strict=True))
+    cells = each_cell(points, pairs, lambda pair: make_cell(*pair))
     return Plan(
-        cells=distinct([make_cell(config) for config in configs]),
+        cells=distinct(cells),
         first_seed=first["seed"],
         episodes=first["episodes"],
         launcher=launcher,
@@ -82,11 +85,19 @@ def make_plan(variations: Sequence[Sequence[str]], config_dir: Path | None = Non
         output=Path(first["output"]),
         experiment=first["experiment"],
         run=first["run"],
-        config_text=show(redact(first)),
+        notes=repeated(cells),
+        render=first["render"],
     )
 
 
-def _has_table(config: Mapping[str, Any]) -> bool:
+def _is_complete(config: Mapping[str, Any], cells: int) -> bool:
     """Whether the run is most likely complete, so that nobody need get ready for it."""
-    run = config["run"]
-    return run is not None and Path(config["output"], config["experiment"], run, "summary.csv").exists()
+    if config["run"] is None:
+        return False
+    table = Path(config["output"], config["experiment"], config["run"], "episodes.csv")
+    try:
+        with table.open(encoding="utf-8", newline="") as file:
+            rows = sum(1 for _ in csv.reader(file)) - 1
+    except (OSError, ValueError, csv.Error):
+        return False
+    return rows >= int(config["episodes"]) * cells

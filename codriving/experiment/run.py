@@ -2,15 +2,18 @@
 
 import shlex
 import sys
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from codriving.config.locate import experiments_dir
+from codriving.config.sweep import Point, expand
 from codriving.episodes.progress import show_progress
 from codriving.errors import ConfigError
-from codriving.experiment.ablation import ablation_variations
+from codriving.experiment.ablation import ablation_points
+from codriving.experiment.cells import Cell
 from codriving.experiment.execute import Finished, Interrupted, execute
 from codriving.experiment.objects import BuildObjects, modules_to_preload
 from codriving.experiment.plan import Plan, make_plan
@@ -40,7 +43,7 @@ class Results:
 
 
 def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> int:
-    """Run one cell and print its table: ``codriving run``.
+    """Run one cell, or one for each combination of several values, and print the table: ``codriving run``.
 
     Args:
         overrides: ``key=value`` tokens.
@@ -52,14 +55,14 @@ def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> 
     Raises:
         UserError: If the config or the run folder cannot be used.
     """
-    return _command("run", [overrides], overrides, config_dir)
+    return _command("run", expand(overrides, config_dir), overrides, config_dir)
 
 
 def run_ablation(overrides: Sequence[str], config_dir: Path | None = None) -> int:
     """Run the full method and each sub-module removed, and print one table: ``codriving ablate``.
 
     Args:
-        overrides: ``key=value`` tokens that hold for every cell.
+        overrides: ``key=value`` tokens that hold for every cell; with several values, for one ablation each.
         config_dir: A folder of the user's own configs.
 
     Returns:
@@ -68,21 +71,24 @@ def run_ablation(overrides: Sequence[str], config_dir: Path | None = None) -> in
     Raises:
         UserError: If the config or the run folder cannot be used.
     """
-    return _command("ablate", ablation_variations(overrides), overrides, config_dir)
+    return _command("ablate", ablation_points(expand(overrides, config_dir)), overrides, config_dir)
 
 
 def _refuse_alike(plan: Plan) -> None:
     """A method that does not reason has nothing to remove; its ablation would be one row many times over."""
-    labels = {cell.labels for cell in plan.cells}
-    if len(plan.cells) > 1 and len(labels) == 1:
-        method = plan.cells[0].labels.method
-        raise ConfigError(
-            f"method {method!r} has no reasoning sub-modules to remove; choose one that has, method=codriving"
-        )
+    together: defaultdict[tuple[str, ...], list[Cell]] = defaultdict(list)
+    for cell in plan.cells:
+        together[cell.labels.scenario, cell.labels.method, *cell.swept.values()].append(cell)
+    for cells in together.values():
+        if len(cells) > 1 and len({cell.labels for cell in cells}) == 1:
+            raise ConfigError(
+                f"method {cells[0].labels.method!r} has no reasoning sub-modules to remove; choose one that has, "
+                "method=codriving"
+            )
 
 
 def run_frames(*overrides: str, config_dir: Path | None = None) -> Results:
-    """Run one cell and give its tables as data frames; prints no table.
+    """Run one cell, or those of a sweep, and give the tables as data frames; prints no table.
 
     Args:
         *overrides: ``key=value`` tokens.
@@ -95,20 +101,19 @@ def run_frames(*overrides: str, config_dir: Path | None = None) -> Results:
         UserError: If the config or the run folder cannot be used.
         KeyboardInterrupt: If the user stops it; finished episodes are kept.
     """
-    finished = _run(make_plan([overrides], config_dir))
+    finished = _run(make_plan(expand(overrides, config_dir), config_dir))
     return Results(finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
 
 
 def _run(plan: Plan) -> Finished:
-    configs = plan.configs
-    return execute(
-        plan, BuildObjects(configs), modules_to_preload(configs.values()), read_paper(experiments_dir()), show_progress
-    )
+    preload = [*modules_to_preload(plan.configs.values()), *(["codriving.pictures.screening"] if plan.render else [])]
+    return execute(plan, BuildObjects, preload, read_paper(experiments_dir()), show_progress)
 
 
-def _command(name: str, variations: Sequence[Sequence[str]], overrides: Sequence[str], config_dir: Path | None) -> int:
-    plan = make_plan(variations, config_dir)
-    _refuse_alike(plan)
+def _command(name: str, points: Sequence[Point], overrides: Sequence[str], config_dir: Path | None) -> int:
+    plan = make_plan(points, config_dir)
+    if name == "ablate":
+        _refuse_alike(plan)
     try:
         finished = _run(plan)
     except Interrupted as stop:
@@ -117,7 +122,7 @@ def _command(name: str, variations: Sequence[Sequence[str]], overrides: Sequence
         print(f"Go on with: {again}", file=sys.stderr)
         return INTERRUPTED
     report(finished, resume_command(name, overrides, config_dir, finished.folder.name))
-    return 1 if finished.failed else 0
+    return 1 if finished.failed or finished.unfilmed else 0
 
 
 def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None, run: str) -> str:
@@ -144,7 +149,7 @@ def report(finished: Finished, again: str) -> None:
         finished: The run.
         again: The command that repeats failed episodes.
     """
-    if not finished.driven:
+    if not finished.driven and not finished.filmed:
         print(f"Nothing to do: all {finished.kept} episodes of this run are finished already.")
     print_table(finished.tables.display)
     if finished.failed:
@@ -152,4 +157,16 @@ def report(finished: Finished, again: str) -> None:
         where = f"{finished.folder}/episodes/{first.unit.cell}/{first.unit.seed}/error.txt"
         print(f"{len(finished.failed)} episodes ended in an error, the first with {first.message} (see {where}).")
         print(f"Repeat them with: {again}")
+    if finished.changed:
+        print(
+            f"Kept episodes may be of other versions than new ones: since the run began, {', '.join(finished.changed)}."
+        )
+    if finished.filmed:
+        print(f"{finished.filmed} films made, replay.mp4 beside the record of each episode.")
+    if finished.unfilmed:
+        first_unit = finished.unfilmed[0]
+        where = f"{finished.folder}/episodes/{first_unit.cell}/{first_unit.seed}/replay-error.txt"
+        print(f"{len(finished.unfilmed)} episodes could not be filmed (see {where}). Try again with: {again}")
+    if finished.further:
+        print(f"{finished.further} more episodes in this run folder were not asked for and are left out of the table.")
     print(f"Run folder: {finished.folder}")

@@ -1,14 +1,18 @@
 """The summary as people read it: rounded, in percent, the paper's row beside ours; console and Markdown share it."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
-from codriving.reports.paper import Paper, PaperRow
+from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.rows import Row, Value
 
 NOTES = (
     "Rates are over completed episodes, intervals are Wilson 95 %; PET and velocity are over successful episodes.",
 )
+
+
+CLAIM = "the paper says"
+"""Head of the column of the paper's statements on an ablation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,10 +22,12 @@ class Line:
     Attributes:
         cells: Text of each column.
         ours: Whether it is measured here; False for the paper's.
+        last: Whether the rows of a scenario end with it.
     """
 
     cells: tuple[str, ...]
     ours: bool = True
+    last: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,26 +36,30 @@ class Display:
 
     Attributes:
         title: What it shows and who reasoned.
-        columns: Heads of the columns; the first ones hold words.
-        words: Number of columns that hold words.
+        columns: Heads of the columns.
+        words: Those of the columns that hold words; numbers are in the others.
         lines: The rows.
         notes: What a reader has to know.
     """
 
     title: str
     columns: tuple[str, ...]
-    words: int
+    words: tuple[str, ...]
     lines: tuple[Line, ...]
     notes: tuple[str, ...] = NOTES
 
 
-def display(rows: Sequence[Row], paper: Paper, metrics: str = "standard") -> Display:
+def display(
+    rows: Sequence[Row], paper: Paper, metrics: str = "standard", swept: Sequence[str] = (), notes: Sequence[str] = ()
+) -> Display:
     """Prepare the summary for people.
 
     Args:
         rows: Rows of the summary, at least one.
         paper: The paper's numbers.
         metrics: Name of the definitions by which it was measured.
+        swept: Swept keys that need a column.
+        notes: What a reader has to know of these rows.
 
     Returns:
         The table. A column of scenarios or of statements is there only where it says something.
@@ -57,11 +67,12 @@ def display(rows: Sequence[Row], paper: Paper, metrics: str = "standard") -> Dis
     scenarios = list(dict.fromkeys(str(row["scenario"]) for row in rows))
     many = len(scenarios) > 1
     claims = [paper.statement(str(row["scenario"]), str(row["variant"])) for row in rows]
-    # With full alone there is nothing to compare the claim with.
-    ablation = any(claims) and len(rows) > 1
-    columns = [
+    # Where nothing has been removed there is nothing to compare the claim with.
+    ablation = any(claim and row["variant"] not in WHOLE for row, claim in zip(rows, claims, strict=True))
+    columns = (
         *(["scenario"] if many else []),
         "method",
+        *swept,
         "episodes",
         "success",
         "95 % interval",
@@ -72,15 +83,32 @@ def display(rows: Sequence[Row], paper: Paper, metrics: str = "standard") -> Dis
         "PET mean / max / min [s]",
         "PET < 1.5 s",
         "velocity mean / max / min [m/s]",
-        *(["the paper says"] if ablation else []),
-    ]
+        *([CLAIM] if ablation else []),
+    )
+    words = ("scenario", "method", CLAIM, *(key for key in swept if not all(_is_number(row.get(key)) for row in rows)))
+    theirs = _beside(rows, paper)
     lines: list[Line] = []
-    for row, claim in zip(rows, claims, strict=True):
-        beside = paper.row(str(row["scenario"]), str(row["method"]), str(row["variant"]))
-        lines.append(Line(tuple(_ours(row, claim).get(column, "") for column in columns)))
-        if beside is not None:
-            lines.append(Line(tuple(_theirs(row, beside).get(column, "") for column in columns), ours=False))
-    return Display(_title(scenarios, rows, metrics), tuple(columns), 2 if many else 1, tuple(lines))
+    for index, (row, claim) in enumerate(zip(rows, claims, strict=True)):
+        lines.append(_line(columns, {**_ours(row, claim), **{key: str(row.get(key, "")) for key in swept}}))
+        if index in theirs:
+            lines.append(_line(columns, _theirs(row, theirs[index]), ours=False))
+        if index + 1 < len(rows) and rows[index + 1]["scenario"] != row["scenario"]:
+            lines[-1] = replace(lines[-1], last=True)
+    return Display(_title(scenarios, rows, metrics), columns, words, tuple(lines), (*NOTES, *notes))
+
+
+def _line(columns: Sequence[str], texts: Mapping[str, str], ours: bool = True) -> Line:
+    return Line(tuple(texts.get(column, "") for column in columns), ours)
+
+
+def _beside(rows: Sequence[Row], paper: Paper) -> dict[int, PaperRow]:
+    """Find the paper's rows, each below the last of ours that it belongs to, so that a sweep quotes it once."""
+    last: dict[tuple[str, str], tuple[int, PaperRow]] = {}
+    for index, row in enumerate(rows):
+        found = paper.row(str(row["scenario"]), str(row["method"]), str(row["variant"]))
+        if found is not None:
+            last[found.scenario, found.method] = index, found
+    return dict(last.values())
 
 
 def _title(scenarios: Iterable[str], rows: Sequence[Row], metrics: str) -> str:
@@ -107,7 +135,7 @@ def _ours(row: Row, claim: str) -> dict[str, str]:
         "PET mean / max / min [s]": _three(row, "pet"),
         "PET < 1.5 s": _percent(row["pet_below_1_5"]),
         "velocity mean / max / min [m/s]": _three(row, "velocity"),
-        "the paper says": claim,
+        CLAIM: claim,
     }
 
 
@@ -125,6 +153,14 @@ def _theirs(row: Row, paper: PaperRow) -> dict[str, str]:
 
 def _any(rows: Sequence[Row], column: str) -> bool:
     return any(row.get(column) for row in rows)
+
+
+def _is_number(value: Value) -> bool:
+    try:
+        float(str(value))
+    except ValueError:
+        return False
+    return True
 
 
 def _percent(value: Value) -> str:

@@ -1,6 +1,6 @@
 """``episodes.csv``: one row an episode."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
@@ -32,29 +32,32 @@ TEXT = frozenset({*LABELS, "outcome", "collision_pair", "striker", "struck", "of
 """Columns of words; all others are numbers."""
 
 
-def episode_columns(records: Iterable[EpisodeRecord]) -> tuple[str, ...]:
-    """Give the columns of ``episodes.csv``: the fixed ones, then one for each counter that a method reports.
+def episode_columns(records: Iterable[EpisodeRecord], swept: Sequence[str] = ()) -> tuple[str, ...]:
+    """Give the columns of ``episodes.csv``: fixed ones, swept keys, more fixed ones, and counters that methods report.
 
     Args:
         records: All records of the table.
+        swept: Swept keys that need a column.
 
     Returns:
         Columns in order.
     """
     counters = sorted({name for record in records for name in record.counts})
-    return (*LEADING, *FURTHER, *(name for name in counters if name not in {*LEADING, *FURTHER}))
+    known = (*LEADING, *swept, *FURTHER)
+    return (*known, *(name for name in counters if name not in known))
 
 
-def episode_rows(records: Sequence[EpisodeRecord]) -> list[Row]:
-    """Give the rows of ``episodes.csv``.
+def episode_rows(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | None = None) -> list[Row]:
+    """Give the rows of one cell, or of several that are swept alike.
 
     Args:
         records: The records in the order of the table.
+        swept: Their value of each swept key that needs a column.
 
     Returns:
         One row a record.
     """
-    return [_row(record) for record in records]
+    return [{**_row(record), **(swept or {})} for record in records]
 
 
 def _row(record: EpisodeRecord) -> Row:

@@ -12,7 +12,7 @@ def markdown_text(table: Display) -> str:
     Returns:
         Title, table and notes; the paper's rows are in italics.
     """
-    rules = ["---" if i < table.words or head == "the paper says" else "---:" for i, head in enumerate(table.columns)]
+    rules = ["---" if head in table.words else "---:" for head in table.columns]
     lines = [f"# {table.title}", "", _line(table.columns), _line(rules)]
     for line in table.lines:
         lines.append(_line([cell if line.ours or not cell else f"*{cell}*" for cell in map(_escape, line.cells)]))

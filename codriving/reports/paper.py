@@ -79,7 +79,9 @@ class Paper:
         Returns:
             The claim, empty if there is none.
         """
-        removed = variant.partition("/")[0]
+        removed = variant if variant in WHOLE else variant.partition("/")[0]
+        if removed in WHOLE and variant not in WHOLE:
+            return ""
         matches = (s.statement for s in self.ablation if (s.scenario, s.variant) == (scenario, removed))
         return next(matches, "")
 

@@ -1,6 +1,7 @@
 """All tables of a run from its records, and their files."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,10 +26,12 @@ class Table:
     Attributes:
         columns: Columns in order.
         rows: The rows.
+        swept: Those of the columns that are swept keys.
     """
 
     columns: tuple[str, ...]
     rows: tuple[Row, ...]
+    swept: tuple[str, ...] = ()
 
     def csv(self) -> str:
         """Write it as CSV."""
@@ -40,7 +43,11 @@ class Table:
 
         frame = DataFrame([[row.get(column) for column in self.columns] for row in self.rows], columns=self.columns)
         for column in self.columns:
-            if column not in TEXT:
+            if column in self.swept:
+                # A key may take words as well as numbers.
+                with suppress(ValueError, TypeError):
+                    frame[column] = to_numeric(frame[column])
+            elif column not in TEXT:
                 frame[column] = to_numeric(frame[column])
         return frame
 
@@ -60,23 +67,34 @@ class RunTables:
     display: Display
 
 
-def run_tables(cells: Sequence[Sequence[EpisodeRecord]], paper: Paper, metrics: str = "standard") -> RunTables:
+def run_tables(
+    cells: Sequence[Sequence[EpisodeRecord]],
+    paper: Paper,
+    metrics: str = "standard",
+    swept: Sequence[Mapping[str, str]] = (),
+    notes: Sequence[str] = (),
+) -> RunTables:
     """Make all tables of a run.
 
     Args:
         cells: The records of each cell, by seed; cells in the order of the tables, none of them empty.
         paper: The paper's numbers.
         metrics: Name of the definitions by which they were scored.
+        swept: Each cell's value of the swept keys that need a column, by key; nothing where no key was swept.
+        notes: What a reader has to know of these cells.
 
     Returns:
         The tables; they depend on nothing else.
     """
+    values = swept or [{}] * len(cells)
+    keys = tuple(dict.fromkeys(key for cell in values for key in cell))
     records = [record for cell in cells for record in cell]
-    rows = tuple(summary_row(cell) for cell in cells)
+    episodes = [row for cell, value in zip(cells, values, strict=True) for row in episode_rows(cell, value)]
+    rows = tuple(summary_row(cell, value) for cell, value in zip(cells, values, strict=True))
     return RunTables(
-        episodes=Table(episode_columns(records), tuple(episode_rows(records))),
-        summary=Table(summary_columns(records), rows),
-        display=display(rows, paper, metrics),
+        episodes=Table(episode_columns(records, keys), tuple(episodes), keys),
+        summary=Table(summary_columns(records, keys), rows, keys),
+        display=display(rows, paper, metrics, keys, notes),
     )
 
 

@@ -1,7 +1,7 @@
 """``summary.csv``: one row a cell, with Wilson intervals; PET and velocity over successful episodes only."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
@@ -50,24 +50,27 @@ FURTHER = (
 )
 
 
-def summary_columns(records: Iterable[EpisodeRecord]) -> tuple[str, ...]:
-    """Give the columns of ``summary.csv``: the fixed ones, then one for each counter that a method reports.
+def summary_columns(records: Iterable[EpisodeRecord], swept: Sequence[str] = ()) -> tuple[str, ...]:
+    """Give the columns of ``summary.csv``: fixed ones, swept keys, more fixed ones, and counters that methods report.
 
     Args:
         records: All records of the table.
+        swept: Swept keys that need a column.
 
     Returns:
         Columns in order.
     """
     counters = sorted({name for record in records for name in record.counts})
-    return (*LEADING, *FURTHER, *(name for name in counters if name not in {*LEADING, *FURTHER}))
+    known = (*LEADING, *swept, *FURTHER)
+    return (*known, *(name for name in counters if name not in known))
 
 
-def summary_row(records: Sequence[EpisodeRecord]) -> Row:
+def summary_row(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | None = None) -> Row:
     """Sum up one cell.
 
     Args:
         records: The records of the cell, at least one.
+        swept: Its value of each swept key that needs a column.
 
     Returns:
         Its row. Rates are over completed episodes, ``success_planned`` is over all; what nothing defines is None.
@@ -106,6 +109,7 @@ def summary_row(records: Sequence[EpisodeRecord]) -> Row:
         "bystander_collisions": sum(len(record.outcome.bystander_collisions) for record in completed),
         "decisions": sum(record.decisions for record in records),
         **_quality(successes),
+        **(swept or {}),
     }
 
 

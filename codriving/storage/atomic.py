@@ -49,6 +49,31 @@ def write_text(path: Path, text: str) -> None:
 
 
 @contextmanager
+def whole_file(path: Path, beside: Path | None = None) -> Iterator[Path]:
+    """Give a name to write a file under, which takes the place of ``path`` once the block has ended well.
+
+    Args:
+        path: File to make; one that exists already is replaced.
+        beside: Where the unfinished file lies, in the same file system: a folder that is swept; by default the file's.
+
+    Yields:
+        The file to write.
+
+    Raises:
+        OSError: If it cannot be written; nothing is left behind and an existing ``path`` stays.
+    """
+    partial = _partial((beside or path.parent) / path.name)
+    try:
+        yield partial
+        _sync(partial)
+        partial.replace(path)
+        _sync(path.parent)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+
+
+@contextmanager
 def whole_folder(path: Path) -> Iterator[Path]:
     """Give a folder to fill, which takes the place of ``path`` once the block has ended well.
 

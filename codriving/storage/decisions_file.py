@@ -3,6 +3,11 @@
 import json
 import math
 from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from codriving.errors import RunFolderError
+from codriving.storage.records import damaged
 
 DECISIONS = "decisions.jsonl"
 
@@ -44,3 +49,30 @@ def _finite(value: object) -> object:
     if isinstance(value, list | tuple):
         return [_finite(item) for item in value]
     return value
+
+
+def read_decisions(folder: Path) -> tuple[dict[str, Any], ...]:
+    """Read what was decided in one episode.
+
+    Args:
+        folder: Folder of the episode.
+
+    Returns:
+        One mapping a decision step.
+
+    Raises:
+        RunFolderError: If it is missing, damaged or cannot be read.
+    """
+    path = folder / DECISIONS
+    try:
+        # Not splitlines(): it knows line ends that may stand within a text.
+        lines = [json.loads(line) for line in path.read_text(encoding="utf-8").split("\n") if line.strip()]
+    except FileNotFoundError:
+        raise damaged(path, "it is missing") from None
+    except OSError as error:
+        raise RunFolderError(f"cannot read {path}: {error.strerror}; check its permissions") from error
+    except ValueError as error:
+        raise damaged(path, str(error)) from error
+    if not all(isinstance(line, dict) for line in lines):
+        raise damaged(path, "a line is not an object")
+    return tuple(lines)

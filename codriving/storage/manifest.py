@@ -1,5 +1,6 @@
 """``manifest.json``: what a run was made of and with; nothing in it comes from the environment's variables."""
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -7,13 +8,13 @@ from codriving.errors import RunFolderError
 from codriving.storage.strict_json import decode, encode
 
 MANIFEST = "manifest.json"
-FORMAT = 1
+FORMAT = 2
 """Layout of the run folder; raised when an older reader could no longer read a newer folder."""
 
 
 @dataclass(frozen=True, slots=True)
 class CellEntry:
-    """One cell of the run: a row of its summary.
+    """One cell of the run: one config on many seeds.
 
     Attributes:
         folder: Name of its folder under ``episodes/``.
@@ -22,6 +23,7 @@ class CellEntry:
         variant: Name of the CDA variant.
         reasoner: Who reasons: ``rules`` or the name of a model.
         fingerprint: Hash of the settings that results depend on.
+        swept: What tells its row from others with the same labels: value of each swept key, by key.
         settings: Those settings without secrets: JSON of each value, by dotted key.
     """
 
@@ -31,6 +33,7 @@ class CellEntry:
     variant: str
     reasoner: str
     fingerprint: str
+    swept: dict[str, str]
     settings: dict[str, str]
 
 
@@ -43,8 +46,9 @@ class Manifest:
         experiment: Name of the experiment.
         created: When the run began, UTC in ISO 8601.
         first_seed: Seed of the first episode of each cell.
-        episodes: Episodes planned for each cell.
-        cells: The cells in the order of the tables.
+        episodes: Episodes of each row of the tables, as last asked for; there may be more.
+        rows: Folders of the cells that are rows of the tables, as last asked for, in their order.
+        cells: All cells that the folder holds.
         versions: Version of each package that matters, by name.
         commit: Commit of the checkout, with ``+changes`` if it was not clean; None for an installed package.
         machine: Operating system, processor and number of cores.
@@ -55,6 +59,7 @@ class Manifest:
     created: str
     first_seed: int
     episodes: int
+    rows: tuple[str, ...]
     cells: tuple[CellEntry, ...]
     versions: dict[str, str]
     commit: str | None
@@ -87,7 +92,7 @@ def read_manifest(folder: Path) -> Manifest | None:
     """
     path = folder / MANIFEST
     try:
-        return decode(Manifest, path.read_text(encoding="utf-8"))
+        return decode(Manifest, _of_this_layout(path.read_text(encoding="utf-8")))
     except FileNotFoundError:
         return None
     except OSError as error:
@@ -99,36 +104,11 @@ def read_manifest(folder: Path) -> Manifest | None:
         ) from error
 
 
-def refuse_other_config(folder: Path, there: Manifest, here: Manifest) -> None:
-    """Keep episodes of two configs out of one folder.
-
-    Args:
-        folder: The run folder.
-        there: Its manifest.
-        here: The manifest of the run that wants to go on in it.
-
-    Raises:
-        RunFolderError: If the two differ in anything that results depend on.
-    """
-    if [c.fingerprint for c in there.cells] == [c.fingerprint for c in here.cells]:
-        return
-    raise RunFolderError(
-        f"{folder} holds a run of another config: {_differences(there, here)}; repeat its settings to go on with it, "
-        "or choose another run=<name>"
-    )
-
-
-def _differences(there: Manifest, here: Manifest) -> str:
-    """The keys in which two runs differ, with both values."""
-    if len(there.cells) != len(here.cells):
-        return f"it has {len(there.cells)} cells, this run has {len(here.cells)}"
-    found: dict[str, str] = {}
-    for old, new in zip(there.cells, here.cells, strict=True):
-        for key in sorted(old.settings.keys() | new.settings.keys()):
-            was, now = old.settings.get(key, "absent"), new.settings.get(key, "absent")
-            if was != now:
-                found.setdefault(key, f"{key} was {was}, is now {now}")
-    # Only a masked value can differ in the fingerprint and not here.
-    shown = list(found.values()) or ["a value that is not written down"]
-    more = f" and {len(shown) - 5} more keys" if len(shown) > 5 else ""
-    return ", ".join(shown[:5]) + more
+def _of_this_layout(text: str) -> str:
+    """Fill in what layout 1 had not: its cells were all rows, and none was of a sweep."""
+    plain = json.loads(text)
+    if not isinstance(plain, dict) or plain.get("format") != 1:
+        return text
+    cells = plain["cells"]
+    upgraded = [{**cell, "swept": {}} for cell in cells]
+    return json.dumps({**plain, "rows": [cell["folder"] for cell in cells], "cells": upgraded})

@@ -51,3 +51,28 @@ def flat(settings: Mapping[str, object], prefix: str = "") -> dict[str, str]:
         else:
             pairs[f"{prefix}{name}"] = json.dumps(value, ensure_ascii=False, default=str)
     return pairs
+
+
+def nested(pairs: Mapping[str, str]) -> dict[str, object]:
+    """Undo ``flat``.
+
+    Args:
+        pairs: JSON of each value, by dotted key.
+
+    Returns:
+        Nested plain values; what was masked stays masked.
+
+    Raises:
+        ValueError: If a value is not JSON.
+    """
+    settings: dict[str, object] = {}
+    for key, text in pairs.items():
+        *above, last = key.split(".")
+        node = settings
+        for name in above:
+            inner = node.setdefault(name, {})
+            if not isinstance(inner, dict):
+                raise ValueError(f"{key} lies below a value")
+            node = inner
+        node[last] = json.loads(text)
+    return settings

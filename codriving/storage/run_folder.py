@@ -1,5 +1,6 @@
 """The folder of one run: opened under a lock, checked against the config, resumed where it was left."""
 
+from collections.abc import Collection, Mapping
 from datetime import datetime
 from pathlib import Path
 from typing import Self
@@ -7,11 +8,13 @@ from typing import Self
 from codriving.datatypes.record import EpisodeRecord
 from codriving.errors import RunFolderError
 from codriving.storage.atomic import PARTIAL, sweep, write_text
+from codriving.storage.continuation import continued
 from codriving.storage.lock import FolderLock
-from codriving.storage.manifest import MANIFEST, CellEntry, Manifest, manifest_text, read_manifest, refuse_other_config
+from codriving.storage.manifest import MANIFEST, CellEntry, Manifest, manifest_text, read_manifest
 from codriving.storage.records import RECORD, damaged, read_record
 
 CONFIG = "config.yaml"
+CONFIGS = "configs"
 EPISODES = "episodes"
 
 
@@ -23,13 +26,13 @@ class RunFolder:
         manifest: What the run in it is made of.
     """
 
-    def __init__(self, path: Path, manifest: Manifest, config_text: str) -> None:
+    def __init__(self, path: Path, manifest: Manifest, configs: Mapping[str, str]) -> None:
         """Open a folder, making it or going on in it.
 
         Args:
             path: The run folder.
-            manifest: What the run is made of.
-            config_text: The resolved config as YAML, without secrets.
+            manifest: What is asked for: its cells are its rows.
+            configs: The resolved config of each cell as YAML, without secrets, by the name of the cell's folder.
 
         Raises:
             RunFolderError: If it cannot be written, is in use, holds something else or a run of another config.
@@ -41,7 +44,7 @@ class RunFolder:
         except OSError as error:
             raise unwritable(path, error) from error
         try:
-            self.manifest = self._prepare(manifest, config_text)
+            self.manifest = self._prepare(manifest, configs)
         except OSError as error:
             self._lock.close()
             raise unwritable(path, error) from error
@@ -49,23 +52,26 @@ class RunFolder:
             self._lock.close()
             raise
 
-    def _prepare(self, manifest: Manifest, config_text: str) -> Manifest:
+    def _prepare(self, asked: Manifest, configs: Mapping[str, str]) -> Manifest:
         there = read_manifest(self.path)
-        if there is not None:
-            refuse_other_config(self.path, there, manifest)
-        else:
+        if there is None:
             self._refuse_foreign()
+        manifest = asked if there is None else continued(self.path, there, asked)
         self.clean()
-        if there is not None:
-            return there
-        write_text(self.path / CONFIG, config_text)
+        if manifest == there:
+            return manifest
+        texts = [configs[name] for name in asked.rows]
+        (self.path / CONFIGS).mkdir(exist_ok=True)
+        for name, text in zip(manifest.rows, texts, strict=True):
+            write_text(self.path / CONFIGS / f"{name}.yaml", text)
+        write_text(self.path / CONFIG, texts[0])
         # Last, for it says that the folder is a run's: a kill before this leaves nothing to misread.
         write_text(self.path / MANIFEST, manifest_text(manifest))
         return manifest
 
     def _refuse_foreign(self) -> None:
         """Never write among files that no run of ours has made."""
-        ours = {".lock", CONFIG}
+        ours = {".lock", CONFIG, CONFIGS}
         for item in sorted(self.path.iterdir()):
             if item.name not in ours and not item.name.startswith(PARTIAL):
                 raise RunFolderError(
@@ -76,6 +82,7 @@ class RunFolder:
     def clean(self) -> None:
         """Remove what a killed run left unfinished."""
         sweep(self.path)
+        sweep(self.path / CONFIGS)
         for cell in self.path.glob(f"{EPISODES}/*"):
             sweep(cell)
 
@@ -110,6 +117,19 @@ class RunFolder:
         if found != expected:
             raise damaged(folder / RECORD, f"it is the record of {found}, not of {expected}")
         return record
+
+    def further(self, seeds: Collection[int]) -> int:
+        """Count the episodes that the folder holds beyond those that are asked for.
+
+        Args:
+            seeds: Seeds asked for, of each row.
+        """
+        asked = {str(seed) for seed in seeds}
+        count = 0
+        for cell in self.manifest.cells:
+            there = {item.name for item in self.path.glob(f"{EPISODES}/{cell.folder}/[0-9]*")}
+            count += len(there - asked if cell.folder in self.manifest.rows else there)
+        return count
 
     def close(self) -> None:
         """Let others write."""

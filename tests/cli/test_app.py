@@ -5,6 +5,7 @@ from typer.testing import CliRunner, Result
 
 from codriving import __version__
 from codriving.cli.app import app
+from codriving.config.choices import choices
 
 
 def call(*args: str) -> Result:
@@ -41,6 +42,16 @@ def test_list_names_and_describes_choices(group: str, name: str) -> None:
     assert len(found.split()) > 3
 
 
+def test_list_names_the_word_for_every_choice_where_there_is_one() -> None:
+    *names, last = (line.split() for line in call("list", "scenarios").stdout.splitlines())
+    assert [words[0] for words in names] == list(choices("scenario"))
+    assert last[0] == "all"
+    overview = {line.split()[0]: line for line in call("list").stdout.splitlines()}
+    assert overview["scenarios"].endswith("or all")
+    assert not any(overview[plural].endswith("all") for plural in ("launchers", "memories", "experiments"))
+    assert "all" not in call("list", "launchers").stdout.split()
+
+
 def test_list_without_a_group_shows_all_groups() -> None:
     result = call("list")
     assert result.exit_code == 0
@@ -75,6 +86,12 @@ def test_list_without_a_group_shows_all_groups() -> None:
         (("run", "cda=prescriptive", "cda.negotiation=false"), "cda.binding=true needs cda.negotiation=true"),
         (("run", "memory.shots=3"), "memory has no _target_"),
         (("run", "--config-dir", "/nowhere"), "--config-dir /nowhere is not a folder"),
+        (("run", "scenario=intersection,nowhere"), "unknown scenario 'nowhere'; choices: intersection"),
+        (("run", "scenario.cavs=4,99"), "in the cell scenario.cavs=99: scenario.cavs must be 2 to 12, got 99"),
+        (("run", "episodes=10,20"), "episodes=10,20: episodes takes one value, since all cells drive the same seeds"),
+        (("run", "--cfg", "scenario.cavs=4,99"), "in the cell scenario.cavs=99: scenario.cavs must be"),
+        (("ablate", "scenario.cavs=4,99"), "in the cell scenario.cavs=99: scenario.cavs must be"),
+        (("ablate", "--cfg", "run=a,b"), "run=a,b: run takes one value, since a sweep is one run under one name"),
         (("ablate", "episodes=0"), "episodes must be"),
         (("run", "--cfg", "scenario.cavs=99"), "scenario.cavs must be 2 to 12, got 99"),
     ],
@@ -114,6 +131,18 @@ def test_the_exit_code_is_the_experiments(monkeypatch: pytest.MonkeyPatch, code:
     monkeypatch.setattr("codriving.experiment.run_experiment", experiment)
     assert call("run", "episodes=3", "+seed=4").exit_code == code
     assert given == [["episodes=3", "+seed=4"], None]
+
+
+@pytest.mark.parametrize(("command", "cells"), [("run", 2), ("ablate", 14)])
+def test_cfg_of_a_sweep_is_a_document_for_each_cell(command: str, cells: int) -> None:
+    import yaml
+
+    text = call(command, "--cfg", "scenario.cavs=4,8", "episodes=3").stdout
+    documents = list(yaml.safe_load_all(text))
+    assert len(documents) == cells
+    assert [shown["scenario"]["cavs"] for shown in documents] == [4] * (cells // 2) + [8] * (cells // 2)
+    assert f"# cell {cells // 2 + 1} of {cells}: scenario.cavs=8\n" in text
+    assert ("cda.safety_check=false" in text) == (command == "ablate")
 
 
 def test_cfg_prints_the_config_and_runs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,8 +1,16 @@
 """What the shell offers after TAB."""
 
-import pytest
+from pathlib import Path
 
-from codriving.cli.completion import complete_group, complete_override
+import pytest
+from typer.core import TyperGroup
+from typer.main import get_command
+
+from codriving.cli.app import app
+from codriving.cli.completion import complete_group, complete_in_line, complete_override
+from codriving.config.choices import choices
+
+SCENARIOS = [*choices("scenario"), "all"]
 
 
 def offered(incomplete: str) -> list[str]:
@@ -23,7 +31,7 @@ def bash(monkeypatch: pytest.MonkeyPatch, *words: str) -> list[str]:
 
 
 def test_groups_come_with_their_choices() -> None:
-    assert offered("scen") == ["scenario=intersection"]
+    assert offered("scen") == [f"scenario={name}" for name in SCENARIOS]
     assert set(offered("cda=")) >= {"cda=full", "cda=prescriptive", "cda=status_sharing"}
     assert offered("llm=o") == ["llm=offline"]
 
@@ -32,6 +40,24 @@ def test_keys_come_with_their_values() -> None:
     assert offered("epi") == ["episodes=20"]
     assert offered("cda.nego") == ["cda.negotiation=true", "cda.negotiation=false"]
     assert offered("scenario.cav") == ["scenario.cavs=4", "scenario.cav_speed=[5.0,9.0]"]
+
+
+def test_all_is_offered_where_several_can_be_taken() -> None:
+    assert offered("cda=a") == ["cda=agreement_seeking", "cda=all"]
+    assert "launcher=all" not in offered("launcher=")
+    assert "experiments=all" not in offered("experiments=")
+    assert offered("memory=") == ["memory=off"]
+    assert dict(complete_override("scenario=all"))["scenario=all"].startswith("Every one of these")
+
+
+def test_after_a_comma_comes_what_has_not_been_named() -> None:
+    assert offered("scenario=merge,") == [f"scenario=merge,{name}" for name in SCENARIOS[:-1] if name != "merge"]
+    assert offered("cda=full,status_sharing,p") == ["cda=full,status_sharing,prescriptive"]
+    assert offered("cda.negotiation=true,") == ["cda.negotiation=true,false"]
+    assert offered("cda.negotiation=true,false,") == []
+    assert offered("launcher=serial,") == []
+    assert offered("episodes=3,") == []
+    assert offered("scenario.hdvs=[2,") == ["scenario.hdvs=[2,4]"]
 
 
 def test_choices_are_described() -> None:
@@ -45,13 +71,45 @@ def test_nothing_fits() -> None:
 
 
 def test_bash_gets_only_what_follows_the_equals_sign(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert bash(monkeypatch, "scenario", "=") == ["intersection"]
+    assert bash(monkeypatch, "scenario", "=") == SCENARIOS
     assert bash(monkeypatch, "scenario", "=", "int") == ["intersection"]
     assert bash(monkeypatch, "episodes", "=", "3", "cda", "=", "agr") == ["agreement_seeking"]
-    assert bash(monkeypatch, "scen") == ["scenario=intersection"]
+    assert bash(monkeypatch, "scenario", "=", "intersection,mer") == ["intersection,merge"]
+    assert bash(monkeypatch, "scen") == [f"scenario={name}" for name in SCENARIOS]
     assert bash(monkeypatch, "scenario", "=", "intersection", "llm") == ["llm=offline"]
 
 
 def test_groups_of_list() -> None:
     assert complete_group("sce") == ["scenarios"]
     assert "experiments" in complete_group("")
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Path:
+    """A config folder of a user's."""
+    (tmp_path / "scenario").mkdir()
+    text = "# A street.\n_target_: my_roads.Street\nplugins: [my_roads]\ncurbs: 2\nwidth: 4.0\n"
+    (tmp_path / "scenario" / "street.yaml").write_text(text)
+    return tmp_path
+
+
+def in_line(*words: str, incomplete: str) -> list[str]:
+    """Offer as the shell does, after a line that has been parsed as far as it goes."""
+    commands = get_command(app)
+    assert isinstance(commands, TyperGroup)
+    line = commands.commands["run"].make_context("run", list(words), resilient_parsing=True)
+    return [word for word, _ in complete_in_line(line, incomplete)]
+
+
+def test_own_scenarios_are_offered_after_their_folder(own: Path) -> None:
+    assert in_line("--config-dir", str(own), incomplete="scenario=s") == ["scenario=street"]
+    assert in_line("--config-dir", str(own), incomplete="scenario=merge,s") == ["scenario=merge,street"]
+    assert in_line(incomplete="scenario=s") == []
+
+
+@pytest.mark.parametrize("chosen", [["scenario=street"], ["scenario", "=", "street"], ["scenario=street,merge"]])
+def test_keys_are_those_of_what_has_been_chosen(own: Path, chosen: list[str]) -> None:
+    words = in_line("--config-dir", str(own), "episodes=3", *chosen, incomplete="scenario.")
+    assert words == ["scenario.curbs=2", "scenario.width=4.0"]
+    assert in_line("scenario=merge", incomplete="scenario.r") == ["scenario.ramp_hdvs=0.3"]
+    assert in_line("scenario=nonsense", incomplete="scenario.") == []

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from codriving.config.choices import choices
 from codriving.config.compose import compose
 from codriving.errors import ConfigError
 
@@ -45,7 +46,8 @@ def test_run_names_stay_as_typed(name: str) -> None:
 
 
 def test_unknown_scenario_lists_the_choices() -> None:
-    assert refused("scenario=intersecton") == "unknown scenario 'intersecton'; choices: intersection"
+    known = ", ".join(choices("scenario"))
+    assert refused("scenario=intersecton") == f"unknown scenario 'intersecton'; choices: {known}"
 
 
 @pytest.mark.parametrize("plus", ["", "+", "++"])
@@ -64,8 +66,9 @@ def test_unknown_key_of_the_root(plus: str) -> None:
         ("run='a b'", "run must be a name of letters"),
         ("scenario=", "unknown scenario ''"),
         ("scenario=null", "unknown scenario 'None'"),
-        ("scenario=[intersection]", "scenario takes one name"),
-        ("scenario=intersection,merge", "scenario=intersection,merge: a key takes one value"),
+        ("scenario=[intersection]", "scenario takes names without brackets"),
+        ("scenario=intersection,merge", "scenario=intersection,merge: scenario takes one value here"),
+        ("episodes=1,2", "episodes=1,2: episodes takes one value here; for a text with commas write episodes="),
         ("episodes", "cannot read 'episodes'"),
         ("episodes=[1", "cannot read 'episodes=[1'"),
         ("a=b=c", "cannot read 'a=b=c'"),

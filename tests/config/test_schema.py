@@ -16,6 +16,7 @@ PLAIN: dict[str, Any] = {
     "run": None,
     "output": "outputs",
     "experiment": "run",
+    "render": False,
     "plugins": [],
     **{name: {"_target_": "codriving.x.Y"} for name in NODES},
 }
@@ -48,6 +49,9 @@ def test_the_plain_config_passes() -> None:
         ("output", ""),
         ("output", None),
         ("experiment", None),
+        ("render", 1),
+        ("render", "yes"),
+        ("render", None),
         ("plugins", "my_package"),
         ("plugins", ["not a package"]),
         ("plugins", None),

@@ -12,7 +12,7 @@ def test_shown_config_reads_back_the_same() -> None:
     assert yaml.safe_load(show(resolved)) == resolved
 
 
-@pytest.mark.parametrize("override", ["workers=2", "output=elsewhere", "run=again", "launcher=serial"])
+@pytest.mark.parametrize("override", ["episodes=3", "workers=2", "output=elsewhere", "run=again", "launcher=serial"])
 def test_fingerprint_ignores_what_has_no_effect(override: str) -> None:
     assert fingerprint(compose([override])) == fingerprint(compose([]))
     assert override.partition("=")[0] in WITHOUT_EFFECT

@@ -72,14 +72,14 @@ def test_a_mistake_of_the_users_arrives_as_it_was_raised(tmp_path: Path) -> None
 
 
 def test_progress_is_told_of_every_unit(tmp_path: Path) -> None:
-    calls: list[tuple[int, int]] = []
+    calls: list[tuple[str, bool]] = []
 
     class Told:
-        def update(self, done: int, failed: int) -> None:
-            calls.append((done, failed))
+        def update(self, cell: str, failed: bool) -> None:
+            calls.append((cell, failed))
 
     run_batch(UNITS, job(tmp_path / "out", BuildToy(raises=(1,))), Serial(), workers=4, progress=Told())
-    assert calls == [(1, 0), *((done, 1) for done in range(2, 9))]
+    assert calls == [(unit.cell, unit.seed == 1) for unit in UNITS]
 
 
 def test_auto_takes_the_cores_that_there_are_and_no_more_than_units() -> None:

@@ -4,22 +4,25 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from toy_drive import LABELS, BuildToy
+from toy_drive import LABELS
+from toy_plan import toy as toy_objects
 from toy_plan import toy_cell, toy_plan
 
+from codriving.config.sweep import Point
 from codriving.episodes.unit import Labels
 from codriving.errors import ConfigError
 from codriving.experiment import run
-from codriving.experiment.ablation import ablation_variations
-from codriving.experiment.cells import distinct, folder_name, make_cell
+from codriving.experiment.ablation import ablation_points
+from codriving.experiment.cells import make_cell
+from codriving.experiment.naming import folder_name
 from codriving.experiment.objects import modules_to_preload
 
 
 @pytest.fixture
 def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., None]:
     def use(**settings: tuple[int, ...]) -> None:
-        monkeypatch.setattr(run, "make_plan", lambda variations, config_dir: toy_plan(tmp_path))
-        monkeypatch.setattr(run, "BuildObjects", lambda configs: BuildToy(**settings))
+        monkeypatch.setattr(run, "make_plan", lambda points, config_dir: toy_plan(tmp_path))
+        monkeypatch.setattr(run, "BuildObjects", toy_objects(**settings))
 
     return use
 
@@ -72,8 +75,8 @@ def test_the_command_to_go_on_replaces_the_name_and_is_quoted(tmp_path: Path) ->
 
 
 def test_the_ablation_removes_one_thing_at_a_time_under_three_readings() -> None:
-    variations = ablation_variations(["episodes=5"])
-    assert variations[0] == ["experiment=ablate", "episodes=5"]
+    variations = [point.overrides for point in ablation_points([Point(("episodes=5",))])]
+    assert variations[0] == ("experiment=ablate", "episodes=5")
     assert [v[2] for v in variations[1:]] == [
         "cda.state_sharing=false",
         "cda.intent_sharing=false",
@@ -81,25 +84,28 @@ def test_the_ablation_removes_one_thing_at_a_time_under_three_readings() -> None
         "cda.safety_check=false",
     ]
     assert [v[-1] for v in variations[3:6]] == [f"cda.own_order={o}" for o in ("own_view", "same_rule", "independent")]
-    assert ablation_variations(["experiment=mine"])[0] == ["experiment=mine"]
+    assert ablation_points([Point(("experiment=mine",))])[0].overrides == ("experiment=mine",)
+
+
+def test_an_ablation_of_several_keeps_the_rows_of_each_together() -> None:
+    points = ablation_points([Point((f"scenario={name}",), {"scenario": name}) for name in ("intersection", "merge")])
+    assert [point.swept["scenario"] for point in points] == ["intersection"] * 7 + ["merge"] * 7
+    assert points[7].removed == ()
+    assert points[8].removed == ("cda.state_sharing=false",)
 
 
 def test_a_method_without_sub_modules_cannot_be_ablated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     plan = toy_plan(tmp_path, cells=(toy_cell(a=1), toy_cell(a=2)))
-    monkeypatch.setattr(run, "make_plan", lambda variations, config_dir: plan)
+    monkeypatch.setattr(run, "make_plan", lambda points, config_dir: plan)
     with pytest.raises(ConfigError, match="method 'steady' has no reasoning sub-modules"):
         run.run_ablation([])
 
 
-def test_folders_are_readable_and_distinct() -> None:
+def test_folders_are_readable() -> None:
     labels = Labels("intersection", "codriving", "no_negotiation/own_view", "rules")
     assert folder_name(labels) == "intersection-codriving-no_negotiation_own_view"
     assert folder_name(Labels("t", "fcfs", "", "rules")) == "t-fcfs"
     assert folder_name(Labels("../..", "a b", "", "rules")) == "_..-a_b"
-    cells = distinct([toy_cell(a=1), toy_cell(a=2), toy_cell(a=1)])
-    assert [cell.resolved["a"] for cell in cells] == [1, 2]
-    assert len({cell.folder for cell in cells}) == 2
-    assert all(cell.folder.startswith("toy-steady-full-") for cell in cells)
 
 
 def test_a_cell_is_labelled_by_its_objects_and_an_object_without_a_name_is_refused() -> None:

@@ -1,7 +1,9 @@
 """A plan of toy episodes, and the command line driven by it: ``python toy_plan.py OUTPUT WORKERS [GATE]``."""
 
 import sys
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "episodes"))
 
@@ -9,24 +11,36 @@ from toy_drive import LABELS, BuildToy
 
 from codriving.episodes.launcher import Processes
 from codriving.experiment import run
-from codriving.experiment.cells import Cell, distinct, folder_name
+from codriving.experiment.cells import Cell
+from codriving.experiment.naming import distinct, folder_name
 from codriving.experiment.plan import Plan
 
 EPISODES = 10
 
 
-def toy_cell(**settings: object) -> Cell:
-    return Cell(folder_name(LABELS), LABELS, {"seed": 0, **settings})
+def toy(**settings: Any) -> Callable[[Mapping[str, Mapping[str, Any]]], BuildToy]:
+    """What builds the toy, whatever the configs."""
+    return lambda configs: BuildToy(**settings)
 
 
-def toy_plan(output: Path, workers: int = 1, name: str | None = "mine", cells: tuple[Cell, ...] = ()) -> Plan:
-    return Plan(distinct(cells or (toy_cell(),)), 0, EPISODES, Processes(), workers, output, "run", name, "seed: 0\n")
+def toy_cell(swept: Mapping[str, str] | None = None, **settings: object) -> Cell:
+    return Cell(folder_name(LABELS), LABELS, {"seed": 0, **settings}, "standard", swept or {})
+
+
+def toy_plan(
+    output: Path,
+    workers: int = 1,
+    name: str | None = "mine",
+    cells: tuple[Cell, ...] = (),
+    episodes: int = EPISODES,
+) -> Plan:
+    return Plan(distinct(cells or (toy_cell(),)), 0, episodes, Processes(), workers, output, "run", name)
 
 
 if __name__ == "__main__":
     output, workers, *rest = sys.argv[1:]
     gate = Path(rest[0]) if rest else None
     plan = toy_plan(Path(output), int(workers))
-    run.make_plan = lambda variations, config_dir: plan  # type: ignore[assignment]
-    run.BuildObjects = lambda configs: BuildToy(gate=gate, waits_from=4)  # type: ignore[assignment,misc]
+    run.make_plan = lambda points, config_dir: plan  # type: ignore[assignment]
+    run.BuildObjects = toy(gate=gate, waits_from=4)  # type: ignore[assignment,misc]
     sys.exit(run.run_experiment(["scenario=toy", "run=mine"]))

@@ -1,6 +1,7 @@
 """The printed table: ours beside the paper's, plain in a pipe, and the same in Markdown."""
 
 import io
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
 from codriving.reports.console import print_table
-from codriving.reports.display import Display, display
+from codriving.reports.display import CLAIM, Display, display
 from codriving.reports.markdown import markdown_text
 from codriving.reports.paper import ABLATION, COMPARISON, Paper, read_paper
 from codriving.reports.summary import summary_row
@@ -23,6 +24,7 @@ def paper(tmp_path: Path) -> Paper:
     (tmp_path / ABLATION).write_text(
         "scenario,variant,statement,success_low,success_high\n"
         "intersection,full,90 %,0.9,0.9\nintersection,no_negotiation,below 15 %,0.0,0.15\n"
+        "merge,full,,,\nmerge,no_state_sharing,close to the full method,0.5,1.0\nmerge,no_negotiation,,,\n"
     )
     return read_paper(tmp_path)
 
@@ -65,6 +67,82 @@ def test_the_ablation_has_the_papers_words_beside_each_reading(
     assert table.columns[-1] == "the paper says"
     assert [line.cells[-1] for line in table.lines if line.ours] == ["90 %", "below 15 %", ""]
     assert sum(not line.ours for line in table.lines) == 1
+
+
+def test_each_scenario_has_its_own_statements_and_its_rows_end_with_a_line(
+    make: Callable[..., EpisodeRecord], paper: Paper
+) -> None:
+    variants = ("full", "no_state_sharing", "no_negotiation/same_rule")
+    rows = [summary_row([make(0, variant=v, scenario=s)]) for s in ("intersection", "merge") for v in variants]
+    table = display(rows, paper)
+    said = [(line.cells[0], line.cells[-1]) for line in table.lines if line.ours]
+    assert said == [
+        ("intersection", "90 %"),
+        ("intersection", ""),
+        ("intersection", "below 15 %"),
+        ("merge", ""),
+        ("merge", "close to the full method"),
+        ("merge", ""),
+    ]
+    assert [line.last for line in table.lines] == [False, False, False, True, False, False, False]
+
+
+def test_the_paper_says_nothing_of_a_sweep_in_which_nothing_is_removed(
+    make: Callable[..., EpisodeRecord], paper: Paper
+) -> None:
+    whole = [summary_row([make(0, variant=v, scenario=s)]) for s in ("intersection", "merge") for v in ("full", "")]
+    assert CLAIM not in display(whole, paper).columns
+    binding = [summary_row([make(0, variant=v)]) for v in ("full/binding", "no_negotiation")]
+    assert [line.cells[-1] for line in display(binding, paper).lines] == ["", "below 15 %"]
+
+
+def test_swept_keys_stand_beside_the_method_and_the_papers_row_below_the_last_of_ours(
+    make: Callable[..., EpisodeRecord], paper: Paper
+) -> None:
+    cells = [{"scenario.cavs": str(cavs), "cda.own_order": order} for cavs in (4, 8) for order in ("own_view", "[x]")]
+    rows = [summary_row([make(0)], swept) for swept in cells]
+    table = display(rows, paper, swept=("scenario.cavs", "cda.own_order"), notes=("a note",))
+    assert table.columns[:4] == ("method", "scenario.cavs", "cda.own_order", "episodes")
+    assert [line.cells[1:3] for line in table.lines if line.ours] == [tuple(cell.values()) for cell in cells]
+    assert [line.ours for line in table.lines] == [True] * 4 + [False]
+    assert table.lines[-1].cells[:3] == ("paper: CoDrivingLLM", "", "")
+    assert "cda.own_order" in table.words
+    assert "scenario.cavs" not in table.words
+    assert table.notes[-1] == "a note"
+    assert printed(table).splitlines()[-1] == "a note"
+    lines = markdown_text(table).splitlines()
+    assert lines[2].startswith("| method | scenario.cavs | cda.own_order | episodes |")
+    assert lines[3].startswith("| --- | ---: | --- | ---: |")
+    assert lines[-1] == "a note"
+
+
+def test_a_pipe_never_wraps_a_wide_table(make: Callable[..., EpisodeRecord]) -> None:
+    swept = {f"environment.drivers.key_{index}": "1.5" for index in range(8)}
+    table = display([summary_row([make(0)], swept)], Paper(), swept=tuple(swept))
+    assert len(printed(table).splitlines()) == 4
+
+
+@pytest.mark.parametrize("width", [60, 120, 200])
+def test_on_a_terminal_no_word_is_cut_and_a_line_parts_the_scenarios(
+    make: Callable[..., EpisodeRecord], paper: Paper, monkeypatch: pytest.MonkeyPatch, width: int
+) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", str(width))
+    rows = [summary_row([make(0, scenario=s)], {"scenario.cavs": "4"}) for s in ("intersection", "merge")]
+    stream = Terminal()
+    print_table(display(rows, paper, swept=("scenario.cavs",)), stream)
+    lines = [" ".join(re.sub(r"\x1b\[[0-9;]*m", "", line).split()) for line in stream.getvalue().splitlines()]
+    assert not any("…" in line for line in lines)
+    assert any(line.startswith("intersection codriving full 4 1 100 %") for line in lines)
+    assert any(line.startswith("scenario method scenario.cavs episodes success") for line in lines)
+    first, second = (
+        next(i for i, line in enumerate(lines) if line.startswith(f"{s} cod")) for s in ("intersection", "merge")
+    )
+    assert "" in lines[first:second]
 
 
 def test_scenarios_and_errors_have_columns_only_where_there_are_some(make: Callable[..., EpisodeRecord]) -> None:

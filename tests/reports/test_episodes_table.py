@@ -19,6 +19,13 @@ def test_the_columns_that_users_rely_on_come_first(make: Callable[..., EpisodeRe
     assert list(episode_columns([make(0)]))[:10] == expected.split(", ")
 
 
+def test_swept_keys_follow_them(make: Callable[..., EpisodeRecord]) -> None:
+    columns = episode_columns([make(0)], ["scenario.cavs"])
+    assert columns[10:12] == ("scenario.cavs", "pet_count")
+    (row,) = episode_rows([make(0)], {"scenario.cavs": "8"})
+    assert (row["scenario.cavs"], row["cavs"]) == ("8", 1)
+
+
 def test_a_row_says_how_it_went(make: Callable[..., EpisodeRecord]) -> None:
     (row,) = rows_of([make(3, Ending.COLLISION, pets=(1.0, 2.0), velocities=(7.0, 8.0), counts={"fallbacks": 4})])
     assert row["outcome"] == "collision"

@@ -20,6 +20,18 @@ def test_the_files_are_written_with_one_row_an_episode_and_one_a_cell(
     assert (tmp_path / "summary.csv").read_text().count("\n") == 3
 
 
+def test_every_row_of_a_sweep_says_what_it_is_of(make: Callable[..., EpisodeRecord]) -> None:
+    cells = [[make(0), make(1)], [make(0), make(1)]]
+    swept = [{"scenario.cavs": "4", "cda.own_order": "1"}, {"scenario.cavs": "8", "cda.own_order": "own_view"}]
+    tables = run_tables(cells, Paper(), swept=swept, notes=["told"])
+    episodes, summary = tables.episodes.frame(), tables.summary.frame()
+    assert list(summary["scenario.cavs"]) == [4, 8]
+    assert list(episodes["scenario.cavs"]) == [4, 4, 8, 8]
+    assert list(summary["cda.own_order"]) == ["1", "own_view"]
+    assert tables.display.columns[1:3] == ("scenario.cavs", "cda.own_order")
+    assert tables.display.notes[-1] == "told"
+
+
 def test_frames_hold_numbers_and_nan_where_nothing_is_defined(make: Callable[..., EpisodeRecord]) -> None:
     tables = run_tables([[make(0, velocities=(7.0,)), make(1, Ending.ERROR)]], Paper())
     episodes, summary = tables.episodes.frame(), tables.summary.frame()

@@ -6,7 +6,7 @@ import pytest
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
-from codriving.reports.summary import summary_columns, summary_row
+from codriving.reports.summary import LEADING, summary_columns, summary_row
 
 
 def test_the_columns_are_those_of_the_product_in_their_order(make: Callable[..., EpisodeRecord]) -> None:
@@ -17,6 +17,15 @@ def test_the_columns_are_those_of_the_product_in_their_order(make: Callable[...,
     )
     assert list(summary_columns([make(0)]))[:19] == expected.split(", ")
     assert set(summary_columns([make(0)])) == set(summary_row([make(0)]))
+
+
+def test_swept_keys_follow_the_columns_that_users_rely_on(make: Callable[..., EpisodeRecord]) -> None:
+    columns = summary_columns([make(0, counts={"fallbacks": 1, "metrics": 2})], ["scenario.cavs", "metrics"])
+    assert columns[:19] == LEADING
+    assert columns[19:21] == ("scenario.cavs", "metrics")
+    assert columns[-1] == "fallbacks"
+    row = summary_row([make(0)], {"scenario.cavs": "4", "metrics": "authors"})
+    assert (row["scenario.cavs"], row["metrics"], row["scenario"]) == ("4", "authors", "intersection")
 
 
 def test_errors_are_not_driving(make: Callable[..., EpisodeRecord]) -> None:

@@ -1,10 +1,17 @@
-"""One record with everything in it."""
+"""One record with everything in it, and makes ``manifests`` importable."""
+
+import sys
+from pathlib import Path
 
 import pytest
 
 from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.datatypes.record import EpisodeRecord, Participant
 from codriving.datatypes.score import Pet, Score, TravelScore
+
+HERE = str(Path(__file__).parent)
+if HERE not in sys.path:
+    sys.path.insert(0, HERE)
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from codriving.storage.atomic import PARTIAL, sweep, whole_folder, write_text
+from codriving.storage.atomic import PARTIAL, sweep, whole_file, whole_folder, write_text
 
 
 def leftovers(folder: Path) -> list[str]:
@@ -71,3 +71,29 @@ def test_sweeping_removes_what_a_killed_run_left_and_nothing_else(tmp_path: Path
     sweep(tmp_path)
     assert [item.name for item in tmp_path.iterdir()] == ["7"]
     sweep(tmp_path / "not there")
+
+
+def test_a_file_made_by_others_appears_only_when_it_is_complete(tmp_path: Path) -> None:
+    (tmp_path / "7").mkdir()
+    target = tmp_path / "7" / "replay.mp4"
+    with whole_file(target, beside=tmp_path) as partial:
+        partial.write_bytes(b"film")
+        assert partial.parent == tmp_path
+        assert not target.exists()
+    assert target.read_bytes() == b"film"
+    assert leftovers(tmp_path) == []
+
+
+def test_a_file_that_others_fail_to_make_leaves_the_former(tmp_path: Path) -> None:
+    target = tmp_path / "replay.mp4"
+    target.write_bytes(b"former")
+
+    def fail() -> None:
+        with whole_file(target) as partial:
+            partial.write_bytes(b"half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fail()
+    assert target.read_bytes() == b"former"
+    assert leftovers(tmp_path) == []

@@ -1,11 +1,13 @@
 """decisions.jsonl: one line a step, plain JSON."""
 
 import json
+from pathlib import Path
 
 import pytest
 
 from codriving.datatypes.action import Action
-from codriving.storage.decisions_file import decisions_text
+from codriving.errors import RunFolderError
+from codriving.storage.decisions_file import DECISIONS, decisions_text, read_decisions
 
 
 def test_one_line_a_step() -> None:
@@ -25,3 +27,21 @@ def test_what_is_not_finite_becomes_null() -> None:
 def test_what_has_no_place_in_json_is_refused() -> None:
     with pytest.raises(ValueError, match=r"decisions\.jsonl cannot be written"):
         decisions_text([{"set": {1}}])
+
+
+def test_what_was_written_is_read_back(tmp_path: Path) -> None:
+    lines = [{"step": 0, "why": "先行\u2028\nline"}, {"step": 1}]
+    (tmp_path / DECISIONS).write_text(decisions_text(lines), encoding="utf-8", newline="")
+    assert list(read_decisions(tmp_path)) == lines
+
+
+@pytest.mark.parametrize("text", ['{"step": 0', "[1]\n", "\x00"])
+def test_a_damaged_file_is_named(tmp_path: Path, text: str) -> None:
+    (tmp_path / DECISIONS).write_text(text, encoding="utf-8")
+    with pytest.raises(RunFolderError, match=r"decisions\.jsonl is damaged .*run again"):
+        read_decisions(tmp_path)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(RunFolderError, match=r"decisions\.jsonl is damaged \(it is missing\)"):
+        read_decisions(tmp_path)

@@ -1,6 +1,13 @@
 """Secrets are masked, everything else stays."""
 
-from codriving.storage.redaction import MASK, flat, redact
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from codriving.storage.redaction import MASK, flat, nested, redact
+
+names = st.text("abc_", min_size=1, max_size=4)
+leaves = st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text()
 
 
 def test_values_under_secret_names_are_masked_at_any_depth() -> None:
@@ -22,3 +29,13 @@ def test_flattening_gives_a_line_a_setting() -> None:
         "run": "null",
         "memory": "{}",
     }
+
+
+@given(st.dictionaries(names, st.recursive(leaves | st.lists(leaves), lambda inner: st.dictionaries(names, inner))))
+def test_nesting_undoes_flattening(settings: dict[str, object]) -> None:
+    assert nested(flat(settings)) == settings
+
+
+def test_a_value_that_holds_others_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"scenario\.cavs lies below a value"):
+        nested({"scenario": "3", "scenario.cavs": "4"})

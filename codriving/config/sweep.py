@@ -1,0 +1,155 @@
+"""One command, many configs: keys with several values, in every combination and in the order given."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import islice, product
+from math import prod
+from pathlib import Path
+from typing import Any
+
+from codriving.config.choices import ALL, LISTED, check_config_dir, choices
+from codriving.config.overrides import TEXT_WITH_COMMAS, check_choice, parse
+from codriving.config.schema import ROOT
+from codriving.errors import ConfigError
+
+MOST = 1000
+"""Configs of one command; more than these are a slip of the keyboard."""
+
+_SEEDS = "all cells drive the same seeds, so that their rows can be compared"
+_WORKERS = "all cells share the processes, and no result depends on them"
+
+ONE_VALUE = {
+    "run": "a sweep is one run under one name",
+    "output": "all cells of a run are written under one folder",
+    "experiment": "all cells of a run belong to one experiment",
+    "experiments": "each is a table of its own, so run them one after another",
+    "episodes": _SEEDS,
+    "seed": _SEEDS,
+    "workers": _WORKERS,
+    "launcher": _WORKERS,
+    "plugins": "it holds a list already, as in plugins=[a,b]",
+    "render": "it changes no result",
+}
+"""What belongs to the run as a whole, and why it cannot differ between its cells."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """One config of a sweep.
+
+    Attributes:
+        overrides: Its overrides, each with one value, in the order given.
+        swept: Its value of each key that was given several, as typed.
+        removed: Overrides that are not the user's: what an ablation takes away.
+    """
+
+    overrides: tuple[str, ...]
+    swept: Mapping[str, str] = field(default_factory=dict)
+    removed: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Axis:
+    """A token and the tokens with one value each that it stands for."""
+
+    token: str
+    key: str
+    values: tuple[str, ...]
+    tokens: tuple[str, ...]
+
+
+def expand(tokens: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:
+    """Take keys with several values apart: the first such key varies slowest.
+
+    Several values are ``a,b``, ``choice(a,b)``, ``range(4,10,2)``, for a group also ``all`` and ``glob(m*)``. A quoted
+    text and a list in brackets are one value.
+
+    Args:
+        tokens: ``key=value`` as typed.
+        config_dir: The user's own configs, if any.
+
+    Returns:
+        The configs; one where no key has several values.
+
+    Raises:
+        ConfigError: If a token cannot be read, or a key cannot have several values.
+    """
+    if config_dir is not None:
+        check_config_dir(config_dir)
+    axes = [_axis(token, config_dir) for token in tokens]
+    several = [axis for axis in axes if len(axis.values) > 1]
+    for axis in several:
+        if sum(other.key == axis.key for other in axes) > 1:
+            raise ConfigError(f"{axis.token}: {axis.key} is given again beside its several values; give it once")
+    if prod(len(axis.values) for axis in axes) > MOST:
+        asked = " ".join(axis.token for axis in several)
+        raise ConfigError(f"{asked} asks for more than {MOST} cells; a run has no more, so make several of it")
+    indices = product(*(range(len(axis.values)) for axis in axes))
+    return tuple(
+        Point(
+            tuple(axis.tokens[i] for axis, i in zip(axes, chosen, strict=True)),
+            {axis.key: axis.values[i] for axis, i in zip(axes, chosen, strict=True) if axis in several},
+        )
+        for chosen in indices
+    )
+
+
+def _axis(token: str, config_dir: Path | None) -> _Axis:
+    override = parse(token)
+    key = override.key_or_group
+    everything = key in LISTED and override.value() == ALL
+    # What Hydra could do beyond setting keys is refused when composing, with or without several values.
+    other = override.is_delete() or override.package is not None or override.is_hydra_override()
+    if other or not (everything or override.is_sweep_override()):
+        return _Axis(token, key, ("",), (token,))
+    _refuse_one_value(token, key)
+    values = tuple(dict.fromkeys(_values(override, token, config_dir)))
+    if not values:
+        raise ConfigError(f"{token} stands for no value at all")
+    return _Axis(token, key, values, tuple(f"{override.get_key_element()}={value}" for value in values))
+
+
+def _refuse_one_value(token: str, key: str) -> None:
+    head = key.partition(".")[0]
+    if head in ONE_VALUE or head in ROOT:
+        reason = ONE_VALUE.get(head, "it belongs to the run as a whole")
+        hint = f"; {TEXT_WITH_COMMAS.format(key=key)}" if head in ROOT and ROOT[head].kind is str else ""
+        raise ConfigError(f"{token}: {key} takes one value, since {reason}{hint}")
+
+
+def _values(override: Any, token: str, config_dir: Path | None) -> Iterator[str]:  # noqa: ANN401 - Hydra's own class
+    """Yield the values in the grammar of overrides, no more than are allowed and one."""
+    from hydra.core.override_parser.types import Glob, Transformer
+    from hydra.errors import HydraException
+
+    key, value = override.key_or_group, override.value()
+    known = list(choices(key, config_dir)) if key in LISTED else []
+    if value == ALL:
+        yield from known
+    elif isinstance(value, Glob):
+        if not known:
+            raise ConfigError(f"{token}: glob(...) chooses among the files of a group, and {key} is none")
+        yield from value.filter(known)
+    elif override.is_interval_sweep() or getattr(value, "shuffle", False):
+        raise ConfigError(f"{token}: a table needs values in a fixed order; write them out, {key}=a,b,c")
+    else:
+        try:
+            for item in islice(override.sweep_iterator(Transformer.identity), MOST + 1):
+                if key not in LISTED:
+                    yield _text(item, Transformer.str)
+                    continue
+                name = getattr(item, "text", item)
+                if name != ALL:
+                    check_choice(key, name, config_dir)
+                yield from known if name == ALL else [str(name)]
+        except (HydraException, ValueError) as err:
+            raise ConfigError(f"cannot read {token!r} ({err})") from err
+
+
+def _text(item: object, write: Any) -> str:  # noqa: ANN401 - Hydra's own function, which is not typed
+    """Write a value as it would be typed alone."""
+    if isinstance(item, bool):
+        return str(item).lower()
+    if isinstance(item, str) and "${" in item:
+        return item
+    return str(write(item))
