@@ -37,6 +37,14 @@ bench: $(READY) ## measure speed
 	@test -f benchmarks/__main__.py || { echo "there are no benchmarks yet" >&2; exit 2; }
 	$(BIN)/python -m benchmarks $(ARGS)
 
+pictures: $(READY) ## draw the frames of docs/replay.md
+	rm -rf $(VENV)/pictures
+	$(BIN)/codriving run scenario=all episodes=1 run=frames output=$(VENV)/pictures
+	$(BIN)/codriving replay $(VENV)/pictures/run/frames --cell intersection --frame 10.5 --out docs/images/replay-intersection.png
+	$(BIN)/codriving replay $(VENV)/pictures/run/frames --cell roundabout --frame 8 --out docs/images/replay-roundabout.png
+	$(BIN)/codriving replay $(VENV)/pictures/run/frames --cell highway --frame 12 --out docs/images/replay-highway.png
+	$(BIN)/codriving replay $(VENV)/pictures/run/frames --cell merge --frame 8 --out docs/images/replay-merge.png
+
 lint: $(READY) ## style, layers and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -59,4 +67,4 @@ clean: ## remove .venv and what the tools left behind; outputs/ stays
 	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test ablate compare bench lint types format lock clean
+.PHONY: help install run test ablate compare bench pictures lint types format lock clean

@@ -1,12 +1,15 @@
 """Interactive and learnable cooperative driving, from a seed to the paper's tables."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from codriving.envs.registration import offer
 
 if TYPE_CHECKING:
+    from codriving.envs.parallel import ParallelDriving
     from codriving.experiment import Results
 
-__all__ = ["__version__", "run"]
+__all__ = ["__version__", "parallel_env", "run"]
 
 __version__ = "0.1.0"
 
@@ -31,3 +34,30 @@ def run(*overrides: str, config_dir: str | Path | None = None) -> "Results":
     from codriving.experiment import run_frames
 
     return run_frames(*overrides, config_dir=None if config_dir is None else Path(config_dir))
+
+
+def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDriving":  # noqa: ANN401 - any setting
+    """Make an environment in which every CAV is an agent, with the interface of PettingZoo.
+
+    The same, with one agent that decides for all CAVs: ``gymnasium.make("codriving/<name>-v0")``.
+
+    Args:
+        name: Name of the scenario, for instance ``"roundabout"``.
+        *overrides: ``key=value`` tokens, for instance ``"environment.drivers.headway=1.2"``.
+        **settings: ``cda``, ``rows``, ``coordinates``, ``normalise``, ``reward``, ``render_mode`` and ``config_dir``,
+            as :class:`codriving.envs.parallel.ParallelDriving` describes them; all others are keys of the scenario,
+            for instance ``cavs=4``.
+
+    Raises:
+        ConfigError: If a setting cannot be used.
+
+    Example:
+        >>> env = codriving.parallel_env("intersection", cavs=6, cda="status_sharing")  # doctest: +SKIP
+        >>> observations, infos = env.reset(seed=0)  # doctest: +SKIP
+    """
+    from codriving.envs.parallel import ParallelDriving
+
+    return ParallelDriving(name, *overrides, **settings)
+
+
+offer()

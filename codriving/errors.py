@@ -4,7 +4,8 @@ CodrivingError                      anything this program raises on purpose
 ├── UserError                       the user can mend it: one line, exit code 2, no traceback
 │   ├── ConfigError                 a key, value, range or cross-field rule of the config
 │   │   └── ScenarioError           a scenario whose vehicles cannot be placed or whose road is broken
-│   └── RunFolderError              a run folder that is unwritable, of another config, or damaged
+│   ├── RunFolderError              a run folder that is unwritable, of another config, or damaged
+│   └── FilmError                   a film that cannot be written
 └── EpisodeError                    an episode could not go on; it becomes a record and the batch continues
 """
 
@@ -27,6 +28,10 @@ class ScenarioError(ConfigError):
 
 class RunFolderError(UserError):
     """Raised when a run folder cannot be written, belongs to another config, or is damaged."""
+
+
+class FilmError(UserError):
+    """Raised when a film cannot be written."""
 
 
 class EpisodeError(CodrivingError):

@@ -40,3 +40,15 @@ def configured() -> Callable[..., Environment]:
 def junction(configured: Callable[..., Environment]) -> Junction:
     """The intersection of the configuration, and worlds on it made by hand."""
     return Junction(configured("scenario=intersection"))
+
+
+@pytest.fixture(scope="session")
+def highway(configured: Callable[..., Environment]) -> Junction:
+    """The highway of the configuration, and worlds on it made by hand."""
+    return Junction(configured("scenario=highway"))
+
+
+@pytest.fixture(scope="session")
+def merge(configured: Callable[..., Environment]) -> Junction:
+    """The merge of the configuration, and worlds on it made by hand."""
+    return Junction(configured("scenario=merge"))

@@ -83,3 +83,11 @@ def test_installed_copy_drives_an_episode(installed: Path, tmp_path: Path) -> No
     printed = call(installed / "codriving", "run", "episodes=1", "workers=1", "run=first", folder=tmp_path)
     assert "intersection" in printed
     assert (tmp_path / "outputs" / "run" / "first" / "summary.csv").exists()
+
+
+def test_installed_copy_drives_a_scenario_of_the_users_from_any_folder(installed: Path, tmp_path: Path) -> None:
+    configs = REPOSITORY / "examples" / "t_junction" / "conf"
+    command = ("run", "scenario=intersection,t_junction", "episodes=1", "scenario.time_limit=1", "run=own")
+    printed = call(installed / "codriving", *command, "--config-dir", configs, folder=tmp_path)
+    assert "t_junction" in printed
+    assert len((tmp_path / "outputs" / "run" / "own" / "summary.csv").read_text().splitlines()) == 3
