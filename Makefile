@@ -37,7 +37,8 @@ bench: $(READY) ## measure speed
 	@test -f benchmarks/__main__.py || { echo "there are no benchmarks yet" >&2; exit 2; }
 	$(BIN)/python -m benchmarks $(ARGS)
 
-pictures: $(READY) ## draw the frames of docs/replay.md
+pictures: $(READY) ## draw the roads of docs/scenarios.md and the frames of docs/replay.md
+	$(BIN)/python docs/images/roads.py
 	rm -rf $(VENV)/pictures
 	$(BIN)/codriving run scenario=all episodes=1 run=frames output=$(VENV)/pictures
 	$(BIN)/codriving replay $(VENV)/pictures/run/frames --cell intersection --frame 10.5 --out docs/images/replay-intersection.png

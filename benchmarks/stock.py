@@ -105,9 +105,7 @@ def _vehicle(ours: Environment, road: StockRoad, start: Start) -> Vehicle:
     x, y = path.position(start.position)
     place, heading = [float(x), float(y)], float(path.heading(start.position))
     if start.kind is Kind.CAV:
-        vehicle = MDPVehicle(
-            road, place, heading, start.speed, target_speeds=list(ours.driving_model.target_speeds)
-        )
+        vehicle = MDPVehicle(road, place, heading, start.speed, target_speeds=list(ours.driving_model.target_speeds))
         vehicle.KP_A, vehicle.KP_HEADING = ours.control.speed, ours.control.heading
         vehicle.KP_LATERAL = ours.control.lateral
     else:

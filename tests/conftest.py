@@ -52,3 +52,9 @@ def highway(configured: Callable[..., Environment]) -> Junction:
 def merge(configured: Callable[..., Environment]) -> Junction:
     """The merge of the configuration, and worlds on it made by hand."""
     return Junction(configured("scenario=merge"))
+
+
+@pytest.fixture(scope="session")
+def roundabout(configured: Callable[..., Environment]) -> Junction:
+    """The roundabout of the configuration, and worlds on it made by hand."""
+    return Junction(configured("scenario=roundabout"))

@@ -70,7 +70,7 @@ def find_block_collisions(
         for vehicle in vehicles:
             if abs(vehicle.position[0] - obstacle.position[0]) > vehicle.diagonal + obstacle.diagonal:
                 continue
-            if _overlap(vehicle, obstacle) if by_footprint else vehicle.crashed and obstacle.hit:
+            if _overlap(vehicle, obstacle) if by_footprint else vehicle.crashed and obstacle.crashed:
                 record = Collision(time, vehicle.id, f"block{k}", f"{kind(vehicle)}-block")
                 found.append((vehicle, record))
     return found

@@ -8,6 +8,7 @@ from highway_env.road.road import Road
 from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.objects import Obstacle, RoadObject
 
+from codriving.datatypes.road import LaneId
 from codriving.datatypes.scene import Start
 from codriving.environment.body_ahead import body_ahead
 from codriving.environment.corrections import Corrections
@@ -18,6 +19,9 @@ from codriving.environment.way import Way
 
 CREEP = 1.0
 """Below this speed a driver counts as standing [m/s]."""
+
+GAP = 4.0
+"""Time gap before which a driver who stands starts onto the lane beside [s]; so long it is in the way."""
 
 
 class HumanDriver(OnWay, IDMVehicle):
@@ -135,7 +139,13 @@ class HumanDriver(OnWay, IDMVehicle):
         """Decide on a lane change by MOBIL, also from a standstill if that is corrected."""
         if self.corrections.start_into_gap and self.speed < CREEP and self.lane_index == self.target_lane_index:
             for lane_index in self.road.network.side_lanes(self.lane_index):
-                if self.road.network.get_lane(lane_index).is_reachable_from(self.position) and self.mobil(lane_index):
+                lane = self.road.network.get_lane(lane_index)
+                if lane.is_reachable_from(self.position) and self._finds_gap(lane_index) and self.mobil(lane_index):
                     self.target_lane_index = lane_index
             return
         super().change_lane_policy()
+
+    def _finds_gap(self, lane_index: LaneId) -> bool:
+        """Whether whoever comes on a lane is far enough behind; MOBIL only minds how hard it had to brake now."""
+        _, behind = self.road.neighbour_vehicles(self, lane_index)
+        return behind is None or behind.lane_distance_to(self) - self.LENGTH > behind.speed * GAP

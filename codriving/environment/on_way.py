@@ -1,5 +1,6 @@
 """What every vehicle of ours adds to highway-env's: an id, and knowing where it is on its way."""
 
+import math
 from collections.abc import Mapping
 
 from highway_env.road.lane import AbstractLane
@@ -63,7 +64,8 @@ class OnWay(PlainMotion):
     def follow_target_lane(self) -> None:
         """Take the way along the lane that is steered for, if another lane than that of the way was chosen.
 
-        Of the routes along that lane which end where the present one does, one that needs the fewest further changes.
+        Of the routes along that lane which end where the present one does, one that needs the fewest further changes,
+        and had the fewest before.
         """
         target = (self.target_lane_index[0], self.target_lane_index[1], int(self.target_lane_index[2]))
         present = self.way.lane_at(self.s)
@@ -76,9 +78,9 @@ class OnWay(PlainMotion):
             if target in way.route.lanes and way.route.lanes[-1][1] == self.way.route.lanes[-1][1]:
                 s, offset = way.path.project(x, y)
                 if way.lane_at(s) == target:
-                    options.append((way.changes_after(s), name, s, offset))
+                    options.append((way.changes_after(s), way.changes_after(-math.inf), name, s, offset))
         if options:
-            _, name, self.s, self.offset = min(options)
+            *_, name, self.s, self.offset = min(options)
             self.way = self.ways[name]
             self._plan()
             self._find_lane()

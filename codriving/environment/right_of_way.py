@@ -33,9 +33,9 @@ GRID = 1.0
 def will_meet(road_map: RoadMap, one: OnWay, other: OnWay) -> bool:
     """Whether two vehicles would be in a conflict zone together within three seconds.
 
-    Vehicles that merely follow one another are left to the car-following model. A CAV is expected to keep its speed; so
-    is a human driver, who may also speed up: whoever has braked to wait would else be let go by its low speed, speed up,
-    and be in the way when it is too late to wait.
+    Vehicles that merely follow one another are left to the car-following model. A CAV is expected to keep its speed. A
+    human driver may also speed up: whoever has braked to wait would else be let go for its low speed, speed up, and be
+    in the way when it is too late to wait.
 
     Args:
         road_map: The precomputed road.

@@ -1,5 +1,6 @@
 """The road of highway-env with its right of way, its neighbours and its collisions corrected."""
 
+import math
 from itertools import combinations
 from typing import Any
 
@@ -149,4 +150,5 @@ class Traffic(RegulatedRoad):
 def _obstacle(road: Traffic, block: Block) -> Obstacle:
     obstacle = Obstacle(road, list(block.position), block.heading)
     obstacle.LENGTH, obstacle.WIDTH = block.length, block.width
+    obstacle.diagonal = math.hypot(block.length, block.width)
     return obstacle

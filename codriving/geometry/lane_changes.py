@@ -1,6 +1,6 @@
 """Lanes side by side: which change a route asks for next, and which lanes a body reaches onto."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from codriving.datatypes.road import Lane, LaneId, Route, beside
@@ -58,7 +58,8 @@ class LaneChanges:
             lane: The lane.
 
         Returns:
-            Id and lane of each; the route along a lane with the fewest lane changes stands for all of them.
+            Id and lane of each; the route along a lane with the fewest lane changes still to come, and then with the
+            fewest before, stands for all of them.
         """
         key = (route_id, lane)
         if key not in self._beside:
@@ -66,12 +67,12 @@ class LaneChanges:
             for index in (lane[2] - 1, lane[2] + 1):
                 side = (lane[0], lane[1], index)
                 options = [
-                    (sum(beside(*pair) for pair in pairwise(r.lanes[r.lanes.index(side) :])), r.id)
+                    (_changes(r.lanes[r.lanes.index(side) :]), _changes(r.lanes), r.id)
                     for r in self.routes.values()
                     if side in r.lanes and r.lanes[-1][1] == self.routes[route_id].lanes[-1][1]
                 ]
                 if options:
-                    found.append((min(options)[1], side))
+                    found.append((min(options)[-1], side))
             self._beside[key] = tuple(found)
         return self._beside[key]
 
@@ -105,3 +106,7 @@ class LaneChanges:
                 self._on_lanes.clear()
             found = self._on_lanes[key] = self._lane_paths[lane].project(x, y)
         return found
+
+
+def _changes(lanes: Sequence[LaneId]) -> int:
+    return sum(beside(*pair) for pair in pairwise(lanes))

@@ -45,6 +45,7 @@ FURTHER = (
     "duration_mean",
     "collision_cav_cav",
     "collision_cav_hdv",
+    "collision_cav_block",
     "bystander_collisions",
     "decisions",
 )
@@ -106,6 +107,7 @@ def summary_row(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | Non
         "success_planned_high": planned_high,
         "collision_cav_cav": pairs["CAV-CAV"],
         "collision_cav_hdv": pairs["CAV-HDV"],
+        "collision_cav_block": pairs["CAV-block"],
         "bystander_collisions": sum(len(record.outcome.bystander_collisions) for record in completed),
         "decisions": sum(record.decisions for record in records),
         **_quality(successes),

@@ -42,7 +42,7 @@ TURNS = {
 """What can be driven, from leg to leg."""
 
 MAIN_ROAD, LEFT_TURN, SIDE_ROAD = 2, 1, 0
-"""Priorities: the higher goes first. A left turn out of the main road waits for whoever comes towards it."""
+"""Priorities: the higher goes first. In the junction, a left turn ranks below who comes towards it."""
 
 WIDTH = 4.0
 """Width of a lane [m]."""

@@ -2,11 +2,25 @@
 
 from collections.abc import Callable
 
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
 from codriving.environment.on_way import OnWay
-from codriving.environment.right_of_way import OVERSHOOT, STARTING, occupied_ahead, pace, will_meet
+from codriving.environment.right_of_way import (
+    HORIZON,
+    OVERSHOOT,
+    STARTING,
+    can_wait,
+    motions,
+    occupied_ahead,
+    pace,
+    will_meet,
+)
 
 Build = Callable[..., Environment]
 CAV, HDV = Kind.CAV, Kind.HDV
@@ -75,6 +89,75 @@ def test_a_driver_who_stands_means_to_start_and_a_cav_does_not(by_hand: Build) -
         by_hand, Start("HDV1", HDV, "south-north", 99.0, 0.0), Start("HDV2", HDV, "west-east", 101.0, 0.0)
     )
     assert will_meet(env.road_map, road["HDV1"], road["HDV2"])
+
+
+def test_who_has_braked_to_wait_is_not_let_go_for_its_low_speed(by_hand: Build) -> None:
+    # At 5 m/s it would pass behind the other one, but it would not stay at 5 m/s: before, it was let go and crashed.
+    starts = [Start("HDV1", HDV, "north-east", 93.0, 5.3), Start("HDV2", HDV, "west-east", 99.8, 6.6)]
+    env, road = placed(by_hand, *starts)
+    road["HDV1"].target_speed = 10.0
+    assert will_meet(env.road_map, road["HDV1"], road["HDV2"])
+    assert will_meet(env.road_map, road["HDV2"], road["HDV1"])
+    road["HDV1"].target_speed = 5.3
+    assert not will_meet(env.road_map, road["HDV1"], road["HDV2"]), "it means to stay as slow"
+    env._traffic.enforce_road_rules()
+    assert road["HDV1"].waits_at is None
+    road["HDV1"].target_speed = 10.0
+    env._traffic.enforce_road_rules()
+    assert road["HDV1"].waits_at == 100.0
+    assert road["HDV2"].waits_at is None
+
+
+def test_it_goes_on_waiting_until_the_other_one_has_passed(by_hand: Build) -> None:
+    starts = [Start("HDV1", HDV, "north-east", 76.5, 7.2), Start("HDV2", HDV, "west-east", 84.0, 6.6)]
+    env, road = placed(by_hand, *starts, Start("CAV1", CAV, "south-east", 20.0, 0.0))
+    told, went = [], []
+    for _ in range(100):
+        env._traffic.act()
+        env._traffic.step(0.1)
+        road["CAV1"].speed = 0.0
+        if road["HDV1"].waits_at == 100.0:
+            told.append(road["HDV2"].s)
+        elif told:
+            went.append(road["HDV2"].s)
+    (zone,) = env.road_map.zones("west-east", "north-east")
+    assert told
+    assert went
+    assert went[0] > zone.point_i, "the other one has reached the place where their ways meet"
+    assert max(told) < min(went), "told once, and let go once"
+
+
+@pytest.mark.parametrize(
+    ("nose", "speed", "can"),
+    [(-3.0, 5.9, True), (-3.0, 7.0, False), (0.0, 0.0, True), (0.9, 0.0, True), (1.1, 0.0, False)],
+)
+def test_who_stands_at_the_line_can_wait_also_a_little_over_it(
+    nose: float, speed: float, can: bool, by_hand: Build
+) -> None:
+    # Drivers stop with their front at the line; without an allowance, the one who stood there could not wait any more.
+    _, road = placed(by_hand, Start("HDV1", HDV, "south-north", 100.0 - 2.5 + nose, speed))
+    assert can_wait(road["HDV1"]) == can
+
+
+@given(speed=st.floats(0, 10), wish=st.floats(0, 12))
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_motions_are_constant_speed_and_speeding_up(speed: float, wish: float, by_hand: Build) -> None:
+    starts = [Start("CAV1", CAV, "west-east", 50.0, speed), Start("HDV1", HDV, "south-north", 60.0, speed)]
+    _, road = placed(by_hand, *starts)
+    road["HDV1"].target_speed = wish
+    (steady,) = motions(road["CAV1"])
+    np.testing.assert_allclose(steady, 50.0 + speed * HORIZON)
+    slower, faster = motions(road["HDV1"])
+    np.testing.assert_allclose(slower, 60.0 + max(speed, STARTING) * HORIZON)
+    assert (faster >= slower).all()
+    # Never faster than it wants, nor than the speed limit, unless it is already.
+    top = max(speed, STARTING, min(wish, 10.0))
+    assert (np.diff(faster) <= top * 0.25 + 1e-9).all()
+    if min(wish, 10.0) > speed > STARTING:
+        assert faster[0] == pytest.approx(
+            60.0 + speed * 0.25 + 1.5 * min(0.25, (min(wish, 10.0) - speed) / 3) ** 2, abs=0.3
+        )
+        assert faster[-1] > slower[-1]
 
 
 def test_drivers_look_more_often_than_highway_env_lets_them(by_hand: Build) -> None:

@@ -1,7 +1,9 @@
 """What is written down of a decision step."""
 
 import json
+import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -51,6 +53,16 @@ def test_a_line_holds_what_was_told_removed_ordered_and_decided(step: Deliberati
         assert [a["action"] for a in cav["assessments"]] == [a.action for a in situation.assessments]
         assert cav["memories"] == []
     assert any(reasons for cav in line["cavs"] for reasons in cav["removed"].values())
+
+
+@pytest.mark.parametrize("odd", [math.nan, math.inf, -math.inf])
+def test_what_is_no_number_is_written_as_null(odd: float, step: Deliberation) -> None:
+    first, *others = step.situations
+    told = replace(first, clear_times=(odd,) * len(first.conflicts), scene=replace(first.scene, place=odd))
+    line = replace(step, situations=(told, *others)).as_dict()
+    assert json.loads(json.dumps(line, allow_nan=False)) == line
+    assert line["cavs"][0]["scene"]["place"] is None
+    assert {c["clear_time"] for c in line["cavs"][0]["conflicts"]} == {None}
 
 
 def test_a_forced_action_keeps_its_reasons(method: Make, junction: Junction) -> None:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.prediction.forecast import BRAKE, GO, HORIZON, Forecast
+from codriving.prediction.human import likely
 from codriving.prediction.rollout import rollout
 
 MODEL = DrivingModel((0.0, 3.0, 6.0, 9.0), 1.6, 0.1, 0.5, 50.0)
@@ -66,6 +67,15 @@ def test_human_drivers_have_wider_bounds_than_cavs() -> None:
     human, cav = forecast.reach(9.0, False), forecast.reach(9.0, True)
     assert human.least[-1] < cav.least[-1]
     assert human.most[-1] > cav.most[-1]
+
+
+def test_what_a_driver_is_likely_to_do_is_sampled_like_everything_else() -> None:
+    forecast = Forecast(MODEL)
+    for ours, theirs in zip(forecast.likely(7.0), likely(7.0, forecast.times), strict=True):
+        assert np.array_equal(ours, theirs)
+    least, most = forecast.likely(7.0)
+    reach = forecast.reach(7.0, False)
+    assert reach.least[-1] < least[-1] < reach.steady[-1] < most[-1] < reach.most[-1]
 
 
 @given(SPEEDS, st.floats(0.01, 80.0))

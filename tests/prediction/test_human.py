@@ -1,10 +1,11 @@
 """Bounds of human drivers hold whatever they do."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.prediction.human import HARD_ACCELERATION, HARD_BRAKING, fastest, slowest
+from codriving.prediction.human import DRIFT, HARD_ACCELERATION, HARD_BRAKING, fastest, likely, slowest
 
 TIMES = np.linspace(0.0, 12.0, 61)
 SPEEDS = st.floats(0.0, 30.0)
@@ -37,6 +38,28 @@ def test_no_way_to_drive_leaves_the_bounds(speed: float, limit: float, pedals: l
         v = after
     assert (slowest(speed, TIMES) <= np.array(places) + 1e-6).all()
     assert (np.array(places) <= fastest(speed, TIMES, limit) + 1e-6).all()
+
+
+@given(SPEEDS)
+def test_a_driver_is_likely_near_where_its_speed_leads(speed: float) -> None:
+    at_once, each_second, at_most = DRIFT
+    least, most = likely(speed, TIMES)
+    steady = speed * TIMES
+    assert (least <= steady + 1e-9).all()
+    assert (steady <= most + 1e-9).all()
+    assert (least >= 0).all()
+    assert (most - steady <= at_most + 1e-9).all()
+    assert most[0] == at_once, "where it is now is known only up to this"
+    assert most[5] - steady[5] == pytest.approx(at_once + each_second * TIMES[5])
+    # Nearer to the present nothing is less certain than later.
+    assert (np.diff(most - steady) >= -1e-9).all()
+
+
+def test_what_is_likely_lies_within_what_is_possible_at_speed() -> None:
+    least, most = likely(15.0, TIMES)
+    late = TIMES >= 2.0
+    assert (slowest(15.0, TIMES)[late] <= least[late]).all()
+    assert (most[late] <= fastest(15.0, TIMES, 21.0)[late]).all()
 
 
 def test_braking_ends_at_rest() -> None:

@@ -9,9 +9,9 @@ from worlds import LAG, Junction, Thoughts, car, order_of
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
 from codriving.reasoning.clearance import first_overlap
-from codriving.reasoning.expectation import Expected, expect, is_behind
+from codriving.reasoning.expectation import HEADWAY, Expected, expect, is_behind, keeps_order, worth
 from codriving.reasoning.movers import movers
-from codriving.reasoning.plans import FIRST, PLANS, STARTS_WITH
+from codriving.reasoning.plans import FIRST, HOLDS, PLANS, ROLLS, STARTS_WITH, WAITS
 
 
 def expected(
@@ -81,6 +81,58 @@ def test_followers_stay_behind_their_leaders_without_being_told(junction: Juncti
     assert (gap > 5.0).all()
 
 
+@pytest.mark.parametrize(("gap", "lag", "keeps"), [(24.0, LAG, True), (21.0, LAG, False), (21.0, 2, True)])
+def test_a_follower_keeps_a_headway_or_the_margin_if_that_is_less(
+    gap: float, lag: int, keeps: bool, junction: Junction
+) -> None:
+    thoughts = junction.thoughts(car("CAV1", "south-north", 30.0, 9.0), car("CAV2", "south-north", 60.0, 9.0))
+    known, times = movers(thoughts.scenes["CAV1"]), thoughts.forecast.times
+    assert round(HEADWAY / thoughts.forecast.sample) < LAG
+    # At 20 m/s the headway takes 16 m and the margin of these worlds 20 m, from one planning footprint to the next.
+    ahead = {"CAV2": (Expected("south-north", 30.0 + gap + 20 * times, True, {}),)}
+    (flag,) = keeps_order(
+        "CAV1",
+        "south-north",
+        (30.0 + 20 * times)[None],
+        known,
+        ahead,
+        PassingOrder((), ()),
+        junction.road_map,
+        lag,
+        thoughts.forecast.sample,
+        True,
+    )
+    assert flag == keeps
+
+
+def test_who_changes_lanes_is_expected_on_both_of_them(highway: Junction) -> None:
+    thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, 20.0, offset=2.5))
+    entered, left = expected(thoughts, PassingOrder((), ()))["CAV1"]
+    assert (entered.route, left.route) == ("lane-0", "lane-1")
+    assert set(entered.progress) == set(FIRST)
+    assert left.progress == {}
+    assert np.allclose(entered.places, left.places)
+
+
+@pytest.mark.parametrize(("gap", "minded"), [(14.0, True), (60.0, False)])
+def test_the_lane_that_is_left_counts_until_the_body_is_off_it(gap: float, minded: bool, highway: Junction) -> None:
+    # Somebody slow ahead on the lane that is left: it matters only if it is reached before the body is off that lane.
+    thoughts = highway.thoughts(
+        car("CAV1", "lane-0", 300.0, 20.0, 25.0, offset=2.5), car("HDV1", "lane-1", 300.0 + gap, 14.0)
+    )
+    motion = expected(thoughts, PassingOrder((), ()))["CAV1"][0]
+    assert motion.free is not minded
+    stays = highway.thoughts(car("CAV1", "lane-1", 300.0, 20.0, 25.0), car("HDV1", "lane-1", 300.0 + gap, 14.0))
+    assert not expected(stays, PassingOrder((), ()))["CAV1"][0].free
+
+
+def test_who_follows_a_vehicle_that_changes_onto_its_lane_minds_it(highway: Junction) -> None:
+    me = car("CAV1", "lane-1", 300.0, 25.0)
+    for offset, minded in ((0.0, False), (1.0, True)):
+        thoughts = highway.thoughts(me, car("CAV2", "lane-0", 325.0, 18.0, offset=offset))
+        assert expected(thoughts, PassingOrder((), ()))["CAV1"][0].free is not minded
+
+
 def test_who_detects_no_conflicts_minds_those_ahead_and_nobody_else(junction: Junction) -> None:
     me = car("CAV1", "south-north", 80.0, 6.0)
     crossing, ahead = car("CAV2", "west-east", 104.0, 2.0), car("CAV2", "south-north", 95.0, 3.0, 0.0)
@@ -96,7 +148,15 @@ def test_progress_is_that_of_the_best_plan_that_begins_with_an_action(junction: 
     assert motion.free
     assert set(motion.progress) == set(FIRST)
     assert motion.progress[Action.FASTER] > motion.progress[Action.IDLE] > motion.progress[Action.SLOWER] > 0
-    assert motion.progress[Action.FASTER] == pytest.approx(float(motion.places[-1] - motion.places[0]))
+    assert motion.progress[Action.FASTER] == pytest.approx(float(worth((motion.places - motion.places[0])[None])[0]))
+
+
+def test_of_two_ways_that_end_at_one_place_the_one_that_is_there_earlier_is_worth_more() -> None:
+    waits, hurries = np.array([0.0, 0.0, 0.0, 40.0]), np.array([0.0, 30.0, 40.0, 40.0])
+    slow, fast = worth(np.array([waits, hurries]))
+    assert slow < fast < 40.0
+    # Arriving at last still counts more than having been quick.
+    assert worth(np.array([[0.0, 0.0, 0.0, 50.0]]))[0] > fast
 
 
 def test_no_progress_where_the_order_cannot_be_kept(junction: Junction) -> None:
@@ -107,14 +167,19 @@ def test_no_progress_where_the_order_cannot_be_kept(junction: Junction) -> None:
     assert not motion.free
 
 
-def test_plans_are_each_something_now_then_waiting_then_going() -> None:
+def test_plans_are_each_something_now_then_waiting_or_rolling_then_going_or_holding() -> None:
+    slower, idle, faster = Action.SLOWER, Action.IDLE, Action.FASTER
     assert len(set(PLANS)) == len(PLANS)
-    assert PLANS[0] == (Action.FASTER, Action.FASTER)
-    assert all(set(plan[1:-1]) <= {Action.SLOWER} and plan[-1] is not Action.IDLE for plan in PLANS)
+    assert PLANS[0] == (faster, faster), "whoever is best off with it is held up by nobody"
+    assert PLANS[-1] == (slower, slower), "what is expected of whoever cannot keep the order"
     assert sorted(k for indices in STARTS_WITH.values() for k in indices) == list(range(len(PLANS)))
     for action, indices in STARTS_WITH.items():
-        assert {PLANS[k][0] for k in indices} == {action}
-        assert (action, Action.SLOWER) in {PLANS[k] for k in indices}, "one of them stops for good"
+        mine = {PLANS[k] for k in indices}
+        assert {plan[0] for plan in mine} == {action}
+        assert {(action, faster), (action, slower), (action, idle)} <= mine
+        assert {(action, *(slower,) * k, faster) for k in WAITS} <= mine
+        assert {(action, *(idle,) * k, faster) for k in ROLLS} <= mine
+        assert {(action, *(change,) * k, idle) for change in (slower, faster) for k in HOLDS} <= mine
 
 
 def test_who_is_behind_whom(junction: Junction) -> None:

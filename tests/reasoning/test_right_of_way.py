@@ -95,3 +95,17 @@ def test_the_faster_the_driver_the_earlier_it_is_not_relied_on(junction: Junctio
         return max(s for s in PLACES if s < 100 and reason(junction, major, car("HDV1", "south-north", s, speed)))
 
     assert latest(9.0) < latest(6.0) < latest(3.0) + 1
+
+
+def test_who_has_to_leave_a_lane_that_ends_gives_way_while_it_can_stop(merge: Junction) -> None:
+    assert not merge.road_map.road.regulated
+    main = car("CAV1", "main-1", 230.0, 15.0)
+    for place, relied_on in ((235.0, True), (270.0, True), (309.0, False)):
+        assert bool(reason(merge, main, car("HDV1", "ramp", place, 15.0))) is relied_on
+    assert "change onto the CAV's lane" in reason(merge, main, car("HDV1", "ramp", 235.0, 15.0))
+    # The slower the driver, the later it can still stop.
+    assert reason(merge, main, car("HDV1", "ramp", 309.0, 5.0))
+
+
+def test_nobody_gives_way_to_who_has_to_leave_the_lane_itself(merge: Junction) -> None:
+    assert not reason(merge, car("CAV1", "ramp", 235.0, 15.0), car("HDV1", "main-1", 230.0, 15.0))

@@ -9,7 +9,7 @@ from worlds import Junction, car
 from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
 from codriving.datatypes.scene_description import Role, SceneDescription
 from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.scenes import adjacent_lanes
+from codriving.reasoning.scenes import adjacent_lanes, with_roles
 from codriving.reasoning.state_sharing import SensedStates
 
 
@@ -93,3 +93,46 @@ def test_lane_at_finds_the_lane_of_a_place(junction: Junction) -> None:
     places = {-5.0: "o0", 0.0: "o0", 99.0: "o0", 101.0: "ir0", 121.0: "ir0", 123.0: "il2", 500.0: "il2"}
     for place, start in places.items():
         assert junction.road_map.lane_at("south-north", place)[0] == start
+
+
+def test_a_body_covers_the_lanes_that_it_reaches_onto(highway: Junction) -> None:
+    covers = {}
+    for offset in (0.0, 0.3, 0.5, 2.0, 4.0):
+        scene = highway.thoughts(car("CAV1", "lane-0", 300.0, 20.0, offset=offset)).scenes["CAV1"]
+        covers[offset] = [route for route, _ in scene.covers]
+        assert all(place == pytest.approx(300.0) for _, place in scene.covers)
+    # Its side is 1 m from its centre, and the lane's edge 2 m from that of the lane; who leans over is seen early.
+    assert covers == {0.0: [], 0.3: [], 0.5: ["lane-1"], 2.0: ["lane-1"], 4.0: ["lane-1"]}
+
+
+def test_the_lane_change_that_the_route_asks_for(merge: Junction) -> None:
+    def scene(route: str, place: float) -> SceneDescription:
+        return merge.thoughts(car("CAV1", route, place, 15.0)).scenes["CAV1"]
+
+    assert scene("main-1", 150.0).must_change is None
+    early, late = scene("ramp", 150.0).must_change, scene("ramp", 250.0).must_change
+    assert early is not None
+    assert late is not None
+    assert early.lane == late.lane == ("b", "c", 1)
+    assert early.room - late.room == pytest.approx(100.0, abs=0.1)
+    # The ramp lane is 330 m long and the taper 40 m; halfway through it the CAV must be changing.
+    assert early.room == pytest.approx(330.0 - 20.0 - 150.0, abs=1.0)
+    assert scene("ramp", 340.0).must_change is None
+
+
+def test_roles_are_found_anew_from_another_lane(highway: Junction) -> None:
+    thoughts = highway.thoughts(
+        car("CAV1", "lane-1", 300.0, 20.0),
+        car("CAV2", "lane-1", 320.0, 20.0),
+        car("HDV1", "lane-0", 330.0, 20.0),
+        car("HDV2", "lane-0", 280.0, 20.0),
+    )
+    scene = thoughts.scenes["CAV1"]
+    assert roles(scene) == {"CAV2": Role.LEADING, "HDV1": Role.OTHER, "HDV2": Role.OTHER}
+    found = with_roles(scene.neighbours, scene.ego, "lane-0", 300.0, highway.road_map)
+    assert {n.id: (n.role, n.gap) for n in found} == {
+        "CAV2": (Role.OTHER, None),
+        "HDV1": (Role.LEADING, pytest.approx(25.0)),
+        "HDV2": (Role.REARING, pytest.approx(15.0)),
+    }
+    assert with_roles(found, scene.ego, "lane-1", 300.0, highway.road_map) == scene.neighbours

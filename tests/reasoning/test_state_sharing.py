@@ -4,7 +4,7 @@ from dataclasses import asdict, replace
 
 from worlds import Car, Junction, car
 
-from codriving.reasoning.state_sharing import SensedStates, SharedStates
+from codriving.reasoning.state_sharing import USUAL_LENGTH, SensedStates, SharedStates
 
 NOT_SENSED = {"kind", "heading", "acceleration", "lane"}
 
@@ -58,3 +58,12 @@ def test_what_sensors_do_not_see_is_not_told(junction: Junction) -> None:
         ),
     )
     assert SensedStates().views(world, junction.model) == SensedStates().views(hidden, junction.model)
+
+
+def test_the_length_of_a_vehicle_is_shared_but_not_sensed(junction: Junction) -> None:
+    world = junction.world(*cars())
+    longer = replace(world, vehicles=tuple(replace(v, length=12.0) for v in world.vehicles))
+    assert {g.length for g in SharedStates().views(longer, junction.model)["CAV2"]} == {12.0}
+    assert {g.length for g in SensedStates().views(longer, junction.model)["CAV2"]} == {USUAL_LENGTH}
+    # As long as everybody is as long as is assumed, that changes nothing.
+    assert {v.length for v in junction.environment.reset(0).vehicles} == {USUAL_LENGTH}

@@ -74,6 +74,28 @@ def test_a_shared_route_is_believed(junction: Junction) -> None:
     assert place == pytest.approx(60.0, abs=0.1)
 
 
+def test_a_body_between_two_lanes_is_on_both_whether_it_shares_or_not(highway: Junction) -> None:
+    world = highway.world(car("CAV1", "lane-2", 280.0, 20.0), car("CAV2", "lane-0", 300.0, 20.0, offset=1.5))
+    (full,) = SharedStates().views(world, highway.model)["CAV1"]
+    (sensed,) = SensedStates().views(world, highway.model)["CAV1"]
+    on_both = (("lane-0", pytest.approx(300.0)), ("lane-1", pytest.approx(300.0)))
+    assert Tracking(highway.road_map).places("CAV1", full, world.intents["CAV2"]) == on_both
+    assert Tracking(highway.road_map).places("CAV1", sensed, None) == on_both
+
+
+def test_who_is_still_on_the_ramp_lane_beside_its_taper_is_on_the_ramp(merge: Junction) -> None:
+    taper = merge.road_map.changes.ahead("ramp", 0.0)
+    assert taper is not None
+    _, latest, end = taper
+    for place in (latest - 30.0, latest, end - 5.0):
+        # The route bends towards the main road there; the driver has stayed on the centre line of the ramp lane.
+        x, y = place - merge.road_map.lane_start("ramp", ("b", "c", 2)) + 230.0, 8.0
+        glimpse = Glimpse("HDV1", "HDV", x, y, 10.0, 0.0, 0.0, ("b", "c", 2), 5.0)
+        found = dict(Tracking(merge.road_map).places("CAV1", glimpse, None))
+        assert found["ramp"] == pytest.approx(place, abs=1.0)
+        assert "main-0" not in found
+
+
 def test_standing_is_timed_and_forgotten_when_it_moves(junction: Junction) -> None:
     tracking = Tracking(junction.road_map)
     stands, moves = seen(junction, "west-east", 80.0, 0.0), seen(junction, "west-east", 80.0, 3.0)

@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from worlds import Junction, Thoughts, car, order_of
+from worlds import Car, Junction, Thoughts, car, order_of
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
@@ -16,10 +16,13 @@ SAFE = st.tuples(st.booleans(), st.none() | st.floats(0.0, 90.0))
 
 
 def situation(
-    junction: Junction, assessments: dict[Action, tuple[bool, float | None]], order: PassingOrder = NOBODY
+    junction: Junction,
+    assessments: dict[Action, tuple[bool, float | None]],
+    order: PassingOrder = NOBODY,
+    me: Car | None = None,
 ) -> Situation:
     """What CAV1 is told, with a safety check made by hand: whether an action is safe, and how far it gets."""
-    thoughts = junction.thoughts(car("CAV1", "south-north", 60.0, 6.0))
+    thoughts = junction.thoughts(me or car("CAV1", "south-north", 60.0, 6.0))
     made = tuple(
         ActionAssessment(action, safe, () if safe else ("same lane: no",), (), progress)
         for action, (safe, progress) in assessments.items()

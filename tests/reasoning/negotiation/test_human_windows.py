@@ -6,7 +6,8 @@ from dataclasses import replace
 import pytest
 from worlds import Junction, Thoughts, car
 
-from codriving.reasoning.negotiation.human_windows import is_blocked, passes_first, window
+from codriving.reasoning.negotiation.human_windows import CERTAIN_GAP, is_blocked, passes_first, window
+from codriving.reasoning.negotiation.schedule import GAP, lag_length
 
 
 def meeting(junction: Junction, place: float, speed: float, cav: float = 85.0) -> Thoughts:
@@ -62,3 +63,25 @@ def test_who_has_passed_is_not_blocked(junction: Junction) -> None:
         "CAV1"
     ]
     assert not is_blocked(replace(c, places=(116.0, 111.0)), junction.road_map)
+
+
+def test_a_window_is_when_a_driver_is_likely_there_not_when_it_might_be_at_the_worst(junction: Junction) -> None:
+    thoughts = meeting(junction, 70.0, 8.0)
+    begin, end = first_window(thoughts)
+    c = next(c for c in thoughts.conflicts["CAV1"] if c.routes[1] == "west-east")
+    zone = junction.road_map.zones(*c.routes)[c.zone]
+    reach = thoughts.forecast.reach(8.0, False)
+    earliest = thoughts.forecast.time_to(c.distances[1], reach.most)
+    steady = thoughts.forecast.time_to(c.distances[1], reach.steady)
+    # The CAV has to be out of the way before; at its top speed that takes this long.
+    through = (zone.entry_j + lag_length(zone) - zone.entry_i) / 9.0
+    assert earliest < begin + through + CERTAIN_GAP < steady
+    gone = thoughts.forecast.time_to(zone.entry_i + lag_length(zone.mirrored()) - c.places[1], reach.steady)
+    assert gone + GAP < end < gone + GAP + 2.0
+
+
+def test_a_driver_who_has_to_change_onto_the_own_lane_blocks_nothing(merge: Junction) -> None:
+    thoughts = merge.thoughts(car("CAV1", "main-1", 215.0, 15.0), car("HDV1", "ramp", 225.0, 15.0))
+    (c,) = thoughts.conflicts["CAV1"]
+    n = thoughts.scenes["CAV1"].neighbours[0]
+    assert window(c, n, 240.0, merge.road_map, thoughts.forecast) == (math.inf, math.inf)

@@ -125,3 +125,21 @@ def test_the_sequence_is_that_of_the_order(reading: OwnOrder, junction: Junction
             for order in orders(thoughts, reading, seed).values():
                 rank = {name: k for k, name in enumerate(order.sequence)}
                 assert all(rank[p.first] < rank[p.second] for p in order.precedences)
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    st.lists(
+        st.tuples(st.sampled_from(["south-north", "west-east", "east-south", "north-west"]), st.floats(30, 110)),
+        min_size=3,
+        max_size=6,
+    ),
+    st.sampled_from(READINGS),
+)
+def test_an_own_order_leaves_nobody_out_since_every_pair_has_the_cav_in_it(
+    junction: Junction, some: list[tuple[str, float]], reading: OwnOrder
+) -> None:
+    thoughts = junction.thoughts(*[car(f"CAV{k}", route, place, 7.0) for k, (route, place) in enumerate(some)])
+    for ego, order in orders(thoughts, reading).items():
+        partners = {c.other for c in thoughts.conflicts[ego]}
+        assert {frozenset((p.first, p.second)) for p in order.precedences} == {frozenset((ego, k)) for k in partners}

@@ -1,89 +1,183 @@
-"""Second layer: lane changes, on a straight road with two lanes made by hand."""
+"""Second layer: lane changes among the vehicles of the lanes beside, on the highway and at the merge."""
 
-from dataclasses import replace
-
+import numpy as np
 import pytest
-from worlds import Junction, car
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from worlds import Car, Junction, car
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
-from codriving.datatypes.scene_description import Neighbour
 from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.safety.adjacent_lane import check_adjacent
-from codriving.reasoning.safety.assessment import ThreeLayers
+from codriving.reasoning.safety.adjacent_lane import HELD_UP, SIDE_GAP, check_adjacent
+from codriving.reasoning.safety.assessment import ThreeLayers, progress
 from codriving.reasoning.safety.outlook import Outlook
+from codriving.reasoning.safety.same_lane import check_ahead
 from codriving.reasoning.state_sharing import SensedStates
 
-LEFT: LaneId = ("a", "b", 0)
-RIGHT: LaneId = ("a", "b", 1)
-ACTIONS = (Action.SLOWER, Action.IDLE, Action.FASTER, Action.LANE_LEFT)
+LENGTH, WIDTH, LANE = 5.0, 2.0, 4.0
+SIDES = {Action.LANE_LEFT: 0, Action.LANE_RIGHT: 2}
+SPEED = st.floats(15.0, 30.0)
 
 
-@pytest.fixture(scope="module")
-def highway(junction: Junction) -> Junction:
-    """Two lanes beside each other; the left one is lane 0."""
-    lanes = tuple(Lane(name, Straight((0.0, 4.0 * name[2]), (400.0, 4.0 * name[2]))) for name in (LEFT, RIGHT))
-    routes = tuple(Route(name, (lane,), Turn.STRAIGHT, 0.0, 380.0) for name, lane in (("left", LEFT), ("right", RIGHT)))
-    made = Junction(junction.environment)
-    made.road_map = RoadMap(Road("two lanes", lanes, routes))
-    return made
+def among(highway: Junction, *others: Car, speed: float = 20.0) -> Outlook:
+    """CAV1 on the second lane from the left at 300 m, and some others."""
+    return highway.outlook(car("CAV1", "lane-1", 300.0, speed), *others)
 
 
-def beside(highway: Junction, place: float, speed: float, lane: str = "left", ego: float = 8.0) -> Outlook:
-    """CAV1 on the right lane at 100 m, and HDV1 somewhere."""
-    thoughts = highway.thoughts(car("CAV1", "right", 100.0, ego), car("HDV1", lane, place, speed))
-    return thoughts.outlook("CAV1", actions=ACTIONS)
+def human(lane: int, place: float, speed: float = 20.0, pedal: float = 0.0) -> Car:
+    return car("HDV1", f"lane-{lane}", place, speed, pedal=pedal)
 
 
-def test_the_lane_to_the_left_is_adjacent(highway: Junction) -> None:
-    assert beside(highway, 60.0, 8.0).scene.adjacent_lanes == (LEFT,)
+def allowed(outlook: Outlook) -> set[Action]:
+    return {a.action for a in ThreeLayers().assess(outlook) if a.safe}
 
 
-def test_a_vehicle_beside_removes_the_lane_change_and_nothing_else(highway: Junction) -> None:
-    outlook = beside(highway, 102.0, 8.0)
+def test_both_lanes_beside_are_offered_and_free(highway: Junction) -> None:
+    outlook = among(highway)
+    assert outlook.scene.adjacent_lanes == (("begin", "end", 0), ("begin", "end", 2))
+    assert set(outlook.actions) == allowed(outlook) == set(Action)
+    assert check_adjacent(outlook) == {}
+
+
+@pytest.mark.parametrize(("action", "lane"), SIDES.items())
+def test_a_vehicle_beside_removes_the_change_to_its_side_and_nothing_else(
+    action: Action, lane: int, highway: Junction
+) -> None:
+    outlook = among(highway, human(lane, 302.0))
     found = check_adjacent(outlook)
-    assert set(found) == {Action.LANE_LEFT}
-    (reason,) = found[Action.LANE_LEFT]
-    assert reason.startswith("adjacent lane: HDV1")
-    allowed = {a.action for a in ThreeLayers().assess(outlook) if a.safe}
-    assert allowed == set(ACTIONS) - {Action.LANE_LEFT}
+    assert set(found) == {action}
+    assert all(reason.startswith("adjacent lane: ") and "HDV1" in reason for reason in found[action])
+    assert allowed(outlook) == set(Action) - {action}
 
 
-def test_a_free_gap_stays_allowed(highway: Junction) -> None:
-    for place in (60.0, 140.0):
-        outlook = beside(highway, place, 8.0)
-        assert check_adjacent(outlook) == {}
-        assert Action.LANE_LEFT in {a.action for a in ThreeLayers().assess(outlook) if a.safe}
+@pytest.mark.parametrize("place", [240.0, 360.0])
+def test_a_free_gap_stays_allowed(place: float, highway: Junction) -> None:
+    assert check_adjacent(among(highway, human(0, place))) == {}
 
 
 def test_somebody_fast_from_behind_needs_more_room_than_somebody_slow(highway: Junction) -> None:
     def nearest(speed: float) -> float:
-        return max(s for s in range(55, 100) if check_adjacent(beside(highway, float(s), speed, ego=4.0)) == {})
+        return max(s for s in range(200, 300, 2) if check_adjacent(among(highway, human(0, float(s), speed))) == {})
 
-    assert nearest(9.0) < nearest(4.0)
-
-
-def test_the_one_ahead_on_the_own_lane_does_not_hinder_a_change(highway: Junction) -> None:
-    assert check_adjacent(beside(highway, 106.0, 8.0, lane="right")) == {}
+    assert nearest(28.0) < nearest(20.0) < nearest(15.0) < 294.0
 
 
-def test_a_road_without_that_lane_has_nothing_to_check(highway: Junction) -> None:
-    outlook = highway.thoughts(car("CAV1", "right", 100.0, 8.0), car("HDV1", "left", 101.0, 8.0)).outlook("CAV1")
+def test_somebody_slow_ahead_needs_more_room_than_somebody_fast(highway: Junction) -> None:
+    def nearest(speed: float) -> float:
+        return min(s for s in range(300, 400, 2) if check_adjacent(among(highway, human(0, float(s), speed))) == {})
+
+    assert nearest(12.0) > nearest(20.0) > nearest(25.0) > 305.0
+
+
+def test_a_lane_change_is_a_way_out_behind_somebody_who_stands(highway: Junction) -> None:
+    outlook = among(highway, human(1, 340.0, 0.0), speed=18.0)
+    assert set(check_ahead(outlook)) >= {Action.IDLE, Action.FASTER}
+    assert check_adjacent(outlook) == {}
+    assert set(SIDES) <= allowed(outlook)
+    # But not once the body would still be on the lane when it comes there.
+    assert set(check_adjacent(among(highway, human(1, 318.0, 0.0), speed=18.0))) == set(SIDES)
+
+
+def test_without_lane_changes_there_is_nothing_to_check(junction: Junction) -> None:
+    outlook = junction.outlook(car("CAV1", "south-north", 60.0, 6.0), car("HDV1", "south-west", 66.0, 6.0))
     assert check_adjacent(outlook) == {}
 
 
-def test_the_right_lane_is_checked_as_well(highway: Junction) -> None:
-    thoughts = highway.thoughts(car("CAV1", "left", 100.0, 8.0), car("HDV1", "right", 103.0, 8.0))
-    outlook = thoughts.outlook("CAV1", actions=(Action.IDLE, Action.LANE_RIGHT))
-    assert set(check_adjacent(outlook)) == {Action.LANE_RIGHT}
+def test_a_lane_that_leads_elsewhere_is_not_changed_to(junction: Junction) -> None:
+    ids: tuple[LaneId, ...] = (("a", "b", 0), ("a", "b", 1), ("b", "c", 0), ("b", "d", 0))
+    lines = (((0, 0), (200, 0)), ((0, 4), (200, 4)), ((200, 0), (400, 0)), ((200, 4), (400, 4)))
+    lanes = tuple(Lane(name, Straight(*line)) for name, line in zip(ids, lines, strict=True))
+    on = Route("on", (ids[0], ids[2]), Turn.STRAIGHT, 200, 350)
+    off = Route("off", (ids[1], ids[3]), Turn.STRAIGHT, 200, 350)
+    fork = Junction(junction.environment)
+    fork.road_map = RoadMap(Road("fork", lanes, (on, off)))
+    outlook = fork.outlook(car("CAV1", "on", 100.0, 6.0))
+    assert check_adjacent(outlook) == {Action.LANE_RIGHT: ["adjacent lane: it does not lead where the CAV goes"]}
+    assert progress(outlook, Action.LANE_RIGHT) is None
 
 
 def test_a_vehicle_whose_lane_is_not_known_counts(highway: Junction) -> None:
-    world = highway.world(car("CAV1", "right", 100.0, 8.0), car("HDV1", "left", 101.0, 8.0))
-    outlook = highway.think(world, SensedStates()).outlook("CAV1", actions=ACTIONS)
-    (n,) = outlook.scene.neighbours
-    assert isinstance(n, Neighbour)
-    assert n.lane is None
-    assert Action.LANE_LEFT in check_adjacent(outlook)
-    gone = replace(outlook, scene=replace(outlook.scene, neighbours=()))
-    assert check_adjacent(gone) == {}
+    for place, removed in ((301.0, {Action.LANE_LEFT}), (240.0, set())):
+        world = highway.world(car("CAV1", "lane-1", 300.0, 20.0), human(0, place))
+        outlook = highway.think(world, SensedStates()).outlook("CAV1")
+        assert [n.lane for n in outlook.scene.neighbours] == [None]
+        assert set(check_adjacent(outlook)) == removed
+
+
+@settings(max_examples=80, deadline=None)
+@given(
+    st.sampled_from(["CAV2", "HDV1"]),
+    st.integers(0, 3),
+    st.sampled_from([-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0]),
+    st.floats(-50.0, 50.0),
+    SPEED,
+    SPEED,
+)
+def test_no_lane_change_that_touches_anybody_within_two_seconds(
+    highway: Junction, name: str, lane: int, offset: float, apart: float, mine: float, theirs: float
+) -> None:
+    assume(0 <= LANE * lane + offset <= 3 * LANE)
+    outlook = among(highway, car(name, f"lane-{lane}", 300.0 + apart, theirs, offset=offset), speed=mine)
+    times = np.linspace(0.0, 2.0, 21)
+    touches = np.abs(apart + (theirs - mine) * times) < LENGTH
+
+    def on(k: int) -> bool:
+        """Whether the other one is on a lane, or will be."""
+        return lane == k or abs(LANE * (lane - k) + offset) < (LANE + WIDTH) / 2
+
+    removed = check_adjacent(outlook)
+    for action, side in SIDES.items():
+        # On the lane that it leaves, the CAV is responsible for whoever is ahead, until its body is off it.
+        left = on(1) and apart > LENGTH and bool(touches[times <= 1.6].any())
+        if left or (on(side) and touches.any()):
+            assert action in removed
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.integers(-79, 79).map(lambda k: k / 80 * SIDE_GAP), SPEED, SPEED, st.booleans())
+def test_two_cavs_alongside_never_change_onto_the_lane_between_them(
+    highway: Junction, apart: float, one: float, other: float, swap: bool
+) -> None:
+    lanes = ("lane-2", "lane-0") if swap else ("lane-0", "lane-2")
+    thoughts = highway.thoughts(car("CAV1", lanes[0], 300.0, one), car("CAV2", lanes[1], 300.0 + apart, other))
+    inwards = (Action.LANE_LEFT, Action.LANE_RIGHT) if swap else (Action.LANE_RIGHT, Action.LANE_LEFT)
+    goes = {
+        name for name, action in zip(("CAV1", "CAV2"), inwards, strict=True) if _goes(thoughts.outlook(name), action)
+    }
+    # The one ahead goes; if they are level, the one with the higher id.
+    assert goes == {"CAV2" if apart >= 0 else "CAV1"}
+
+
+def _goes(outlook: Outlook, action: Action) -> bool:
+    return action not in check_adjacent(outlook)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(-60.0, 60.0), SPEED)
+def test_two_cavs_at_one_speed_never_change_into_the_same_gap(highway: Junction, apart: float, speed: float) -> None:
+    thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, speed), car("CAV2", "lane-2", 300.0 + apart, speed))
+    if _goes(thoughts.outlook("CAV1"), Action.LANE_RIGHT) and _goes(thoughts.outlook("CAV2"), Action.LANE_LEFT):
+        assert abs(apart) > LENGTH + 2.0
+
+
+@pytest.mark.xfail(strict=True, reason="whoever is beyond SIDE_GAP on the far side is not looked for, however fast")
+def test_somebody_faster_from_behind_does_not_change_into_the_same_gap(highway: Junction) -> None:
+    thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, 28.0), car("CAV2", "lane-2", 312.0, 20.0))
+    assert not _goes(thoughts.outlook("CAV1"), Action.LANE_RIGHT) or not _goes(
+        thoughts.outlook("CAV2"), Action.LANE_LEFT
+    )
+
+
+def test_a_human_driver_on_the_far_side_might_change_there_as_well(highway: Junction) -> None:
+    for place, removed in ((296.0, {Action.LANE_RIGHT}), (304.0, {Action.LANE_RIGHT}), (320.0, set())):
+        assert set(check_adjacent(among(highway, human(3, place)))) == removed
+
+
+def test_who_has_to_change_does_not_wait_for_human_drivers_whom_nothing_urges(merge: Junction) -> None:
+    for pedal, goes in ((0.0, True), (HELD_UP - 0.1, False)):
+        outlook = merge.outlook(
+            car("CAV1", "ramp", 240.0, 15.0, offset=0.0), car("HDV1", "main-0", 240.0, 15.0, pedal=pedal)
+        )
+        assert outlook.scene.must_change is not None
+        assert _goes(outlook, Action.LANE_LEFT) is goes

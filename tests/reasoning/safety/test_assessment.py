@@ -9,7 +9,7 @@ from worlds import Junction, car, order_of
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.situation import ActionAssessment
-from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers, least_dangerous
+from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers, least_dangerous, progress
 from codriving.reasoning.safety.outlook import LONGITUDINAL, motions
 
 ROUTES = ("south-north", "south-west", "west-east", "west-north", "east-west", "north-east")
@@ -95,3 +95,76 @@ def test_a_lane_change_keeps_the_speed(change: Action, junction: Junction) -> No
     assert (stops[-1] == stops[idle]).all()
     assert (goes[-1] == goes[idle]).all()
     assert (goes >= stops).all()
+
+
+@pytest.mark.parametrize(
+    ("mine", "human", "least"),
+    [
+        # It goes on in front of somebody who may accelerate, and of somebody who may not brake.
+        ((109.0, 6.0), ("west-east", 100.0, 4.0), Action.FASTER),
+        ((110.0, 3.0), ("east-west", 98.0, 4.0), Action.FASTER),
+        # It does not brake in front of somebody who may brake as well.
+        ((107.0, 9.0), ("east-west", 101.0, 6.0), Action.IDLE),
+    ],
+)
+def test_three_guesses_of_what_others_do_decide_what_is_least_dangerous(
+    mine: tuple[float, float], human: tuple[str, float, float], least: Action, junction: Junction
+) -> None:
+    outlook = junction.outlook(car("CAV1", "south-north", *mine), car("HDV1", *human))
+    assert least_dangerous(outlook) is least
+
+
+def test_a_lane_change_gets_farther_than_staying_behind_somebody_slow(highway: Junction) -> None:
+    outlook = highway.outlook(
+        car("CAV1", "lane-1", 300.0, 20.0), car("HDV1", "lane-1", 335.0, 15.0), car("HDV2", "lane-2", 335.0, 15.0)
+    )
+    found = by_action(ThreeLayers().assess(outlook))
+    left, right, stays = (
+        found[Action.LANE_LEFT].progress,
+        found[Action.LANE_RIGHT].progress,
+        found[Action.IDLE].progress,
+    )
+    assert left is not None
+    assert right is not None
+    assert stays is not None
+    assert left > 1.2 * stays
+    assert right == pytest.approx(stays, rel=0.01)
+    assert found[Action.LANE_LEFT].safe
+
+
+def test_behind_somebody_on_the_lane_that_it_leaves_a_change_gets_less_far_the_nearer_that_one_is(
+    highway: Junction,
+) -> None:
+    def gains(place: float) -> float | None:
+        outlook = highway.outlook(car("CAV1", "lane-1", 300.0, 25.0, 30.0), car("HDV1", "lane-1", place, 15.0))
+        return progress(outlook, Action.LANE_LEFT)
+
+    near, far = gains(318.0), gains(380.0)
+    assert far is not None
+    assert near is None or near < far
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.0, 25.0), st.floats(0.0, 25.0), st.floats(5.0, 30.0), st.floats(0.0, 30.0))
+def test_a_lane_change_is_never_forced(highway: Junction, ahead: float, behind: float, v: float, w: float) -> None:
+    outlook = highway.outlook(
+        car("CAV1", "lane-1", 300.0, v),
+        car("HDV1", "lane-1", 305.0 + ahead, w),
+        car("HDV2", "lane-0", 295.0 - behind, w),
+        car("HDV3", "lane-2", 300.0, v),
+    )
+    found = ThreeLayers().assess(outlook)
+    forced = [a.action for a in found if a.safe and a.reasons]
+    assert any(a.safe for a in found)
+    assert set(forced) <= set(LONGITUDINAL)
+
+
+def test_lane_changes_are_judged_by_the_second_layer_alone(highway: Junction) -> None:
+    outlook = highway.outlook(
+        car("CAV1", "lane-1", 300.0, 18.0), car("HDV1", "lane-1", 340.0, 0.0), car("HDV2", "lane-2", 301.0, 18.0)
+    )
+    found = by_action(ThreeLayers().assess(outlook))
+    assert not found[Action.IDLE].safe
+    assert found[Action.LANE_LEFT].reasons == ()
+    assert found[Action.LANE_RIGHT].reasons
+    assert all(reason.startswith("adjacent lane: ") for reason in found[Action.LANE_RIGHT].reasons)

@@ -9,9 +9,11 @@ from hypothesis import strategies as st
 from worlds import Junction, car, order_of, standing
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.conflict import Relation
 from codriving.geometry.box import TRUE
 from codriving.reasoning.clearance import first_overlap
-from codriving.reasoning.safety.conflict_lane import check_conflicts
+from codriving.reasoning.safety.adjacent_lane import check_adjacent
+from codriving.reasoning.safety.conflict_lane import changes_before, check_conflicts
 from codriving.reasoning.safety.outlook import Outlook
 
 ALL = {Action.SLOWER, Action.IDLE, Action.FASTER}
@@ -131,3 +133,56 @@ def test_a_human_driver_too_far_to_come_in_time_is_passed(speed: float, junction
     )
     assert np.array_equal(outlook.actions, sorted(ALL, key=outlook.actions.index))
     assert Action.FASTER not in removed(outlook)
+
+
+def in_the_way(outlook: Outlook) -> set[str]:
+    """Reasons that speak of stopping in somebody's way."""
+    return {r for reasons in check_conflicts(outlook).values() for r in reasons if "stop in the way of" in r}
+
+
+def test_a_cav_does_not_enter_the_way_of_a_human_driver_in_which_it_might_have_to_stop(junction: Junction) -> None:
+    outlook = junction.outlook(car("CAV1", "south-north", 101.0, 9.0), car("HDV1", "west-east", 107.0, 0.0))
+    assert in_the_way(outlook) == {"conflict lane: after SLOWER the CAV might have to stop in the way of HDV1"}
+    among_cavs = junction.outlook(car("CAV1", "south-north", 101.0, 9.0), car("CAV2", "west-east", 107.0, 0.0))
+    assert not in_the_way(among_cavs)
+
+
+def test_where_ways_merge_nobody_is_caught_in_between(junction: Junction) -> None:
+    outlook = junction.outlook(
+        car("CAV1", "south-north", 103.0, 6.0),
+        car("HDV1", "west-north", 113.0, 8.0),
+        car("HDV2", "north-south", 117.0, 3.0),
+    )
+    assert {c.relation for c in outlook.conflicts if c.other == "HDV1"} == {Relation.CONVERGING}
+    assert not in_the_way(outlook)
+
+
+@pytest.mark.parametrize(
+    ("mine", "other", "leaves_it"),
+    [
+        (("ramp", 240.0), ("CAV2", "main-1", 230.0), True),
+        (("main-1", 230.0), ("CAV2", "ramp", 240.0), True),
+        (("ramp", 240.0), ("HDV1", "main-1", 230.0), True),
+        (("main-1", 230.0), ("HDV1", "ramp", 240.0), False),
+    ],
+)
+def test_a_zone_that_is_reached_by_a_lane_change_is_left_to_the_second_layer(
+    mine: tuple[str, float], other: tuple[str, str, float], leaves_it: bool, merge: Junction
+) -> None:
+    outlook = merge.outlook(car("CAV1", *mine, 15.0), car(*other, 15.0))
+    assert outlook.conflicts
+    assert {changes_before(outlook, c) for c in outlook.conflicts if c.routes[1] in ("ramp", "main-1")} == {leaves_it}
+    if leaves_it:
+        assert removed(outlook) == set()
+    if mine[0] == "ramp":
+        assert Action.LANE_LEFT in check_adjacent(outlook)
+
+
+def test_who_has_begun_to_change_lanes_is_no_longer_left_to_it(merge: Junction) -> None:
+    ramp = car("HDV1", "ramp", 200.0, 10.0)
+    for mine, leaves_it in (
+        (car("CAV1", "ramp", 260.0, 10.0), True),
+        (car("CAV1", "main-1", 260.0, 10.0, offset=3.0), False),
+    ):
+        outlook = merge.outlook(mine, car("CAV2", "main-1", 200.0, 10.0), ramp)
+        assert any(changes_before(outlook, c) for c in outlook.conflicts) is leaves_it

@@ -10,7 +10,7 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import Role
 from codriving.reasoning.safety.assessment import ThreeLayers
 from codriving.reasoning.safety.outlook import Outlook
-from codriving.reasoning.safety.same_lane import check_ahead, check_behind, forced_braking
+from codriving.reasoning.safety.same_lane import LANE_END_GAP, check_ahead, check_behind, forced_braking
 from codriving.reasoning.state_sharing import SensedStates, SharedStates
 
 
@@ -123,3 +123,34 @@ def test_forced_braking_falls_with_the_gap_and_with_the_own_speed(junction: Junc
     assert braking[Action.SLOWER] > braking[Action.IDLE] >= braking[Action.FASTER]
     assert forced_braking(outlook, far, outlook.goes[0]) < braking[Action.SLOWER]
     assert forced_braking(outlook, replace(near, speed=1.0), outlook.goes[1]) == 0
+
+
+@pytest.mark.parametrize(("gap", "removed"), [(20.0, True), (60.0, False)])
+def test_while_it_changes_lanes_a_cav_minds_who_is_ahead_on_the_lane_that_it_leaves(
+    gap: float, removed: bool, highway: Junction
+) -> None:
+    ahead = car("HDV1", "lane-1", 300.0 + gap, 5.0)
+    leaving = highway.outlook(car("CAV1", "lane-0", 300.0, 20.0, offset=2.5), ahead)
+    assert (Action.FASTER in check_ahead(leaving)) is removed
+    # On the lane itself it could not stop behind it from either distance.
+    assert Action.FASTER in check_ahead(highway.outlook(car("CAV1", "lane-1", 300.0, 20.0), ahead))
+    assert check_ahead(highway.outlook(car("CAV1", "lane-0", 300.0, 20.0), ahead)) == {}
+
+
+def test_what_is_left_can_stop_before_the_lane_ends(merge: Junction) -> None:
+    removed = []
+    for place in range(230, 310, 5):
+        outlook = merge.outlook(car("CAV1", "ramp", float(place), 12.0))
+        change = outlook.scene.must_change
+        assert change is not None
+        found = check_ahead(outlook)
+        for action, stops in zip(outlook.actions, outlook.stops, strict=True):
+            reaches = stops[-1] - outlook.scene.place > change.room - LANE_END_GAP
+            assert (action in found) is bool(reaches)
+        removed.append(set(found) - {Action.LANE_LEFT})
+    assert removed[0] == set()
+    assert {Action.FASTER} in removed
+    assert removed[-1] == {Action.FASTER, Action.IDLE, Action.SLOWER}
+    for farther, nearer in pairwise(removed):
+        assert farther <= nearer
+    assert check_ahead(merge.outlook(car("CAV1", "main-1", 290.0, 12.0))) == {}, "its lane goes on"
