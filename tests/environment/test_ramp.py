@@ -108,15 +108,14 @@ def test_a_driver_changes_before_the_end_while_the_main_road_is_free(on_merge: B
     assert track.x[-1] > 500.0
 
 
-def put_at_the_end(env: Environment, away: float) -> HumanDriver:
-    """Move the first driver to the ramp lane, some way before its end [m]."""
-    driver = on_road(env)["HDV1"]
-    assert isinstance(driver, HumanDriver)
-    driver.position[:], driver.heading = (ENDS - away, 8.0), 0.0
-    driver.on_state_update()
-    driver.target_lane_index = driver.lane_index
-    assert driver.lane_index == ("b", "c", 2)
-    return driver
+def put_at_the_end(env: Environment, away: float, name: str = "HDV1") -> OnWay:
+    """Move a vehicle to the ramp lane, some way before its end [m]."""
+    vehicle = on_road(env)[name]
+    vehicle.position[:], vehicle.heading = (ENDS - away, 8.0), 0.0
+    vehicle.on_state_update()
+    vehicle.target_lane_index = vehicle.lane_index
+    assert vehicle.lane_index == ("b", "c", 2)
+    return vehicle
 
 
 def queue_beside_the_end() -> list[Start]:
@@ -140,6 +139,30 @@ def test_a_driver_waits_at_the_end_and_then_starts_into_a_gap(on_merge: Build) -
     assert env.outcome is None
 
 
+def test_it_waits_there_also_if_nothing_stands_at_the_end(on_merge: Build, merge: Road) -> None:
+    bare = replace(merge, name="without a block", blocks=())
+    env = on_merge(starts=[*queue_beside_the_end(), Start("HDV1", HDV, "ramp", 260.0, 14.0)], road=bare)
+    world = env.reset(0)
+    for _ in range(60):
+        world = env.step({cav.id: Action.SLOWER for cav in world.cavs})
+        assert on_road(env)["HDV1"].position[0] < ENDS - 2.5
+    assert on_road(env)["HDV1"].speed < 0.1
+
+
+@pytest.mark.parametrize("name", ["a ramp", "the ramp"])
+def test_a_late_change_leads_to_the_main_road_whatever_the_ramp_is_called(
+    name: str, on_merge: Build, merge: Road
+) -> None:
+    # Past the middle of the taper both routes count as being on the main lane.
+    routes = tuple(replace(route, id=name) if route.id == "ramp" else route for route in merge.routes)
+    env = on_merge(starts=[Start("CAV1", CAV, name, 285.0, 5.0)], road=replace(merge, name=name, routes=routes))
+    env.reset(0)
+    put_at_the_end(env, 12.0, "CAV1")
+    on_road(env)["CAV1"].act(Action.LANE_LEFT)
+    assert on_road(env)["CAV1"].way.route.id == "main-1"
+    assert on_road(env)["CAV1"].offset == pytest.approx(4.0)
+
+
 @pytest.mark.parametrize(("away", "starts"), [(GAP - 0.2, False), (GAP + 0.2, True)])
 def test_who_stands_lets_those_pass_who_would_be_there_within_the_gap(
     away: float, starts: bool, on_merge: Build
@@ -151,6 +174,7 @@ def test_who_stands_lets_those_pass_who_would_be_there_within_the_gap(
     env = on_merge(starts=[waits, comes, Start("CAV1", CAV, "main-0", 20.0, 0.0)])
     env.reset(0)
     driver = put_at_the_end(env, 6.0)
+    assert isinstance(driver, HumanDriver)
     assert driver.mobil(("b", "c", 1))
     driver.change_lane_policy()
     assert (driver.target_lane_index == ("b", "c", 1)) == starts

@@ -108,23 +108,21 @@ def test_who_has_braked_to_wait_is_not_let_go_for_its_low_speed(by_hand: Build) 
     assert road["HDV2"].waits_at is None
 
 
-def test_it_goes_on_waiting_until_the_other_one_has_passed(by_hand: Build) -> None:
+def test_it_goes_on_waiting_until_it_passes_behind(by_hand: Build) -> None:
+    # Seed 10017 of the intersection: it was told and let go three times, and struck the other one in its side.
     starts = [Start("HDV1", HDV, "north-east", 76.5, 7.2), Start("HDV2", HDV, "west-east", 84.0, 6.6)]
     env, road = placed(by_hand, *starts, Start("CAV1", CAV, "south-east", 20.0, 0.0))
-    told, went = [], []
-    for _ in range(100):
+    (zone,) = env.road_map.zones("north-east", "west-east")
+    told, behind = 0, []
+    for _ in range(120):
         env._traffic.act()
         env._traffic.step(0.1)
         road["CAV1"].speed = 0.0
-        if road["HDV1"].waits_at == 100.0:
-            told.append(road["HDV2"].s)
-        elif told:
-            went.append(road["HDV2"].s)
-    (zone,) = env.road_map.zones("west-east", "north-east")
-    assert told
-    assert went
-    assert went[0] > zone.point_i, "the other one has reached the place where their ways meet"
-    assert max(told) < min(went), "told once, and let go once"
+        told += road["HDV1"].waits_at == 100.0
+        if road["HDV1"].s > zone.entry_i:
+            behind.append((road["HDV2"].s - zone.entry_j) - (road["HDV1"].s - zone.entry_i))
+    assert told >= 8
+    assert min(behind) > 10.0
 
 
 @pytest.mark.parametrize(
@@ -153,7 +151,7 @@ def test_motions_are_constant_speed_and_speeding_up(speed: float, wish: float, b
     # Never faster than it wants, nor than the speed limit, unless it is already.
     top = max(speed, STARTING, min(wish, 10.0))
     assert (np.diff(faster) <= top * 0.25 + 1e-9).all()
-    if min(wish, 10.0) > speed > STARTING:
+    if min(wish, 10.0) > speed + 0.1 and speed > STARTING:
         assert faster[0] == pytest.approx(
             60.0 + speed * 0.25 + 1.5 * min(0.25, (min(wish, 10.0) - speed) / 3) ** 2, abs=0.3
         )
