@@ -13,7 +13,7 @@ from highway_env.vehicle.controller import MDPVehicle
 from highway_env.vehicle.kinematics import Vehicle
 from highway_env.vehicle.objects import Obstacle
 
-from codriving.datatypes.road import Arc, Lane, Road, Sine
+from codriving.datatypes.road import Arc, Lane, Road, Sine, beside
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
@@ -116,9 +116,12 @@ def _vehicle(ours: Environment, road: StockRoad, start: Start) -> Vehicle:
         vehicle.LANE_CHANGE_MIN_ACC_GAIN = drivers.gain_threshold
         vehicle.LANE_CHANGE_MAX_BRAKING_IMPOSED = drivers.safe_braking
         vehicle.randomize_behavior()
-    graph = road.network.graph
-    plan = way(ours.road_map, start.route).plan(start.position)
-    vehicle.route = [(a, b, k if len(graph[a][b]) == 1 else None) for a, b, k in plan]
+    laid, graph = way(ours.road_map, start.route), road.network.graph
+    bound = laid.route.lanes if laid.changes_after(start.position) else ()
+    vehicle.route = [
+        (a, b, k if len(graph[a][b]) == 1 or any(beside((a, b, k), lane) for lane in bound) else None)
+        for a, b, k in laid.plan(start.position)
+    ]
     return vehicle
 
 

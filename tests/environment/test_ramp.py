@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from highway_env.road.road import Road as StockRoad
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
@@ -190,3 +191,27 @@ def test_a_driver_who_runs_into_the_block_is_towed_away(on_merge: Build) -> None
     assert env.outcome is None
     (collision,) = env._judge._bystanders
     assert (collision.striker, collision.struck, collision.pair) == ("HDV1", "block1", "HDV-block")
+
+
+@pytest.mark.parametrize("off", [(), ("connected_lanes",)], ids=["corrected", "fault"])
+def test_neighbours_are_found_where_the_ramp_lane_goes_on(off: tuple[str, ...], on_merge: Build) -> None:
+    starts = [
+        Start("HDV1", HDV, "ramp", 215.0, 12.0),
+        Start("CAV1", CAV, "ramp", 245.0, 12.0),
+        Start("CAV2", CAV, "main-0", 240.0, 12.0),
+        Start("CAV3", CAV, "ramp", 190.0, 12.0),
+        Start("HDV2", HDV, "main-1", 220.0, 12.0),
+        Start("CAV4", CAV, "main-1", 255.0, 12.0),
+        Start("CAV5", CAV, "main-0", 235.0, 12.0),
+    ]
+    env = on_merge(*off, starts=starts)
+    env.reset(0)
+    road = on_road(env)
+    found = {name: [v and v.id for v in env._traffic.neighbour_vehicles(road[name])] for name in ("HDV1", "HDV2")}
+    if not off:
+        assert found == {"HDV1": ["CAV1", "CAV3"], "HDV2": ["CAV4", None]}
+        return
+    assert found == {"HDV1": [None, "CAV3"], "HDV2": [None, None]}, "nobody past the end of the lane"
+    # What highway-env offers against it goes by the number of the lane: the ramp goes on as the leftmost main lane.
+    env._traffic.neighbour_vehicles_connected_lanes = True
+    assert StockRoad.neighbour_vehicles(env._traffic, road["HDV1"])[0].id == "CAV5"

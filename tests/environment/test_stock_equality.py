@@ -11,6 +11,7 @@ from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.controller import MDPVehicle
 from highway_env.vehicle.kinematics import Vehicle
 
+from benchmarks.stock import populated, stock_network
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.corrections import Corrections
@@ -89,6 +90,32 @@ def test_trajectories_are_the_same_bits(seed: int, intersection: Callable[..., E
                 simulated.act()
                 simulated.step(DT)
             assert {n: state(v) for n, v in ours.items()} == {n: state(v) for n, v in theirs.items()}
+
+
+@pytest.mark.usefixtures("clean_class")
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("name", ["roundabout", "highway", "merge"])
+def test_so_they_are_on_every_road(name: str, seed: int, configured: Callable[..., Environment]) -> None:
+    env = configured(f"scenario={name}", *(f"environment.corrections.{switch}=false" for switch in OFF))
+    road, theirs = populated(env, stock_network(env.scenario.road), seed)
+    traffic = our_road(env, seed)
+    ours = {vehicle.id: vehicle for vehicle in traffic.vehicles}
+    rng = np.random.default_rng(seed)
+    changes = 0
+    for _ in range(round(SECONDS / SUBSTEPS / DT)):
+        for vehicle in ours.values():
+            if isinstance(vehicle, ConnectedVehicle):
+                action = str(rng.choice(vehicle.available()))
+                changes += action.startswith("LANE")
+                vehicle.act(action)
+                theirs[vehicle.id].act(action)
+        for _ in range(SUBSTEPS):
+            for simulated in (traffic, road):
+                simulated.act()
+                simulated.step(DT)
+            assert {n: state(v) for n, v in ours.items()} == {n: state(v) for n, v in theirs.items()}
+            assert {n: v.lane_index for n, v in ours.items()} == {n: v.lane_index for n, v in theirs.items()}
+    assert (changes > 5) == (name != "roundabout")
 
 
 @pytest.mark.usefixtures("clean_class")
