@@ -19,9 +19,18 @@ SWEPT = tuple(group for group in GROUPS if group != "launcher")
 ALL = "all"
 """The word for every choice of a group; no YAML may be called so."""
 
+COMPARED = ("fcfs", "idfst", "mcts", "coop_game", "madqn", "dilu", "codriving")
+"""The methods of the paper's comparison, in its order; some may have no YAML yet."""
+
+TABLES = {
+    "baselines": "The methods of the paper's comparison, each against codriving.",
+    "load": "The same methods with 4, 6, 8 and 12 CAVs.",
+}
+"""What `codriving compare` makes."""
+
 FIRST = {
     "scenario": ("intersection", "roundabout", "highway", "merge"),
-    "method": ("codriving",),
+    "method": COMPARED,
     "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
     "llm": ("offline",),
     "memory": ("off",),

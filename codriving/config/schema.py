@@ -9,7 +9,7 @@ from typing import Any
 
 from codriving.errors import ConfigError
 
-GROUPS = ("scenario", "method", "cda", "llm", "memory", "metrics", "launcher")
+GROUPS = ("scenario", "method", "executor", "cda", "llm", "memory", "metrics", "launcher")
 """The choices that the command line names; one YAML a choice."""
 
 NODES = (*GROUPS, "environment")

@@ -7,6 +7,7 @@ from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.deliberation import Deliberation
+from codriving.methods.perception import Perception
 from codriving.methods.pipeline import Pipeline
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.cda import CdaLevel
@@ -68,11 +69,13 @@ class CoDriving:
         else:
             negotiation = OwnOrders(road_map, forecast, self.cda.own_order, seed)
         self._pipeline = Pipeline(
-            road_map=road_map,
-            forecast=forecast,
-            tracking=Tracking(road_map),
-            state_sharing=SharedStates() if self.cda.state_sharing else SensedStates(),
-            intent_sharing=SharedIntents() if self.cda.intent_sharing else HiddenIntents(),
+            perception=Perception(
+                road_map=road_map,
+                forecast=forecast,
+                tracking=Tracking(road_map),
+                state_sharing=SharedStates() if self.cda.state_sharing else SensedStates(),
+                intent_sharing=SharedIntents() if self.cda.intent_sharing else HiddenIntents(),
+            ),
             negotiation=negotiation,
             safety=ThreeLayers() if self.cda.safety_check else NoCheck(),
             decider=RuleDecider(),

@@ -11,19 +11,15 @@ from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.deliberation import Deliberation
+from codriving.methods.perception import Perception
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.clear_times import clear_time
-from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.decision.decider import Decider
 from codriving.reasoning.expectation import Expected, expect
-from codriving.reasoning.intent_sharing import IntentSharing
-from codriving.reasoning.movers import Mover, movers
+from codriving.reasoning.movers import Mover
 from codriving.reasoning.negotiation.negotiation import Negotiation
 from codriving.reasoning.safety.assessment import SafetyCheck
 from codriving.reasoning.safety.outlook import Outlook, motions
-from codriving.reasoning.scenes import describe_scenes, with_conflicts
-from codriving.reasoning.state_sharing import StateSharing
-from codriving.reasoning.tracking import Tracking
 
 
 @dataclass(slots=True)
@@ -31,22 +27,14 @@ class Pipeline:
     """One episode of the paper's reasoning; an ablation puts another object into a slot.
 
     Attributes:
-        road_map: The precomputed road.
-        forecast: Predictions of the present step.
-        tracking: What each CAV remembers of the others.
-        state_sharing: Class A.
-        intent_sharing: Class B.
+        perception: Classes A and B, and who is in conflict with whom.
         negotiation: Class C or D, or each CAV's own order.
         safety: The three-layer check, or none.
         decider: Rules or a language model.
         margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
     """
 
-    road_map: RoadMap
-    forecast: Forecast
-    tracking: Tracking
-    state_sharing: StateSharing
-    intent_sharing: IntentSharing
+    perception: Perception
     negotiation: Negotiation
     safety: SafetyCheck
     decider: Decider
@@ -58,15 +46,8 @@ class Pipeline:
         Args:
             world: The world.
         """
-        self.forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
-        views = self.state_sharing.views(world, self.forecast.model)
-        intents = self.intent_sharing.intents(world)
-        scenes = describe_scenes(world, views, intents, self.tracking)
-        conflicts: dict[str, tuple[Conflict, ...]] = dict.fromkeys(scenes, ())
-        if self.intent_sharing.finds_conflicts:
-            conflicts = {ego: find_conflicts(scene, self.road_map) for ego, scene in scenes.items()}
-            scenes = {ego: with_conflicts(scene, conflicts[ego], self.road_map) for ego, scene in scenes.items()}
-        known = {ego: movers(scene) for ego, scene in scenes.items()}
+        perceived = self.perception.perceive(world)
+        scenes, conflicts, known = perceived.scenes, perceived.conflicts, perceived.known
         orders = self.negotiation.orders(scenes, conflicts)
         expectations = self._expectations(known, orders)
         situations = tuple(
@@ -79,11 +60,25 @@ class Pipeline:
         return Deliberation(world.time, world.step, situations, decisions, {})
 
     @property
+    def road_map(self) -> RoadMap:
+        """The precomputed road."""
+        return self.perception.road_map
+
+    @property
+    def forecast(self) -> Forecast:
+        """Predictions of the present step."""
+        return self.perception.forecast
+
+    @property
+    def _finds_conflicts(self) -> bool:
+        return self.perception.intent_sharing.finds_conflicts
+
+    @property
     def _lag(self) -> int:
         return round(self.margin / self.forecast.sample)
 
     def _expectations(
-        self, known: dict[str, dict[str, Mover]], orders: Mapping[str, PassingOrder]
+        self, known: Mapping[str, dict[str, Mover]], orders: Mapping[str, PassingOrder]
     ) -> dict[str, dict[str, tuple[Expected, ...]]]:
         """Expect what follows from each CAV's knowledge and order; those who agree in both share one expectation."""
         done: list[tuple[dict[str, Mover], PassingOrder, dict[str, tuple[Expected, ...]]]] = []
@@ -95,9 +90,7 @@ class Pipeline:
                     found[ego] = expected
                     break
             else:
-                found[ego] = expect(
-                    vehicles, order, self.road_map, self.forecast, self._lag, self.intent_sharing.finds_conflicts
-                )
+                found[ego] = expect(vehicles, order, self.road_map, self.forecast, self._lag, self._finds_conflicts)
                 done.append((vehicles, order, found[ego]))
         return found
 
@@ -123,7 +116,7 @@ class Pipeline:
             self.road_map,
             self.forecast,
             self._lag,
-            self.intent_sharing.finds_conflicts,
+            self._finds_conflicts,
         )
         return Situation(
             scene=scene,

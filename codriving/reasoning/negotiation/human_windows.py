@@ -7,7 +7,7 @@ from codriving.datatypes.scene_description import Neighbour, SceneDescription
 from codriving.geometry.box import TRUE
 from codriving.geometry.road_map import RoadMap
 from codriving.prediction.forecast import Forecast
-from codriving.reasoning.negotiation.schedule import GAP, lag_length
+from codriving.reasoning.negotiation.separation import GAP, lag_length
 from codriving.reasoning.right_of_way import gives_way
 
 CERTAIN_GAP = 0.4
@@ -33,7 +33,7 @@ def window(c: Conflict, n: Neighbour, reference: float, road_map: RoadMap, forec
     top = forecast.model.target_speeds[-1]
     slow, fast = forecast.likely(n.speed)
     enters = forecast.time_to(c.distances[1], fast)
-    leaves = forecast.time_to(zone.entry_i + lag_length(zone.mirrored()) - c.places[1], slow)
+    leaves = forecast.time_to(zone.entry_i + lag_length(zone, False) - c.places[1], slow)
     begin = enters - (zone.entry_j + lag_length(zone) - reference) / top - CERTAIN_GAP
     return begin, leaves + GAP - (zone.entry_i - reference) / top
 

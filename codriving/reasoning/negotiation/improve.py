@@ -1,9 +1,10 @@
 """A better order by local search: who goes earlier or later if that saves everybody together enough time."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping
 
 from codriving.datatypes.order import PassingOrder
-from codriving.reasoning.negotiation.schedule import Slot, start_time
+from codriving.ordering.instance import Instance
+from codriving.ordering.schedule import schedule
 
 SAVES = 0.3
 """Time that another order must save everybody together to be taken [s]."""
@@ -14,43 +15,23 @@ SWAP = 1.0
 TRIES = 600
 """Orders that are tried at most."""
 
-Pairs = Collection[tuple[str, str]]
 
-
-def improve(
-    times: Mapping[str, float],
-    slots: Mapping[str, Slot],
-    separation: dict[tuple[str, str], float],
-    fixed: Pairs,
-    previous: PassingOrder | None,
-) -> dict[str, float]:
+def improve(times: Mapping[str, float], instance: Instance, previous: PassingOrder | None) -> dict[str, float]:
     """Let single vehicles go earlier or later as long as that saves everybody together enough time.
 
     Args:
         times: The schedule to begin with: when each vehicle passes [s].
-        slots: The vehicles by id.
-        separation: Time that must lie between two vehicles, by (first, second) [s].
-        fixed: Pairs (first, second) whose order must stay.
+        instance: The problem.
         previous: What has been agreed on before, if anything.
 
     Returns:
         When each vehicle passes, in the order in which they go [s].
     """
-    ahead: dict[str, set[str]] = {name: {a for a, b in fixed if b == name} for name in slots}
-
-    def schedule(order: Sequence[str]) -> dict[str, float] | None:
-        planned: dict[str, float] = {}
-        for name in order:
-            if not ahead[name] <= planned.keys():
-                return None
-            planned[name] = start_time(slots[name], planned, separation)
-        return planned
-
     order = sorted(times, key=lambda name: (times[name], name))
-    best = schedule(order)
+    best = schedule(instance, order)
     if best is None:
         return dict(times)
-    least, tries = cost(best, slots, previous), 0
+    least, tries = cost(best, instance, previous), 0
     improved = True
     while improved and tries < TRIES:
         improved = False
@@ -61,18 +42,18 @@ def improve(
                 tries += 1
                 moved = order[:k] + order[k + 1 :]
                 moved.insert(to, order[k])
-                found = schedule(moved)
-                if found is not None and cost(found, slots, previous) < least - SAVES:
-                    best, least, order, improved = found, cost(found, slots, previous), moved, True
+                found = schedule(instance, moved)
+                if found is not None and cost(found, instance, previous) < least - SAVES:
+                    best, least, order, improved = found, cost(found, instance, previous), moved, True
     return best
 
 
-def cost(planned: Mapping[str, float], slots: Mapping[str, Slot], previous: PassingOrder | None) -> float:
+def cost(planned: Mapping[str, float], instance: Instance, previous: PassingOrder | None) -> float:
     """Return the time that everybody loses in a schedule, with a surcharge for each agreed pair turned round [s].
 
     Args:
         planned: When each vehicle passes, in the order in which they go [s].
-        slots: The vehicles by id.
+        instance: The problem.
         previous: What has been agreed on before, if anything.
     """
     changed = 0.0
@@ -81,4 +62,4 @@ def cost(planned: Mapping[str, float], slots: Mapping[str, Slot], previous: Pass
         for p in previous.precedences:
             if p.first in place and p.second in place and place[p.first] > place[p.second]:
                 changed += SWAP
-    return sum(t - max(slots[name].eta, 0.0) for name, t in planned.items()) + changed
+    return sum(t - max(instance.entrants[name].eta, 0.0) for name, t in planned.items()) + changed

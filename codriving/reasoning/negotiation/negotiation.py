@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from codriving.datatypes.order import PassingOrder
-from codriving.reasoning.negotiation.coordinator import Conflicts, Coordinator, Scenes
+from codriving.reasoning.negotiation.coordinator import Coordinator
+from codriving.reasoning.negotiation.problem import Conflicts, Scenes
 
 
 class Negotiation(Protocol):

@@ -14,8 +14,9 @@ from codriving.geometry.road_map import RoadMap
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.cda import OwnOrder
 from codriving.reasoning.negotiation.acyclic import without_cycles
-from codriving.reasoning.negotiation.coordinator import TURN_YIELDS, Conflicts, Scenes
+from codriving.reasoning.negotiation.coordinator import TURN_YIELDS
 from codriving.reasoning.negotiation.human_windows import passes_first
+from codriving.reasoning.negotiation.problem import Conflicts, Scenes
 from codriving.reasoning.severity import ttcp
 
 DOUBT = 1.0

@@ -1,9 +1,9 @@
 """Why somebody goes first, in words."""
 
-from codriving.reasoning.negotiation.schedule import Slot
+from codriving.ordering.instance import Entrant
 
 
-def reason_between(first: Slot, second: Slot) -> str:
+def reason_between(first: Entrant, second: Entrant) -> str:
     """Explain the order of two CAVs.
 
     Args:

@@ -84,10 +84,9 @@ def test_who_cannot_stop_any_more_or_drives_ahead_goes_first_whatever_is_saved(
     thoughts = junction.thoughts(*cars)
     coordinator = RuleCoordinator(junction.road_map, thoughts.forecast, False)
     order = thoughts.negotiate(coordinator)
-    slots = {ego: coordinator._slot(thoughts.scenes[ego], cs) for ego, cs in thoughts.conflicts.items() if cs}
-    coordinator._add_leaders(slots, {}, thoughts.scenes)
-    for one, other in coordinator._fixed(slots, thoughts.scenes, thoughts.conflicts):
-        if (other, one) not in coordinator._fixed(slots, thoughts.scenes, thoughts.conflicts):
+    fixed = coordinator.problems.pose(thoughts.scenes, thoughts.conflicts, 0.0).instance.before
+    for one, other in fixed:
+        if (other, one) not in fixed:
             assert order.first_of(one, other) != other
 
 

@@ -7,7 +7,7 @@ import pytest
 from worlds import Junction, Thoughts, car
 
 from codriving.reasoning.negotiation.human_windows import CERTAIN_GAP, is_blocked, passes_first, window
-from codriving.reasoning.negotiation.schedule import GAP, lag_length
+from codriving.reasoning.negotiation.separation import GAP, lag_length
 
 
 def meeting(junction: Junction, place: float, speed: float, cav: float = 85.0) -> Thoughts:
@@ -76,7 +76,7 @@ def test_a_window_is_when_a_driver_is_likely_there_not_when_it_might_be_at_the_w
     # The CAV has to be out of the way before; at its top speed that takes this long.
     through = (zone.entry_j + lag_length(zone) - zone.entry_i) / 9.0
     assert earliest < begin + through + CERTAIN_GAP < steady
-    gone = thoughts.forecast.time_to(zone.entry_i + lag_length(zone.mirrored()) - c.places[1], reach.steady)
+    gone = thoughts.forecast.time_to(zone.entry_i + lag_length(zone, False) - c.places[1], reach.steady)
     assert gone + GAP < end < gone + GAP + 2.0
 
 

@@ -1,0 +1,1 @@
+"""From a passing order to the actions of all CAVs: what every method that orders shares."""

@@ -1,0 +1,114 @@
+"""What everybody does together: joint actions, what they cost each vehicle, and the one on which all settle."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Joint = tuple[int, ...]
+"""Index of the option of each vehicle."""
+
+ENUMERATED = 3
+"""Vehicles up to which every joint action is looked at."""
+
+SWEEPS = 10
+"""How often everybody is asked again at most, where they are too many for that."""
+
+TOLERANCE = 1e-12
+"""Costs that differ by less are equal."""
+
+
+@dataclass(frozen=True, slots=True)
+class Costs:
+    """What joint actions cost.
+
+    Attributes:
+        own: Cost of each option of each vehicle, whatever the others do (n, options).
+        pair: Cost of each option of the first vehicle for each option of the second (n, options, n, options).
+    """
+
+    own: Array
+    pair: Array
+
+    def of(self, joints: Sequence[Joint]) -> Array:
+        """Return what joint actions cost each vehicle.
+
+        Args:
+            joints: Some joint actions (k, n).
+
+        Returns:
+            Cost of each vehicle (k, n).
+        """
+        chosen = np.array(joints, dtype=np.intp).reshape(len(joints), -1)
+        who = np.arange(chosen.shape[1])
+        met = self.pair[who[:, None], chosen[:, :, None], who[None, :], chosen[:, None, :]]
+        return np.asarray(self.own[who, chosen] + met.sum(axis=2))
+
+
+def blended(costs: Array, participation: float) -> Array:
+    """Return what counts for each vehicle: its own cost, and that of all to the degree to which it takes part.
+
+    Args:
+        costs: Cost of each vehicle (k, n).
+        participation: 0 if everybody looks after itself, 1 if all look after the group.
+    """
+    return np.asarray(participation * costs.mean(axis=1, keepdims=True) + (1 - participation) * costs)
+
+
+def settle(costs: Costs, options: Sequence[Sequence[int]], participation: float) -> Joint:
+    """Return the joint action on which all settle: nobody would rather change alone, and it costs all least.
+
+    Args:
+        costs: What joint actions cost.
+        options: Options that each vehicle has, by index.
+        participation: 0 if everybody looks after itself, 1 if all look after the group.
+
+    Returns:
+        The joint action. If there is none from which nobody would rather change, up to three vehicles take the one
+        that costs all least, and more than three the one at which they arrive.
+    """
+    if not options:
+        return ()
+    if len(options) > ENUMERATED:
+        found = [_arrive(costs, options, participation, start) for start in _starts(options)]
+    else:
+        found = list(product(*options))
+        stable = [joint for joint in found if _is_stable(costs, options, participation, joint)]
+        found = stable or found
+    totals = costs.of(found).sum(axis=1)
+    return min(zip(totals.round(9).tolist(), found, strict=True))[1]
+
+
+def _variants(joint: Joint, i: int, options: Sequence[int]) -> list[Joint]:
+    return [(*joint[:i], option, *joint[i + 1 :]) for option in options]
+
+
+def _is_stable(costs: Costs, options: Sequence[Sequence[int]], participation: float, joint: Joint) -> bool:
+    for i, mine in enumerate(options):
+        counts = blended(costs.of([joint, *_variants(joint, i, mine)]), participation)[:, i]
+        if counts.min() < counts[0] - TOLERANCE:
+            return False
+    return True
+
+
+def _starts(options: Sequence[Sequence[int]]) -> list[Joint]:
+    """Everybody begins with the same option, as far as there is one for all."""
+    most = max(len(mine) for mine in options)
+    return list(dict.fromkeys(tuple(mine[min(k, len(mine) - 1)] for mine in options) for k in range(most)))
+
+
+def _arrive(costs: Costs, options: Sequence[Sequence[int]], participation: float, joint: Joint) -> Joint:
+    """Let one vehicle after another take what is best for it, until nobody changes any more."""
+    for _ in range(SWEEPS):
+        before = joint
+        for i, mine in enumerate(options):
+            variants = [joint, *_variants(joint, i, mine)]
+            counts = blended(costs.of(variants), participation)[:, i]
+            # The first of equal ones is what it does already, so that the sweeps come to an end.
+            joint = variants[int(np.argmin(counts - TOLERANCE * (np.arange(len(variants)) == 0)))]
+        if joint == before:
+            break
+    return joint

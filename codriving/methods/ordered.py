@@ -1,0 +1,122 @@
+"""Methods that order: a rule says who passes first, an executor drives; everything else is shared by all of them."""
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.situation import ActionAssessment, Decision, Situation
+from codriving.datatypes.world import WorldState
+from codriving.executors.lane_requests import LaneRequests
+from codriving.executors.protocol import Drive, Executor
+from codriving.executors.stage import Stage
+from codriving.geometry.road_map import RoadMap
+from codriving.methods.deliberation import Deliberation
+from codriving.methods.perception import Perception
+from codriving.ordering.protocol import Ordering, OrderRule
+from codriving.prediction.forecast import Forecast
+from codriving.reasoning.intent_sharing import SharedIntents
+from codriving.reasoning.negotiation.agreement import agreement
+from codriving.reasoning.negotiation.problem import ProblemMaker
+from codriving.reasoning.plans import PLANS
+from codriving.reasoning.safety.outlook import CONTINUATIONS, LONGITUDINAL
+from codriving.reasoning.state_sharing import SharedStates
+from codriving.reasoning.tracking import Tracking
+
+
+class Ordered:
+    """A method that orders all CAVs jointly.
+
+    States and intents are shared as in the full framework. Only the choice of the order differs between such methods.
+
+    Args:
+        rule: Says who passes first, and who may change lanes.
+        executor: Turns the order into actions.
+    """
+
+    reasoner = "none"
+
+    def __init__(self, rule: OrderRule, executor: Executor) -> None:
+        self.rule, self.executor = rule, executor
+        self.name = rule.name
+        driven = "" if executor.name == "planned" else executor.name
+        self.variant = "/".join(word for word in (rule.variant, driven) if word)
+
+    def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
+        """Begin an episode; nothing is remembered from the one before.
+
+        Args:
+            road_map: The precomputed road.
+            model: How CAVs answer to actions.
+            seed: Seed of the episode, for rules that draw.
+        """
+        forecast = Forecast(model, (*CONTINUATIONS, *PLANS, *getattr(self.executor, "library", ())))
+        self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SharedIntents())
+        self._problems = ProblemMaker(road_map, forecast, self.executor.gap)
+        self._requests = LaneRequests()
+        self._lag = round(self.executor.gap / forecast.sample)
+        self.rule.reset(seed)
+        self.executor.reset()
+
+    def act(self, world: WorldState) -> Deliberation:
+        """Order everybody, and decide for every CAV on the road.
+
+        Args:
+            world: The world.
+        """
+        perceived = self._perception.perceive(world)
+        stage = Stage(
+            perceived.scenes,
+            perceived.conflicts,
+            perceived.known,
+            world.available,
+            self._perception.road_map,
+            self._perception.forecast,
+            world.time,
+        )
+        problem = self._problems.pose(stage.scenes, stage.conflicts, world.time)
+        ordering = self.rule.order(problem.instance, self.executor.planner(stage))
+
+        def reason(first: str, second: str) -> str:
+            return ordering.reasons.get((first, second), f"{first} comes before {second} in the order")
+
+        agreed = agreement(problem, ordering.times, stage.conflicts, reason, True)
+        drive = self.executor.drive(stage, ordering)
+        changes = self._lane_changes(stage, ordering, agreed, drive)
+        situations = tuple(_situation(stage, name, agreed, drive) for name in stage.scenes)
+        decisions = tuple(
+            changes.get(name) or Decision(name, drive.actions[name], drive.reasons[name]) for name in stage.scenes
+        )
+        return Deliberation(world.time, world.step, situations, decisions, {**ordering.counts, **drive.counts})
+
+    def _lane_changes(
+        self, stage: Stage, ordering: Ordering, agreed: PassingOrder, drive: Drive
+    ) -> dict[str, Decision]:
+        """Return the lane changes that are wanted, pass the gap test and have been granted."""
+        requests = self._requests.ask(stage, ordering, agreed, drive.expected, self._lag)
+        if not requests:
+            return {}
+        granted = self.rule.grant(requests)
+        self._requests.granted(granted, stage.time)
+        return {
+            r.ego: Decision(r.ego, r.action, f"{r.action} was granted among {len(requests)} requests")
+            for r in requests
+            if r.ego in granted
+        }
+
+
+def _situation(stage: Stage, name: str, agreed: PassingOrder, drive: Drive) -> Situation:
+    """Write down what a decision rests on, in the form in which every method's decisions are recorded."""
+    progress = drive.progress.get(name, {})
+    conflicts = stage.conflicts[name]
+    return Situation(
+        scene=stage.scenes[name],
+        conflicts=conflicts,
+        order=agreed,
+        clear_times=(0.0,) * len(conflicts),
+        assessments=tuple(_assessment(action, progress.get(action)) for action in stage.available[name]),
+    )
+
+
+def _assessment(action: Action, gain: float | None) -> ActionAssessment:
+    fine = gain is not None or action not in LONGITUDINAL
+    why = () if fine else ("no plan that begins with it keeps the order and clear of everybody",)
+    return ActionAssessment(action, fine, why, (), gain)

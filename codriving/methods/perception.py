@@ -1,0 +1,66 @@
+"""What all CAVs know at one moment, which every method begins with: states, intents, scenes and conflicts."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.scene_description import SceneDescription
+from codriving.datatypes.world import WorldState
+from codriving.geometry.road_map import RoadMap
+from codriving.prediction.forecast import Forecast
+from codriving.reasoning.conflicts import find_conflicts
+from codriving.reasoning.intent_sharing import IntentSharing
+from codriving.reasoning.movers import Mover, movers
+from codriving.reasoning.scenes import describe_scenes, with_conflicts
+from codriving.reasoning.state_sharing import StateSharing
+from codriving.reasoning.tracking import Tracking
+
+
+@dataclass(frozen=True, slots=True)
+class Perceived:
+    """What is known at one moment.
+
+    Attributes:
+        scenes: What each CAV knows, by id.
+        conflicts: Conflicts of each CAV, most urgent first, by id.
+        known: The vehicles that each CAV knows of, itself included, by id of the CAV.
+    """
+
+    scenes: Mapping[str, SceneDescription]
+    conflicts: Mapping[str, tuple[Conflict, ...]]
+    known: Mapping[str, dict[str, Mover]]
+
+
+@dataclass(slots=True)
+class Perception:
+    """The first half of every method: share states, share intents, find conflicts.
+
+    Attributes:
+        road_map: The precomputed road.
+        forecast: Predictions of the present step.
+        tracking: What each CAV remembers of the others.
+        state_sharing: Class A.
+        intent_sharing: Class B.
+    """
+
+    road_map: RoadMap
+    forecast: Forecast
+    tracking: Tracking
+    state_sharing: StateSharing
+    intent_sharing: IntentSharing
+
+    def perceive(self, world: WorldState) -> Perceived:
+        """Return what every CAV knows, and begin the predictions of this step.
+
+        Args:
+            world: The world.
+        """
+        self.forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
+        views = self.state_sharing.views(world, self.forecast.model)
+        intents = self.intent_sharing.intents(world)
+        scenes = describe_scenes(world, views, intents, self.tracking)
+        conflicts: dict[str, tuple[Conflict, ...]] = dict.fromkeys(scenes, ())
+        if self.intent_sharing.finds_conflicts:
+            conflicts = {ego: find_conflicts(scene, self.road_map) for ego, scene in scenes.items()}
+            scenes = {ego: with_conflicts(scene, conflicts[ego], self.road_map) for ego, scene in scenes.items()}
+        return Perceived(scenes, conflicts, {ego: movers(scene) for ego, scene in scenes.items()})

@@ -1,0 +1,66 @@
+"""The ordering problem of one moment: who comes, when at the earliest, and what must lie between two of them."""
+
+from collections.abc import Mapping, Set
+from dataclasses import dataclass, field
+
+Pair = tuple[str, str]
+"""Two vehicles, the first of which passes first."""
+
+
+@dataclass(slots=True)
+class Entrant:
+    """What an order has to know of one CAV that still has a conflict ahead.
+
+    Attributes:
+        id: Vehicle id.
+        reference: Arc length of its first conflict zone [m].
+        eta: Earliest time at which it can be there [s]; negative if it is past it.
+        committed: Whether it can no longer stop before the zone.
+        turning: Whether its route turns where ways cross.
+        leader: Id of the CAV ahead of it on its lane, if any.
+        windows: Intervals in which it must not pass the reference point, because of human drivers [s].
+        lane: Lane that it is on, as text.
+        stream: Lane and movement; vehicles of one stream come one after another.
+        distance: Distance to the reference point [m]; 0 past it.
+        crossing: Time from the reference point until it has left its last conflict zone, at top speed [s].
+        remaining: Distance to the end of its route [m].
+        speed: Speed [m/s].
+        priority: Priority of its lane; whoever has the higher one goes first if all else is equal.
+    """
+
+    id: str
+    reference: float
+    eta: float
+    committed: bool = False
+    turning: bool = False
+    leader: str | None = None
+    windows: list[tuple[float, float]] = field(default_factory=list)
+    lane: str = ""
+    stream: str = ""
+    distance: float = 0.0
+    crossing: float = 0.0
+    remaining: float = 0.0
+    speed: float = 0.0
+    priority: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """The ordering problem of one moment.
+
+    Attributes:
+        time: Simulated time [s].
+        entrants: Everybody who is to be ordered, by id.
+        separation: Time that must lie between two vehicles at their reference points, by (first, second), for every
+            pair that shares a zone or a lane [s].
+        before: Pairs whose order is physically fixed: who drives ahead, who is inside the zone, who cannot stop.
+    """
+
+    time: float
+    entrants: Mapping[str, Entrant]
+    separation: Mapping[Pair, float]
+    before: Set[Pair]
+
+    def conflict(self, one: str, other: str) -> bool:
+        """Whether two vehicles cannot pass at the same time."""
+        return (one, other) in self.separation or (other, one) in self.separation

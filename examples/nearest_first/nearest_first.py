@@ -1,0 +1,33 @@
+"""A passing order of one's own: whoever is nearest to its first conflict zone goes first."""
+
+from collections.abc import Sequence
+
+from codriving.ordering import Instance, JointPlanner, Ordering, Request, in_order, repaired, schedule
+
+
+class NearestFirst:
+    """Whoever is nearest goes first; within a step of the same distance, whoever is faster.
+
+    Args:
+        step: Distances that differ by less count as the same [m].
+    """
+
+    name = "nearest_first"
+    variant = ""
+
+    def __init__(self, step: float) -> None:
+        self.step = step
+
+    def reset(self, seed: int) -> None:
+        """Begin an episode; this rule remembers nothing."""
+
+    def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
+        """Order by distance, and keep what is physically fixed."""
+        ranked = sorted(instance.entrants.values(), key=lambda e: (round(e.distance / self.step), -e.speed, e.id))
+        sequence = repaired(instance, [entrant.id for entrant in ranked])
+        times = schedule(instance, sequence) or {name: instance.entrants[name].eta for name in sequence}
+        return Ordering(tuple(sequence), times)
+
+    def grant(self, requests: Sequence[Request]) -> frozenset[str]:
+        """Let those change lanes who asked first."""
+        return in_order(requests)
