@@ -30,7 +30,7 @@ test: $(READY) ## run the tests
 ablate: $(READY) ## each reasoning sub-module removed in turn
 	$(BIN)/codriving ablate $(ARGS)
 
-compare: $(READY) ## the comparison methods (not there yet)
+compare: $(READY) ## every method of the paper on the same seeds, each against codriving
 	$(BIN)/codriving compare baselines $(ARGS)
 
 bench: $(READY) ## measure speed

@@ -7,9 +7,9 @@ from codriving.envs.registration import offer
 
 if TYPE_CHECKING:
     from codriving.envs.parallel import ParallelDriving
-    from codriving.experiment import Results
+    from codriving.experiment import Comparison, Results
 
-__all__ = ["__version__", "parallel_env", "run"]
+__all__ = ["__version__", "compare", "parallel_env", "run"]
 
 __version__ = "0.1.0"
 
@@ -34,6 +34,29 @@ def run(*overrides: str, config_dir: str | Path | None = None) -> "Results":
     from codriving.experiment import run_frames
 
     return run_frames(*overrides, config_dir=None if config_dir is None else Path(config_dir))
+
+
+def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -> "Comparison":
+    """Drive every method of the paper on the same seeds, as ``codriving compare`` does, and return the tables.
+
+    Args:
+        table: ``"baselines"`` or ``"load"``.
+        *overrides: ``key=value`` tokens; ``"method=mine"`` adds a method of your own.
+        config_dir: A folder with YAML files of your own, in the same groups.
+
+    Returns:
+        ``table``, ``episodes`` and ``summary`` as pandas data frames, and the run ``folder``.
+
+    Raises:
+        UserError: If the table, the config or the run folder cannot be used.
+
+    Example:
+        >>> results = codriving.compare("baselines", "episodes=20")  # doctest: +SKIP
+        >>> results.table[["method", "success_rate", "mcnemar_p"]]  # doctest: +SKIP
+    """
+    from codriving.experiment import compare_frames
+
+    return compare_frames(table, *overrides, config_dir=None if config_dir is None else Path(config_dir))
 
 
 def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDriving":  # noqa: ANN401 - any setting

@@ -66,7 +66,7 @@ def _options(
 
 app.command(epilog="Example: codriving run scenario=intersection episodes=50 seed=0 workers=2 run=first")(run)
 app.command(epilog="Example: codriving ablate scenario=intersection episodes=20")(ablate)
-app.command(epilog="Example: codriving compare baselines")(compare)
+app.command(epilog="Example: codriving compare baselines scenario=intersection episodes=20")(compare)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
 app.command("list", epilog="Example: codriving list scenarios")(list_choices)
 

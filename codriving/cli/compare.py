@@ -4,16 +4,29 @@ from typing import Annotated
 
 import typer
 
-from codriving.cli.arguments import Overrides
-from codriving.errors import UserError
+from codriving.cli.arguments import ConfigDir, Overrides, ShowConfig
+from codriving.cli.completion import complete_table
 
 
 def compare(
-    table: Annotated[str, typer.Argument(metavar="TABLE", help="Which table; baselines is planned.")] = "baselines",
+    table: Annotated[
+        str | None,
+        typer.Argument(metavar="TABLE", help="Which table: baselines or load.", autocompletion=complete_table),
+    ] = None,
     overrides: Overrides = None,
+    config_dir: ConfigDir = None,
+    cfg: ShowConfig = False,
 ) -> None:
-    """Compare methods on the same seeds (not there yet: codriving is the only method)."""
-    raise UserError(
-        f"compare {table} is not there yet: the comparison methods come in a later release; "
-        "codriving run drives the only method so far, codriving ablate compares its variants"
-    )
+    """Drive every method of the paper on the same seeds, into one table beside the paper's.
+
+    baselines: each method against codriving. load: with 4, 6, 8 and 12 CAVs. method=NAME adds a method of your own.
+    """
+    if cfg:
+        from codriving.cli.config_page import print_configs
+        from codriving.experiment.comparison import comparison
+
+        print_configs(comparison(table, overrides or [], config_dir), config_dir)
+        return
+    from codriving.experiment import run_comparison
+
+    raise typer.Exit(run_comparison(table, overrides or [], config_dir))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from codriving.config.choices import ALL, EXPERIMENTS, LISTED, SWEPT, choices, default_choice, describe, values
+from codriving.config.choices import ALL, EXPERIMENTS, LISTED, SWEPT, TABLES, choices, default_choice, describe, values
 from codriving.config.locate import conf_dir
 from codriving.config.plugins import PLUGINS
 from codriving.config.schema import GROUPS, ROOT
@@ -42,6 +42,15 @@ def complete_format(incomplete: str) -> list[str]:
         incomplete: What has been typed.
     """
     return [name for name in ("mp4", "gif") if name.startswith(incomplete)]
+
+
+def complete_table(incomplete: str) -> list[tuple[str, str]]:
+    """Offer the tables of `codriving compare`.
+
+    Args:
+        incomplete: What has been typed.
+    """
+    return [(name, meaning) for name, meaning in TABLES.items() if name.startswith(incomplete)]
 
 
 def complete_in_line(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:

@@ -3,7 +3,7 @@
 import traceback
 from collections import Counter
 from dataclasses import dataclass, field
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any
 
 from codriving.datatypes.outcome import Ending, Outcome
@@ -24,6 +24,7 @@ class EpisodeResult:
         decisions: One line a decision step, for ``decisions.jsonl``.
         seconds: Wall-clock time of the episode [s].
         decision_seconds: Wall-clock time of each decision [s].
+        decision_cpu: CPU time of each decision [s].
         traceback: Where it went wrong; empty if nothing did.
     """
 
@@ -32,6 +33,7 @@ class EpisodeResult:
     decisions: tuple[dict[str, Any], ...]
     seconds: float
     decision_seconds: tuple[float, ...]
+    decision_cpu: tuple[float, ...] = ()
     traceback: str = ""
 
 
@@ -43,6 +45,7 @@ class _Log:
     time: float = 0.0
     decisions: list[dict[str, Any]] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
+    cpu: list[float] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
 
 
@@ -89,7 +92,13 @@ def run_episode(environment: Environment, method: Method, metrics: Metrics, seed
         counts=dict(sorted(log.counts.items())),
     )
     return EpisodeResult(
-        record, trajectory, tuple(log.decisions), perf_counter() - started, tuple(log.seconds), traceback=trace
+        record,
+        trajectory,
+        tuple(log.decisions),
+        perf_counter() - started,
+        tuple(log.seconds),
+        tuple(log.cpu),
+        traceback=trace,
     )
 
 
@@ -100,8 +109,9 @@ def _drive(environment: Environment, method: Method, seed: int, log: _Log) -> Ou
     method.reset(environment.road_map, environment.driving_model, seed)
     while (outcome := environment.outcome) is None:
         log.time = world.time
-        before = perf_counter()
+        before, cpu_before = perf_counter(), process_time()
         deliberation = method.act(world)
+        log.cpu.append(process_time() - cpu_before)
         log.seconds.append(perf_counter() - before)
         log.decisions.append(deliberation.as_dict())
         log.counts.update(deliberation.counts)

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -16,8 +16,10 @@ from codriving.episodes.progress import Progress, Silent
 from codriving.episodes.unit import Objects, Unit
 from codriving.experiment.cells import Cell
 from codriving.experiment.film import FilmEpisode
+from codriving.experiment.further import Driven, Further
 from codriving.experiment.keep import KeepEpisode
 from codriving.experiment.plan import Plan
+from codriving.reports.display import Display
 from codriving.reports.paper import Paper
 from codriving.reports.rows import Row, csv_text
 from codriving.reports.run_tables import RunTables, run_tables, write_tables
@@ -27,7 +29,7 @@ from codriving.storage.continuation import changed_versions
 from codriving.storage.manifest import FORMAT, CellEntry, Manifest
 from codriving.storage.provenance import commit, machine, versions
 from codriving.storage.run_folder import RunFolder, new_run_path, unwritable
-from codriving.storage.timing import read_timing
+from codriving.storage.timing import Timing, read_timing
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +46,7 @@ class Finished:
         changed: What has another version than when the run began, if episodes of both are in the table.
         filmed: Films made now.
         unfilmed: Episodes of which films were asked for and could not be made.
+        extra: What the command makes of them beyond the tables of every run.
     """
 
     folder: Path
@@ -55,6 +58,12 @@ class Finished:
     changed: tuple[str, ...] = ()
     filmed: int = 0
     unfilmed: tuple[Unit, ...] = ()
+    extra: Further = field(default_factory=Further)
+
+    @property
+    def displays(self) -> tuple[Display, ...]:
+        """What is printed."""
+        return self.extra.displays or (self.tables.display,)
 
 
 class Interrupted(KeyboardInterrupt):
@@ -80,6 +89,7 @@ def execute(
     preload: Sequence[str] = (),
     paper: Paper | None = None,
     progress: Callable[[Mapping[str, int]], AbstractContextManager[Progress]] = lambda _: nullcontext(Silent()),
+    extend: Callable[[Driven], Further] = lambda _: Further(),
 ) -> Finished:
     """Run a plan, or what is left of it.
 
@@ -90,6 +100,7 @@ def execute(
         preload: Modules imported once for all processes.
         paper: The paper's numbers, to stand beside ours.
         progress: Opens a display of the progress of so many units of each cell.
+        extend: Makes what the command has beyond the tables of every run.
 
     Returns:
         The finished run.
@@ -126,12 +137,14 @@ def execute(
         everything = _records(folder, entries, plan.seeds, records, errors=True)
         rows = [[everything[Unit(cell.folder, seed)] for seed in plan.seeds] for cell in cells]
         tables = _tables(plan, cells, rows, paper or Paper())
-        _write(folder, tables, _timing(folder, cells, rows))
+        driven = Driven(cells, rows, _timings(folder, cells, rows))
+        extra = extend(driven)
+        _write(folder, tables, _timing_table(driven), extra)
         kept = len(units) - len(missing)
         changed = changed_versions(folder.manifest, asked) if kept and missing else ()
         further, filmed = folder.further(plan.seeds), sum(film.path(unit).exists() for unit in todo) if film else 0
         lacking = tuple(unit for unit in units if film and film.lacks(unit))
-        return Finished(folder.path, tables, len(missing), kept, failed, further, changed, filmed, lacking)
+        return Finished(folder.path, tables, len(missing), kept, failed, further, changed, filmed, lacking, extra)
 
 
 def _path(plan: Plan) -> Path:
@@ -179,18 +192,26 @@ def _tables(plan: Plan, cells: Sequence[Cell], rows: Sequence[Sequence[EpisodeRe
     return run_tables(rows, paper, metrics, [cell.swept for cell in cells], plan.notes)
 
 
-def _timing(folder: RunFolder, cells: Sequence[Cell], rows: Sequence[Sequence[EpisodeRecord]]) -> str:
-    columns = timing_columns(list(cells[0].swept))
+def _timings(
+    folder: RunFolder, cells: Sequence[Cell], rows: Sequence[Sequence[EpisodeRecord]]
+) -> list[list[Timing | None]]:
+    return [
+        [read_timing(folder.episode(cell.folder, record.seed)) for record in records]
+        for cell, records in zip(cells, rows, strict=True)
+    ]
+
+
+def _timing_table(driven: Driven) -> str:
     lines: list[Row] = []
-    for cell, records in zip(cells, rows, strict=True):
-        timed = [(record, read_timing(folder.episode(cell.folder, record.seed))) for record in records]
-        lines += timing_rows(timed, cell.swept)
-    return csv_text(columns, lines)
+    for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True):
+        lines += timing_rows(zip(records, timings, strict=True), cell.swept)
+    return csv_text(timing_columns(list(driven.cells[0].swept)), lines)
 
 
-def _write(folder: RunFolder, tables: RunTables, timing: str) -> None:
+def _write(folder: RunFolder, tables: RunTables, timing: str, extra: Further) -> None:
     try:
         write_tables(tables, folder.path)
+        extra.write(folder.path)
         write_text(folder.path / "timing.csv", timing)
     except OSError as error:
         raise unwritable(folder.path, error) from error

@@ -36,6 +36,6 @@ class KeepEpisode:
             result.record,
             result.trajectory,
             result.decisions,
-            timing_of(result.seconds, result.decision_seconds),
+            timing_of(result.seconds, result.decision_seconds, result.decision_cpu),
             result.traceback,
         )

@@ -3,7 +3,7 @@
 import shlex
 import sys
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +15,7 @@ from codriving.errors import ConfigError
 from codriving.experiment.ablation import ablation_points
 from codriving.experiment.cells import Cell
 from codriving.experiment.execute import Finished, Interrupted, execute
+from codriving.experiment.further import Driven, Further
 from codriving.experiment.objects import BuildObjects, modules_to_preload
 from codriving.experiment.plan import Plan, make_plan
 from codriving.reports.console import print_table
@@ -55,7 +56,7 @@ def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> 
     Raises:
         UserError: If the config or the run folder cannot be used.
     """
-    return _command("run", expand(overrides, config_dir), overrides, config_dir)
+    return command("run", expand(overrides, config_dir), overrides, config_dir)
 
 
 def run_ablation(overrides: Sequence[str], config_dir: Path | None = None) -> int:
@@ -71,7 +72,7 @@ def run_ablation(overrides: Sequence[str], config_dir: Path | None = None) -> in
     Raises:
         UserError: If the config or the run folder cannot be used.
     """
-    return _command("ablate", ablation_points(expand(overrides, config_dir)), overrides, config_dir)
+    return command("ablate", ablation_points(expand(overrides, config_dir)), overrides, config_dir)
 
 
 def _refuse_alike(plan: Plan) -> None:
@@ -101,21 +102,63 @@ def run_frames(*overrides: str, config_dir: Path | None = None) -> Results:
         UserError: If the config or the run folder cannot be used.
         KeyboardInterrupt: If the user stops it; finished episodes are kept.
     """
-    finished = _run(make_plan(expand(overrides, config_dir), config_dir))
+    finished = drive(expand(overrides, config_dir), config_dir)
     return Results(finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
 
 
-def _run(plan: Plan) -> Finished:
+def drive(
+    points: Sequence[Point], config_dir: Path | None = None, extend: Callable[[Driven], Further] | None = None
+) -> Finished:
+    """Drive some cells, or what is missing of them, with a progress display and without a table.
+
+    Args:
+        points: What the cells are made of.
+        config_dir: A folder of the user's own configs.
+        extend: Makes what the command has beyond the tables of every run.
+
+    Returns:
+        The finished run.
+
+    Raises:
+        UserError: If the config or the run folder cannot be used.
+        Interrupted: If the user stops it; finished episodes are kept.
+    """
+    return _run(make_plan(points, config_dir), extend)
+
+
+def _run(plan: Plan, extend: Callable[[Driven], Further] | None) -> Finished:
     preload = [*modules_to_preload(plan.configs.values()), *(["codriving.pictures.screening"] if plan.render else [])]
-    return execute(plan, BuildObjects, preload, read_paper(experiments_dir()), show_progress)
+    further = extend or (lambda _: Further())
+    return execute(plan, BuildObjects, preload, read_paper(experiments_dir()), show_progress, further)
 
 
-def _command(name: str, points: Sequence[Point], overrides: Sequence[str], config_dir: Path | None) -> int:
+def command(
+    name: str,
+    points: Sequence[Point],
+    overrides: Sequence[str],
+    config_dir: Path | None,
+    extend: Callable[[Driven], Further] | None = None,
+) -> int:
+    """Do what a command of several cells does: drive them, print their table, say how to go on.
+
+    Args:
+        name: The command, for instance ``ablate``.
+        points: What the cells are made of.
+        overrides: What the user gave.
+        config_dir: A folder of the user's own configs.
+        extend: Makes what the command has beyond the tables of every run.
+
+    Returns:
+        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
+
+    Raises:
+        UserError: If the config or the run folder cannot be used.
+    """
     plan = make_plan(points, config_dir)
     if name == "ablate":
         _refuse_alike(plan)
     try:
-        finished = _run(plan)
+        finished = _run(plan, extend)
     except Interrupted as stop:
         again = resume_command(name, overrides, config_dir, stop.folder.name)
         print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)
@@ -139,7 +182,7 @@ def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None,
     """
     kept = [override for override in overrides if not override.lstrip("+").startswith("run=")]
     folder = ["--config-dir", str(config_dir)] if config_dir else []
-    return shlex.join(["codriving", name, *kept, f"run={run}", *folder])
+    return shlex.join(["codriving", *name.split(), *kept, f"run={run}", *folder])
 
 
 def report(finished: Finished, again: str) -> None:
@@ -151,7 +194,10 @@ def report(finished: Finished, again: str) -> None:
     """
     if not finished.driven and not finished.filmed:
         print(f"Nothing to do: all {finished.kept} episodes of this run are finished already.")
-    print_table(finished.tables.display)
+    for index, display in enumerate(finished.displays):
+        if index:
+            print()
+        print_table(display)
     if finished.failed:
         first = finished.failed[0]
         where = f"{finished.folder}/episodes/{first.unit.cell}/{first.unit.seed}/error.txt"

@@ -62,7 +62,8 @@ def _widths(table: Display, room: int) -> list[int]:
     widths = [max(map(len, texts)) for texts in columns]
     least = [max(len(word) for text in texts for word in text.split() or [""]) for texts in columns]
     # What tells the rows apart stays whole.
-    labels = table.columns.index("episodes")
+    first_number = next((i for i, head in enumerate(table.columns) if head not in table.words), 0)
+    labels = table.columns.index("episodes") if "episodes" in table.columns else first_number
     least[:labels] = widths[:labels]
     while sum(widths) > room and widths != least:
         widest = max(range(len(widths)), key=lambda i: widths[i] - least[i])

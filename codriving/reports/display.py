@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.rows import Row, Value
+from codriving.reports.wording import episodes_text, interval_text, metrics_text, percent, reasoner_text, three
 
 NOTES = (
     "Rates are over completed episodes, intervals are Wilson 95 %; PET and velocity are over successful episodes.",
@@ -112,29 +113,25 @@ def _beside(rows: Sequence[Row], paper: Paper) -> dict[int, PaperRow]:
 
 
 def _title(scenarios: Iterable[str], rows: Sequence[Row], metrics: str) -> str:
-    names = dict.fromkeys(str(row["reasoner"]) for row in rows)
-    reasoners = ", ".join(f"{name} (llm=offline)" if name == "rules" else name for name in names)
-    measured = "" if metrics == "standard" else f" - metrics: {metrics}"
-    return f"{', '.join(scenarios)} - reasoner: {reasoners}{measured}"
+    reasoners = ", ".join(dict.fromkeys(reasoner_text(str(row["reasoner"])) for row in rows))
+    return f"{', '.join(scenarios)} - reasoner: {reasoners}{metrics_text(metrics)}"
 
 
 def _ours(row: Row, claim: str) -> dict[str, str]:
     variant = str(row["variant"])
-    low, high = _percent(row["success_low"]), _percent(row["success_high"])
-    episodes = str(row["episodes"]) if row["completed"] == row["episodes"] else f"{row['completed']}/{row['episodes']}"
     return {
         "scenario": str(row["scenario"]),
         "method": f"{row['method']} {variant}".strip(),
-        "episodes": episodes,
-        "success": _percent(row["success_rate"]),
-        "95 % interval": f"{low} to {high}" if low else "",
-        "collision": _percent(row["collision_rate"]),
-        "timeout": _percent(row["timeout_rate"]),
-        "off road": _percent(row["off_road_rate"]),
-        "error": _percent(row["error_rate"]),
-        "PET mean / max / min [s]": _three(row, "pet"),
-        "PET < 1.5 s": _percent(row["pet_below_1_5"]),
-        "velocity mean / max / min [m/s]": _three(row, "velocity"),
+        "episodes": episodes_text(row),
+        "success": percent(row["success_rate"]),
+        "95 % interval": interval_text(row),
+        "collision": percent(row["collision_rate"]),
+        "timeout": percent(row["timeout_rate"]),
+        "off road": percent(row["off_road_rate"]),
+        "error": percent(row["error_rate"]),
+        "PET mean / max / min [s]": three(row, "pet"),
+        "PET < 1.5 s": percent(row["pet_below_1_5"]),
+        "velocity mean / max / min [m/s]": three(row, "velocity"),
         CLAIM: claim,
     }
 
@@ -145,9 +142,9 @@ def _theirs(row: Row, paper: PaperRow) -> dict[str, str]:
         "scenario": str(row["scenario"]),
         "method": f"paper: {paper.label}",
         "episodes": "20",
-        "success": _percent(numbers.get("success_rate")),
-        "PET mean / max / min [s]": _three(numbers, "pet"),
-        "velocity mean / max / min [m/s]": _three(numbers, "velocity"),
+        "success": percent(numbers.get("success_rate")),
+        "PET mean / max / min [s]": three(numbers, "pet"),
+        "velocity mean / max / min [m/s]": three(numbers, "velocity"),
     }
 
 
@@ -161,13 +158,3 @@ def _is_number(value: Value) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _percent(value: Value) -> str:
-    return f"{100 * value:.3g} %" if isinstance(value, int | float) else ""
-
-
-def _three(numbers: Row, what: str) -> str:
-    """Mean, maximum and minimum; a dash where one is not defined."""
-    values = [numbers.get(f"{what}_{which}") for which in ("mean", "max", "min")]
-    return " / ".join(f"{value:.1f}" if isinstance(value, int | float) else "-" for value in values)

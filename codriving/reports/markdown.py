@@ -1,19 +1,20 @@
-"""``summary.md``: the printed table for a page or an issue."""
+"""The printed table for a page or an issue: ``summary.md`` and its like."""
 
 from codriving.reports.display import Display
 
 
-def markdown_text(table: Display) -> str:
+def markdown_text(table: Display, level: int = 1) -> str:
     """Write a table as Markdown.
 
     Args:
         table: What to write.
+        level: Level of its heading, 1 for that of the page.
 
     Returns:
         Title, table and notes; the paper's rows are in italics.
     """
     rules = ["---" if head in table.words else "---:" for head in table.columns]
-    lines = [f"# {table.title}", "", _line(table.columns), _line(rules)]
+    lines = [f"{'#' * level} {table.title}", "", _line(table.columns), _line(rules)]
     for line in table.lines:
         lines.append(_line([cell if line.ours or not cell else f"*{cell}*" for cell in map(_escape, line.cells)]))
     lines += ["", *table.notes]

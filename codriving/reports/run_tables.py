@@ -27,11 +27,13 @@ class Table:
         columns: Columns in order.
         rows: The rows.
         swept: Those of the columns that are swept keys.
+        text: Columns of words; all others are numbers.
     """
 
     columns: tuple[str, ...]
     rows: tuple[Row, ...]
     swept: tuple[str, ...] = ()
+    text: frozenset[str] = TEXT
 
     def csv(self) -> str:
         """Write it as CSV."""
@@ -47,7 +49,7 @@ class Table:
                 # A key may take words as well as numbers.
                 with suppress(ValueError, TypeError):
                     frame[column] = to_numeric(frame[column])
-            elif column not in TEXT:
+            elif column not in self.text:
                 frame[column] = to_numeric(frame[column])
         return frame
 

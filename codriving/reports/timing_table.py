@@ -1,5 +1,6 @@
-"""``timing.csv``: what the episodes cost in wall-clock time; the only table that differs from run to run."""
+"""``timing.csv``: what the episodes cost in time; the only table that differs from run to run."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from codriving.datatypes.record import EpisodeRecord
@@ -8,7 +9,14 @@ from codriving.storage.timing import Timing
 
 LEADING = ("scenario", "method", "variant", "reasoner", "seed")
 
-MEASURED = ("seconds", "decisions", "decision_seconds_mean", "decision_seconds_max")
+MEASURED = (
+    "seconds",
+    "decisions",
+    "decision_seconds_mean",
+    "decision_seconds_max",
+    "decision_cpu_mean",
+    "decision_cpu_max",
+)
 
 
 def timing_columns(swept: Sequence[str] = ()) -> tuple[str, ...]:
@@ -44,6 +52,22 @@ def timing_rows(
             "decisions": record.decisions,
             "decision_seconds_mean": timing.decision_mean if timing else None,
             "decision_seconds_max": timing.decision_max if timing else None,
+            "decision_cpu_mean": timing.decision_cpu_mean if timing else None,
+            "decision_cpu_max": timing.decision_cpu_max if timing else None,
         }
         for record, timing in timed
     ]
+
+
+def cpu_per_decision(timings: Iterable[Timing | None]) -> float | None:
+    """Give the CPU time that one decision took, over all decisions of a cell.
+
+    Args:
+        timings: Timing of each episode, None where that is lost.
+
+    Returns:
+        The mean [s], or None where nothing was measured.
+    """
+    known = [(t.decisions, t.decision_cpu_mean) for t in timings if t and t.decision_cpu_mean is not None]
+    decisions = sum(number for number, _ in known)
+    return math.fsum(number * mean for number, mean in known) / decisions if decisions else None

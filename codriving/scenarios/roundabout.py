@@ -126,7 +126,7 @@ class Roundabout:
     """Several CAVs among human drivers, some of whom are on the ring already.
 
     Args:
-        cavs: Number of CAVs, 2 to 8.
+        cavs: Number of CAVs, 2 to 12.
         hdvs: Smallest and largest number of HDVs; the number is drawn from the seed.
         on_ring: Share of HDVs that start on the ring, 0 to 1.
         radius: Radius of the centre line of the ring [m].
@@ -181,7 +181,7 @@ class Roundabout:
             )
         require_range("exit_distance", exit_distance, 5, self._ring.bend + leg_length - 10, " m")
         self.crowd = Crowd(cavs, hdvs, start, cav_speed, hdv_speed, spacing)
-        self.crowd.check(8, 12, leg_length - 15, "15 m before the end of the leg at the latest", SPEED_LIMIT)
+        self.crowd.check(12, 12, leg_length - 15, "15 m before the end of the leg at the latest", SPEED_LIMIT)
         self.crowd.require_room(len(LEGS), f"{len(LEGS)} legs", hdvs=None if on_ring < 1 else 0)
         self.on_ring, self.exit_distance = on_ring, exit_distance
         self.pace = Pace(simulation_frequency, decision_frequency, time_limit, tuple(target_speeds), detection_range)

@@ -7,7 +7,7 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from codriving.cli.app import app
-from codriving.cli.completion import complete_group, complete_in_line, complete_override
+from codriving.cli.completion import complete_group, complete_in_line, complete_override, complete_table
 from codriving.config.choices import choices
 
 SCENARIOS = [*choices("scenario"), "all"]
@@ -82,6 +82,11 @@ def test_bash_gets_only_what_follows_the_equals_sign(monkeypatch: pytest.MonkeyP
 def test_groups_of_list() -> None:
     assert complete_group("sce") == ["scenarios"]
     assert "experiments" in complete_group("")
+
+
+def test_tables_of_compare() -> None:
+    assert [name for name, _ in complete_table("")] == ["baselines", "load"]
+    assert [name for name, _ in complete_table("b")] == ["baselines"]
 
 
 @pytest.fixture

@@ -39,7 +39,7 @@ def python(*args: str, folder: Path, **variables: str) -> subprocess.CompletedPr
     )
 
 
-@pytest.mark.parametrize("args", [["--help"], ["run", "--help"], ["list", "--help"]])
+@pytest.mark.parametrize("args", [["--help"], ["run", "--help"], ["compare", "--help"], ["list", "--help"]])
 def test_help_imports_nothing_heavy(tmp_path: Path, args: list[str]) -> None:
     script = (
         "import sys, codriving.cli.app as c\n"

@@ -20,6 +20,8 @@ def test_a_success_is_recorded_with_all_that_tables_need() -> None:
     assert record.score is not None
     assert record.score.success
     assert record.decisions == len(result.decisions) == len(result.decision_seconds) == int(record.outcome.time)
+    assert len(result.decision_cpu) == record.decisions
+    assert all(cpu >= 0 for cpu in result.decision_cpu)
     assert record.counts == {"fallbacks": record.decisions}
     assert [line["step"] for line in result.decisions] == list(range(record.decisions))
 

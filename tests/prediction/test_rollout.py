@@ -1,6 +1,11 @@
 """The closed form is the simulator's rule, step by step."""
 
+from itertools import product
+
 import numpy as np
+import pytest
+from highway_env.road.road import Road, RoadNetwork
+from highway_env.vehicle.controller import MDPVehicle
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -71,3 +76,52 @@ def test_a_lane_change_keeps_the_target_speed() -> None:
     s, _ = rollout(model, [4.0], [6.0], ((Action.LANE_LEFT,), (Action.LANE_RIGHT,), (Action.IDLE,)), 20)
     assert np.array_equal(s[0, 0], s[0, 2])
     assert np.array_equal(s[0, 1], s[0, 2])
+
+
+TAU = 0.6
+"""Time in which highway-env's own controller makes up for a missing speed [s]."""
+
+
+def stock(decisions: float, simulation: float = 15.0) -> DrivingModel:
+    """Highway-env's own vehicle with three target speeds."""
+    return DrivingModel((0.0, 4.5, 9.0), 1 / TAU, 1 / simulation, 1 / decisions, 50.0)
+
+
+@pytest.mark.parametrize("speed", [0.0, 3.1, 9.0])
+def test_the_vehicle_of_highway_env_itself_does_what_is_predicted(speed: float) -> None:
+    model = stock(5.0)
+    plans = tuple(product((Action.SLOWER, Action.IDLE, Action.FASTER), repeat=5))
+    road = Road(RoadNetwork.straight_road_network(1, length=1000))
+    steps = 5 * model.substeps
+    goal = MDPVehicle(road, [0.0, 0.0], speed=speed, target_speeds=list(model.target_speeds)).target_speed
+    s, v = rollout(model, [speed], [goal], plans, steps)
+    for k, plan in enumerate(plans):
+        vehicle = MDPVehicle(road, [0.0, 0.0], speed=speed, target_speeds=list(model.target_speeds))
+        driven, reached = [0.0], [speed]
+        for action in plan:
+            vehicle.act(str(action))
+            for _ in range(model.substeps):
+                vehicle.act()
+                vehicle.step(model.step)
+                driven.append(vehicle.position[0])
+                reached.append(vehicle.speed)
+        np.testing.assert_allclose(s[0, k], driven, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(v[0, k], reached, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("decisions", "speed", "distance"), [(5.0, 9.0, 7.2), (1.0, 9.0, 9.9), (5.0, 6.0, 3.6), (5.0, 4.5, 2.7)]
+)
+def test_how_far_it_takes_to_stop(decisions: float, speed: float, distance: float) -> None:
+    s, v = rollout(stock(decisions), [speed], [speed], ((Action.SLOWER,),), 150)
+    assert v[0, 0, -1] == pytest.approx(0.0, abs=1e-3)
+    assert s[0, 0, -1] == pytest.approx(distance, abs=0.05)
+
+
+def test_how_hard_it_brakes_and_how_long_it_takes_to_start() -> None:
+    model = stock(5.0)
+    s, v = rollout(model, [9.0, 0.0], [9.0, 0.0], ((Action.SLOWER,), (Action.FASTER,)), 150)
+    assert -np.diff(v[0, 0]).min() / model.step == pytest.approx(11.0, abs=0.3)
+    fast = int(np.argmax(v[1, 1] >= 8.9))
+    assert fast * model.step == pytest.approx(2.8, abs=0.1)
+    assert s[1, 1, fast] == pytest.approx(18.0, abs=0.5)

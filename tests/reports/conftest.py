@@ -23,6 +23,8 @@ def make() -> Make:
         pair: str = "CAV-HDV",
         counts: dict[str, int] | None = None,
         delay: float | None = 1.0,
+        method: str = "codriving",
+        reasoner: str = "rules",
     ) -> EpisodeRecord:
         hit = Collision(3.0, "CAV0", "HDV0", pair) if ending is Ending.COLLISION else None
         score = Score(
@@ -32,9 +34,9 @@ def make() -> Make:
         )
         return EpisodeRecord(
             scenario=scenario,
-            method="codriving",
+            method=method,
             variant=variant,
-            reasoner="rules",
+            reasoner=reasoner,
             seed=seed,
             outcome=Outcome(ending, 12.0, {}, hit, message="RuntimeError: x" if ending is Ending.ERROR else ""),
             score=None if ending is Ending.ERROR else score,

@@ -117,8 +117,8 @@ def test_who_starts_on_the_ring_still_has_to_reach_its_exit() -> None:
 
 
 REFUSED = [
-    ({"cavs": 9}, "cavs must be 2 to 8, got 9"),
-    ({"cavs": 1}, "cavs must be 2 to 8, got 1"),
+    ({"cavs": 13}, "cavs must be 2 to 12, got 13"),
+    ({"cavs": 1}, "cavs must be 2 to 12, got 1"),
     ({"hdvs": (4, 2)}, "hdvs must be [smallest, largest] within 0 to 12, got [4, 2]"),
     ({"hdvs": (0, 13)}, "hdvs must be [smallest, largest] within 0 to 12, got [0, 13]"),
     ({"on_ring": 1.2}, "on_ring must be 0 to 1, got 1.2"),

@@ -1,0 +1,82 @@
+"""Methods on the same seeds: which cells a comparison has, and which of them differ in the method alone."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from codriving.config.choices import COMPARED, TABLES, choices
+from codriving.config.overrides import check_choice, parse
+from codriving.config.show import fingerprint
+from codriving.config.sweep import Point, expand
+from codriving.errors import ConfigError
+
+BASELINES, LOAD = "baselines", "load"
+
+LATER = ("single-vehicle", "all")
+"""Tables of a later release."""
+
+EXPERIMENT = {BASELINES: "compare", LOAD: "load"}
+"""The folder of each table's runs, if the user names none."""
+
+CAVS = "scenario.cavs"
+"""The key that the load is."""
+
+LOADED = ("scenario=intersection,roundabout", f"{CAVS}=4,6,8,12")
+"""What `codriving compare load` drives, as far as the user does not set it."""
+
+
+def comparison(table: str | None, overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
+    """Find out what a comparison consists of.
+
+    Every method of the paper's comparison that has a YAML takes part. ``method=`` adds others to them.
+
+    Args:
+        table: Name of the table.
+        overrides: ``key=value`` tokens that hold for every cell; with several values, for one block of rows each.
+        config_dir: A folder of the user's own configs.
+
+    Returns:
+        Its cells: those of one scenario and setting together, methods in the order of the table.
+
+    Raises:
+        ConfigError: If there is no such table, or an override cannot be read.
+    """
+    if table in LATER:
+        raise ConfigError(f"compare {table} comes in a later release; tables so far: {', '.join(TABLES)}")
+    if table not in TABLES:
+        given = "compare needs the name of a table" if table is None else f"unknown table {table!r}"
+        raise ConfigError(f"{given}; write codriving compare TABLE [KEY=VALUE]..., tables: {', '.join(TABLES)}")
+    keys = [parse(token).key_or_group for token in overrides]
+    added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
+    others = [token for token, key in zip(overrides, keys, strict=True) if key != "method"]
+    if table == LOAD:
+        others = [*(token for token in LOADED if token.partition("=")[0] not in keys), *others]
+    # Asked for once more on the command line, it is the user's.
+    base = () if "experiment" in keys else (f"experiment={EXPERIMENT[table]}",)
+    methods = _methods(added, config_dir)
+    return [
+        Point((*base, *point.overrides, f"method={name}"), {**point.swept, "method": name}, point.removed)
+        for point in expand(others, config_dir)
+        for name in methods
+    ]
+
+
+def _methods(added: Sequence[str], config_dir: Path | None) -> list[str]:
+    """The methods that take part: those of the paper that exist, then what the user adds."""
+    own = [point.overrides[0].partition("=")[2] for token in added for point in expand([token], config_dir)]
+    known = choices("method", config_dir)
+    for name in own:
+        check_choice("method", name, config_dir)
+    return list(dict.fromkeys([*(name for name in COMPARED if name in known), *own]))
+
+
+def setting(resolved: Mapping[str, Any]) -> str:
+    """Mark the setting of a cell: cells with the same mark differ in the method alone.
+
+    Args:
+        resolved: Its resolved config.
+
+    Returns:
+        The mark. Packages that a method's own YAML names belong to the method.
+    """
+    return fingerprint({key: value for key, value in resolved.items() if key not in ("method", "plugins")})

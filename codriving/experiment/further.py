@@ -1,0 +1,62 @@
+"""What a command makes of its episodes beyond the tables of every run."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from codriving.datatypes.record import EpisodeRecord
+from codriving.experiment.cells import Cell
+from codriving.reports.display import Display
+from codriving.reports.run_tables import Table
+from codriving.storage.atomic import whole_file
+from codriving.storage.timing import Timing
+
+
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """All episodes of a run.
+
+    Attributes:
+        cells: Its cells, in the order of the tables.
+        records: The records of each cell, by seed.
+        timings: What each of them cost, None where that is lost.
+    """
+
+    cells: Sequence[Cell]
+    records: Sequence[Sequence[EpisodeRecord]]
+    timings: Sequence[Sequence[Timing | None]]
+
+    @property
+    def metrics(self) -> str:
+        """Name of the definitions by which they were scored."""
+        return ", ".join(dict.fromkeys(cell.metrics for cell in self.cells))
+
+
+@dataclass(frozen=True, slots=True)
+class Further:
+    """What was made of them.
+
+    Attributes:
+        files: Content of each file, by its path in the run folder.
+        displays: What is printed instead of the summary; nothing prints the summary.
+        tables: For Python.
+    """
+
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    displays: tuple[Display, ...] = ()
+    tables: tuple[Table, ...] = ()
+
+    def write(self, folder: Path) -> None:
+        """Write the files, each whole or not at all.
+
+        Args:
+            folder: The run folder.
+
+        Raises:
+            OSError: If it cannot be written.
+        """
+        for name, content in self.files.items():
+            path = folder / name
+            path.parent.mkdir(exist_ok=True)
+            with whole_file(path, beside=folder) as partial:
+                partial.write_bytes(content)

@@ -1,0 +1,139 @@
+"""``comparison.csv``: one row a method and scenario, missing methods included, each against codriving."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from codriving.datatypes.record import EpisodeRecord
+from codriving.reports.pairs import PAIRED, better_in, paired, worse_in
+from codriving.reports.paper import Paper
+from codriving.reports.rows import Row
+from codriving.reports.summary import summary_row
+
+REFERENCE = "codriving"
+"""The method that all others are compared with."""
+
+DRIVEN, MISSING = "driven", "not there yet"
+"""Whether a method could be driven."""
+
+MEASURED = (
+    "episodes",
+    "completed",
+    "success_rate",
+    "success_low",
+    "success_high",
+    "pet_mean",
+    "pet_max",
+    "pet_min",
+    "pet_below_1_5",
+    "velocity_mean",
+    "velocity_max",
+    "velocity_min",
+)
+
+QUOTED = ("success_rate", "pet_mean", "pet_max", "pet_min", "velocity_mean", "velocity_max", "velocity_min")
+
+METHOD_CHOICE = "method_choice"
+"""The swept key that two methods of one name are told apart by; it belongs to a row, all others to a block."""
+
+TEXT = frozenset({"scenario", "method", "variant", "reasoner", "status", "better_in", "worse_in"})
+"""Columns of words; all others are numbers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One cell that is compared.
+
+    Attributes:
+        records: Its episodes, at least one.
+        swept: Its value of each swept key that needs a column.
+        cpu: CPU time of a decision [s], or None where that is lost; it goes into no file that has to repeat.
+    """
+
+    records: Sequence[EpisodeRecord]
+    swept: Mapping[str, str] = field(default_factory=dict)
+    cpu: float | None = None
+
+    @property
+    def setting(self) -> Mapping[str, str]:
+        """The swept keys that it shares with all cells of its block."""
+        return {key: value for key, value in self.swept.items() if key != METHOD_CHOICE}
+
+    @property
+    def method(self) -> str:
+        """What the method calls itself."""
+        return self.records[0].method
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """One row of the comparison.
+
+    Attributes:
+        row: Its columns.
+        cpu: CPU time of a decision [s], or None.
+    """
+
+    row: Row
+    cpu: float | None = None
+
+
+def comparison_columns(swept: Sequence[str] = ()) -> tuple[str, ...]:
+    """Give the columns of ``comparison.csv``.
+
+    Args:
+        swept: Swept keys that need a column.
+    """
+    quoted = (f"paper_{name}" for name in QUOTED)
+    labels = ("scenario", "method", "variant", "reasoner", "status")
+    return (*labels, *swept, *MEASURED, *PAIRED, "better_in", "worse_in", *quoted)
+
+
+def comparison_rows(block: Sequence[Entry], methods: Sequence[str], paper: Paper) -> list[Compared]:
+    """Compare the methods of one block: cells on the same seeds that differ in the method alone.
+
+    Args:
+        block: Its cells, at least one.
+        methods: Methods that the table has to have, in its order; those without a cell get a row that says so.
+        paper: The paper's numbers.
+
+    Returns:
+        The rows: ``methods`` in their order, then all others as they come.
+    """
+    reference = next((entry for entry in block if entry.method == REFERENCE), None)
+    rows: list[Compared] = []
+    for method in methods:
+        found = [entry for entry in block if entry.method == method]
+        rows += [_row(entry, reference, paper) for entry in found] or [_missing(block[0], method, paper)]
+    return rows + [_row(entry, reference, paper) for entry in block if entry.method not in methods]
+
+
+def _row(entry: Entry, reference: Entry | None, paper: Paper) -> Compared:
+    summary = summary_row(entry.records)
+    against: Row = {}
+    if reference is not None and entry is not reference:
+        against = paired(entry.records, reference.records)
+        against = {**against, "better_in": " ".join(better_in(against)), "worse_in": " ".join(worse_in(against))}
+    row = {
+        **{name: summary[name] for name in ("scenario", "method", "variant", "reasoner", *MEASURED)},
+        "status": DRIVEN,
+        **entry.swept,
+        **against,
+        **_quoted(paper, str(summary["scenario"]), str(summary["method"]), str(summary["variant"])),
+    }
+    return Compared(row, entry.cpu)
+
+
+def _missing(beside: Entry, method: str, paper: Paper) -> Compared:
+    scenario = beside.records[0].scenario
+    row = {"scenario": scenario, "method": method, "status": MISSING, **beside.setting}
+    return Compared({**row, **_quoted(paper, scenario, method, "")})
+
+
+def _quoted(paper: Paper, scenario: str, method: str, variant: str) -> Row:
+    found = paper.row(scenario, method, variant)
+    return {f"paper_{name}": found.numbers.get(name) for name in QUOTED} if found else {}
+
+
+def swept_keys(entries: Iterable[Entry]) -> tuple[str, ...]:
+    """List the swept keys that need a column, in their order."""
+    return tuple(dict.fromkeys(key for entry in entries for key in entry.swept))

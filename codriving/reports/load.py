@@ -1,0 +1,80 @@
+"""``load.csv``: one row a method and scenario, with success and velocity at each number of CAVs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from codriving.reports.comparison import DRIVEN, METHOD_CHOICE, MISSING, Entry
+from codriving.reports.rows import Row, Value
+from codriving.reports.summary import summary_row
+
+AT_EACH = (
+    "completed",
+    "success_rate",
+    "success_low",
+    "success_high",
+    "pet_mean",
+    "pet_below_1_5",
+    "velocity_mean",
+)
+"""What is given at each number of CAVs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """One row of the table of loads.
+
+    Attributes:
+        labels: Scenario, method, variant, reasoner, status and swept keys.
+        at: Columns of the summary at each number of CAVs.
+        cpu: CPU time of a decision at each number of CAVs [s], or None.
+    """
+
+    labels: Row
+    at: dict[int, Row] = field(default_factory=dict)
+    cpu: dict[int, float | None] = field(default_factory=dict)
+
+    def row(self) -> Row:
+        """Give its columns in ``load.csv``."""
+        measured = {f"{name}_{cavs}": row[name] for cavs, row in self.at.items() for name in AT_EACH}
+        return {**self.labels, "episodes": next((row["episodes"] for row in self.at.values()), None), **measured}
+
+
+def load_columns(loads: Sequence[int], swept: Sequence[str] = ()) -> tuple[str, ...]:
+    """Give the columns of ``load.csv``.
+
+    Args:
+        loads: The numbers of CAVs.
+        swept: Swept keys that need a column, without the number of CAVs.
+    """
+    labels = ("scenario", "method", "variant", "reasoner", "status")
+    return (*labels, *swept, "episodes", *(f"{name}_{cavs}" for name in AT_EACH for cavs in loads))
+
+
+def load_rows(cells: Sequence[tuple[int, Entry]], methods: Sequence[str]) -> list[Loaded]:
+    """Put the cells of one method and setting into a row.
+
+    Args:
+        cells: Number of CAVs and episodes of each cell; the number of CAVs is not among its swept keys.
+        methods: Methods that the table has to have, in its order; those without a cell get a row that says so.
+
+    Returns:
+        The rows: those of a scenario and setting together, ``methods`` in their order, then all others as they come.
+    """
+    settings: dict[tuple[Value, ...], dict[tuple[Value, ...], Loaded]] = {}
+    for cavs, entry in cells:
+        summary = summary_row(entry.records)
+        labels = {name: summary[name] for name in ("scenario", "method", "variant", "reasoner")}
+        setting = settings.setdefault((summary["scenario"], *entry.setting.values()), {})
+        which = (*labels.values(), entry.swept.get(METHOD_CHOICE))
+        row = setting.setdefault(which, Loaded({**labels, "status": DRIVEN, **entry.swept}))
+        row.at[cavs], row.cpu[cavs] = summary, entry.cpu
+    return [row for setting in settings.values() for row in _in_order(list(setting.values()), methods)]
+
+
+def _in_order(rows: Sequence[Loaded], methods: Sequence[str]) -> list[Loaded]:
+    kept = {name: value for name, value in rows[0].labels.items() if name not in ("variant", "reasoner", METHOD_CHOICE)}
+    ordered: list[Loaded] = []
+    for method in methods:
+        found = [row for row in rows if row.labels["method"] == method]
+        ordered += found or [Loaded({**kept, "method": method, "status": MISSING})]
+    return [*ordered, *(row for row in rows if row.labels["method"] not in methods)]

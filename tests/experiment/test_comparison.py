@@ -1,0 +1,117 @@
+"""What a comparison consists of: every method that there is, on the same seeds."""
+
+from pathlib import Path
+
+import pytest
+
+from codriving.config.build import build
+from codriving.config.choices import COMPARED, TABLES, choices
+from codriving.config.compose import compose
+from codriving.config.locate import experiments_dir
+from codriving.datatypes.vehicle import Kind
+from codriving.errors import ConfigError
+from codriving.experiment.compared import FURTHER
+from codriving.experiment.comparison import EXPERIMENT, comparison, setting
+from codriving.experiment.run import resume_command
+from codriving.reports.paper import read_paper
+from codriving.scenarios.intersection import Intersection
+from codriving.scenarios.roundabout import Roundabout
+
+YAML = "# Mine.\n_target_: my_methods.Mine\nplugins: [my_methods]\n"
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Path:
+    (tmp_path / "method").mkdir()
+    for name in ("mine", "other"):
+        (tmp_path / "method" / f"{name}.yaml").write_text(YAML)
+    return tmp_path
+
+
+def methods(table: str, *tokens: str, config_dir: Path | None = None) -> list[str]:
+    return [point.overrides[-1] for point in comparison(table, tokens, config_dir)]
+
+
+THERE = [f"method={name}" for name in COMPARED if name in choices("method")]
+
+
+def test_the_order_is_that_of_the_papers_table() -> None:
+    assert tuple(row.method for row in read_paper(experiments_dir()).comparison) == COMPARED
+
+
+def test_every_table_can_be_made_and_has_a_folder() -> None:
+    assert set(TABLES) == set(FURTHER) == set(EXPERIMENT)
+
+
+def test_the_methods_are_those_that_exist() -> None:
+    assert methods("baselines") == THERE
+    assert "method=codriving" in THERE
+
+
+def test_a_method_of_ones_own_is_added_once_and_takes_no_ones_place(own: Path) -> None:
+    assert methods("baselines", "method=mine", config_dir=own) == [*THERE, "method=mine"]
+    assert methods("load", "method=mine,codriving,other", "scenario.cavs=4", "scenario=merge", config_dir=own) == [
+        *THERE,
+        "method=mine",
+        "method=other",
+    ]
+
+
+def test_a_papers_method_of_ones_own_takes_part_without_being_asked(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("codriving.experiment.comparison.COMPARED", ("other", "codriving"))
+    assert methods("baselines", config_dir=own) == ["method=other", "method=codriving"]
+
+
+def test_each_scenario_and_setting_is_a_block_of_all_methods() -> None:
+    points = comparison("baselines", ["scenario=merge,highway", "episodes=3"])
+    assert [point.swept["scenario"] for point in points] == ["merge"] * len(THERE) + ["highway"] * len(THERE)
+    assert points[0].overrides[:3] == ("experiment=compare", "scenario=merge", "episodes=3")
+    assert points[0].swept["method"] == THERE[0].partition("=")[2]
+
+
+def test_load_is_four_numbers_of_cavs_at_two_scenarios_unless_the_user_says_otherwise() -> None:
+    asked = {(point.swept["scenario"], point.swept["scenario.cavs"]) for point in comparison("load", [])}
+    assert asked == {(s, n) for s in ("intersection", "roundabout") for n in ("4", "6", "8", "12")}
+    (merge,) = {point.overrides[:-1] for point in comparison("load", ["scenario=merge", "+scenario.cavs=4"])}
+    assert merge == ("experiment=load", "scenario=merge", "+scenario.cavs=4")
+
+
+def test_the_experiment_is_the_users_if_named() -> None:
+    assert comparison("baselines", ["experiment=mine"])[0].overrides[0] == "experiment=mine"
+
+
+@pytest.mark.parametrize(
+    ("table", "tokens", "said"),
+    [
+        ("baseline", [], "unknown table 'baseline'; .* tables: baselines, load"),
+        ("scenario=merge", [], "unknown table 'scenario=merge'; write codriving compare TABLE"),
+        (None, [], "compare needs the name of a table; .* tables: baselines, load"),
+        ("single-vehicle", [], "compare single-vehicle comes in a later release; tables so far: baselines, load"),
+        ("all", [], "compare all comes in a later release"),
+        ("baselines", ["method=typo"], "unknown method 'typo'; choices: "),
+        ("baselines", ["method=codriving,typo"], "unknown method 'typo'; choices: "),
+        ("baselines", ["episodes=3,4"], "episodes takes one value"),
+        ("baselines", ["merge"], "cannot read 'merge'"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused(table: str | None, tokens: list[str], said: str) -> None:
+    with pytest.raises(ConfigError, match=said):
+        comparison(table, tokens)
+
+
+def test_cells_that_differ_in_the_method_alone_have_one_setting() -> None:
+    cell = {"scenario": {"cavs": 4}, "plugins": [], "episodes": 3, "seed": 0}
+    assert setting({**cell, "method": {"a": 1}}) == setting({**cell, "method": {"b": 2}, "plugins": ["mine"]})
+    assert setting({**cell, "scenario": {"cavs": 8}}) != setting(cell)
+    assert setting({**cell, "seed": 1}) != setting(cell)
+
+
+def test_the_command_to_go_on_has_the_table_as_a_word_of_its_own() -> None:
+    assert resume_command("compare load", ["episodes=3"], None, "x") == "codriving compare load episodes=3 run=x"
+
+
+@pytest.mark.parametrize("scenario", ["intersection", "roundabout"])
+def test_as_many_cavs_as_load_asks_for_can_start(scenario: str) -> None:
+    made = build(compose([f"scenario={scenario}", "scenario.cavs=12"])["scenario"])
+    assert isinstance(made, Intersection | Roundabout)
+    assert all(sum(start.kind is Kind.CAV for start in made.scene(seed).starts) == 12 for seed in range(10000, 10010))

@@ -1,0 +1,67 @@
+"""Paired statistics against textbook numbers, brute force and each other."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from codriving.metrics import paired
+from codriving.metrics.paired import FEWEST, mcnemar, mean_interval
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "p"),
+    [(0, 0, 1.0), (3, 3, 1.0), (0, 5, 0.0625), (0, 6, 0.03125), (1, 9, 0.021484375), (2, 10, 0.03857421875)],
+)
+def test_known_p_values(one: int, other: int, p: float) -> None:
+    assert mcnemar(one, other) == pytest.approx(p)
+    assert mcnemar(other, one) == pytest.approx(p)
+
+
+@given(st.integers(0, 60), st.integers(0, 60))
+def test_it_is_the_sum_of_all_outcomes_that_are_as_unlikely(one: int, other: int) -> None:
+    n = one + other
+    chances = [math.comb(n, k) for k in range(n + 1)]
+    tail = sum(chance for chance in chances if chance <= chances[one])
+    assert mcnemar(one, other) == pytest.approx(tail / 2**n)
+
+
+def test_an_interval_repeats_and_holds_the_mean() -> None:
+    differences = [float(x) for x in np.random.default_rng(3).normal(0.5, 1.0, 40)]
+    first = mean_interval(differences)
+    assert first == mean_interval(differences)
+    assert first is not None
+    low, high = first
+    assert low < np.mean(differences) < high
+    # Of so many, it is close to that of the normal distribution.
+    half = 1.96 * np.std(differences) / math.sqrt(40)
+    assert high - low == pytest.approx(2 * half, rel=0.1)
+
+
+def test_it_moves_and_turns_round_with_the_differences() -> None:
+    differences = [float(x) for x in np.random.default_rng(4).exponential(1.0, 25)]
+    low, high = mean_interval(differences) or (math.nan, math.nan)
+    assert mean_interval([x + 10 for x in differences]) == pytest.approx((low + 10, high + 10))
+    assert mean_interval([-x for x in differences]) == pytest.approx((-high, -low))
+    assert mean_interval([0.25] * FEWEST) == pytest.approx((0.25, 0.25))
+
+
+def test_of_few_pairs_there_is_no_interval() -> None:
+    assert mean_interval([1.0] * (FEWEST - 1)) is None
+    assert mean_interval([]) is None
+
+
+def test_it_covers_the_true_mean_about_as_often_as_it_says() -> None:
+    rng = np.random.default_rng(11)
+    found = [mean_interval(rng.normal(1.0, 2.0, 30).tolist(), resamples=1000) for _ in range(200)]
+    covered = sum(low < 1.0 < high for low, high in filter(None, found))
+    assert 178 <= covered <= 198
+
+
+def test_memory_is_bounded_however_many_pairs_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    differences = np.random.default_rng(5).normal(0.0, 1.0, 50).tolist()
+    at_once = mean_interval(differences)
+    monkeypatch.setattr(paired, "_AT_ONCE", 1000)
+    assert mean_interval(differences) == pytest.approx(at_once)

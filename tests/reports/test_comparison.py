@@ -1,0 +1,152 @@
+"""The comparison of methods: every method has its row, and nothing that depends on the machine is kept."""
+
+import io
+from collections.abc import Callable
+
+import pytest
+
+from codriving.config.locate import experiments_dir
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import EpisodeRecord
+from codriving.reports.comparison import Entry, comparison_columns, comparison_rows
+from codriving.reports.comparison_display import CPU, measured_display
+from codriving.reports.console import print_table
+from codriving.reports.display import Display
+from codriving.reports.markdown import markdown_text
+from codriving.reports.pairs_display import AGAINST, paired_display
+from codriving.reports.paper import Paper, read_paper
+from codriving.reports.rows import csv_text
+
+Make = Callable[..., EpisodeRecord]
+
+METHODS = ("fcfs", "madqn", "codriving")
+EPISODES = 12
+
+
+@pytest.fixture
+def paper() -> Paper:
+    return read_paper(experiments_dir())
+
+
+@pytest.fixture
+def block(make: Make) -> list[Entry]:
+    """Fcfs is slower, with larger PETs; mine is like codriving but for one success less."""
+    ours = [make(seed, pets=(2.0,), velocities=(7.0 + seed / 10,)) for seed in range(EPISODES)]
+    fcfs = [
+        make(seed, pets=(4.0,), velocities=(6.0 + seed / 10,), method="fcfs", variant="", reasoner="none")
+        for seed in range(EPISODES)
+    ]
+    mine = [
+        make(seed, LOST if seed == 3 else Ending.SUCCESS, (2.0,), (7.0 + seed / 10,), method="mine", variant="x")
+        for seed in range(EPISODES)
+    ]
+    return [Entry(fcfs, cpu=0.0042), Entry(ours, cpu=0.0205), Entry(mine)]
+
+
+LOST = Ending.COLLISION
+
+
+def cells(table: Display, head: str) -> list[str]:
+    return [line.cells[table.columns.index(head)] for line in table.lines]
+
+
+def printed(table: Display) -> str:
+    stream = io.StringIO()
+    print_table(table, stream)
+    return stream.getvalue()
+
+
+def test_every_method_of_the_table_has_a_row_and_further_ones_follow(block: list[Entry], paper: Paper) -> None:
+    rows = [compared.row for compared in comparison_rows(block, METHODS, paper)]
+    assert [row["method"] for row in rows] == ["fcfs", "madqn", "codriving", "mine"]
+    assert [row["status"] for row in rows] == ["driven", "not there yet", "driven", "driven"]
+    fcfs, madqn, ours, mine = rows
+    assert (fcfs["velocity_difference"], fcfs["pet_difference"]) == (pytest.approx(-1.0), 2.0)
+    assert (fcfs["better_in"], fcfs["worse_in"]) == ("PET", "velocity")
+    assert (mine["only_method_succeeds"], mine["only_codriving_succeeds"], mine["mcnemar_p"]) == (0, 1, 1.0)
+    assert "pairs" not in ours
+    assert (madqn["paper_success_rate"], madqn["paper_velocity_min"]) == (0.20, 5.4)
+    assert "success_rate" not in madqn
+    assert set().union(*rows) <= set(comparison_columns())
+
+
+def test_the_csv_has_the_same_columns_whatever_is_missing(block: list[Entry], paper: Paper) -> None:
+    rows = [compared.row for compared in comparison_rows(block, METHODS, paper)]
+    lines = csv_text(comparison_columns(), rows).splitlines()
+    assert lines[0].startswith("scenario,method,variant,reasoner,status,episodes,completed,success_rate,success_low")
+    assert lines[0].endswith("paper_velocity_mean,paper_velocity_max,paper_velocity_min")
+    assert lines[2].startswith("intersection,madqn,,,not there yet,,")
+    assert lines[2].endswith(",0.2,3.7,9,1.8,6.1,6.5,5.4")
+    assert not any("cpu" in column or "seconds" in column for column in comparison_columns())
+
+
+def test_the_papers_row_stands_below_each_of_ours_also_where_a_method_is_missing(
+    block: list[Entry], paper: Paper
+) -> None:
+    table = measured_display(comparison_rows(block, METHODS, paper), paper, "standard", cpu=True)
+    assert cells(table, "method") == [
+        "fcfs",
+        "paper: FCFS",
+        "madqn",
+        "paper: MADQN",
+        "codriving full",
+        "paper: CoDrivingLLM",
+        "mine x",
+    ]
+    assert cells(table, "reasoner")[::2] == ["none", "not there yet", "rules (llm=offline)", "rules (llm=offline)"]
+    assert cells(table, "success")[:4] == ["100 %", "90 %", "", "20 %"]
+    assert cells(table, CPU) == ["4.2", "", "", "", "20.5", "", "-"]
+    text = printed(table)
+    assert text.isascii()
+    assert "comparison of methods - intersection - reasoner: none, rules (llm=offline)" in text
+    assert "Not there yet: madqn" in text
+    assert "Reasoner none: an algorithm" in text
+    assert "timing.csv alone" in text
+
+
+def test_what_is_kept_has_no_computing_time(block: list[Entry], paper: Paper) -> None:
+    page = markdown_text(measured_display(comparison_rows(block, METHODS, paper), paper, "standard"))
+    assert "CPU" not in page
+    assert "20.5" not in page
+
+
+def test_who_beats_codriving_is_said_in_the_row_and_below_the_table(block: list[Entry], paper: Paper) -> None:
+    table = paired_display(comparison_rows(block, METHODS, paper), "standard")
+    assert table is not None
+    assert cells(table, "method") == ["fcfs", "mine x"]
+    assert cells(table, AGAINST) == ["better in PET; worse in velocity", "no difference shown"]
+    assert cells(table, "velocity [m/s] (95 %)") == ["-1.00 (-1.00 to -1.00)", "0.00 (0.00 to 0.00)"]
+    assert cells(table, "success [points]") == ["0.0", "-8.3"]
+    assert cells(table, "alone: it / codriving") == ["0 / 0", "0 / 1"]
+    assert table.notes[0] == "Better than codriving: fcfs in PET by +2.00 (+2.00 to +2.00) s - intersection."
+    assert not any(note.startswith("Better than codriving: mine") for note in table.notes)
+    assert "better in PET; worse in velocity" in printed(table)
+
+
+def test_few_pairs_show_nothing(make: Make, paper: Paper) -> None:
+    block = [
+        Entry([make(seed, velocities=(v,), method=m) for seed in range(3)]) for m, v in (("a", 9), ("codriving", 1))
+    ]
+    table = paired_display(comparison_rows(block, (), paper), "standard")
+    assert table is not None
+    assert cells(table, AGAINST) == ["fewer than 10 pairs"]
+    assert table.notes[0].startswith("No method is shown to be better")
+
+
+def test_alone_codriving_has_nothing_to_be_compared_with(make: Make, paper: Paper) -> None:
+    rows = comparison_rows([Entry([make(0)])], METHODS, paper)
+    assert paired_display(rows, "standard") is None
+    assert [compared.row["status"] for compared in rows] == ["not there yet", "not there yet", "driven"]
+
+
+def test_blocks_of_a_sweep_have_their_own_missing_rows_and_end_with_a_line(make: Make, paper: Paper) -> None:
+    rows = [
+        compared
+        for cavs in ("4", "8")
+        for compared in comparison_rows([Entry([make(0)], {"scenario.cavs": cavs})], ("madqn", "codriving"), paper)
+    ]
+    table = measured_display(rows, paper, "authors", ["scenario.cavs"])
+    ours = [line for line in table.lines if line.ours]
+    assert [line.cells[1] for line in ours] == ["4", "4", "8", "8"]
+    assert [line.last for line in table.lines] == [False, False, False, True, False, False, False, False]
+    assert table.title.endswith("metrics: authors")

@@ -1,0 +1,82 @@
+"""One method against another: only what both did on one seed is compared."""
+
+from collections.abc import Callable
+
+import pytest
+
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import EpisodeRecord
+from codriving.reports.pairs import PAIRED, better_in, paired, worse_in
+from codriving.reports.rows import Row
+
+Make = Callable[..., EpisodeRecord]
+
+LOST = Ending.COLLISION
+
+
+def test_success_is_counted_seed_by_seed(make: Make) -> None:
+    theirs = [make(0), make(1), make(2, LOST), make(3, LOST), make(9)]
+    ours = [make(0), make(1, LOST), make(2), make(3, Ending.TIMEOUT), make(8)]
+    row = paired(theirs, ours)
+    assert tuple(row) == PAIRED
+    assert (row["pairs"], row["only_method_succeeds"], row["only_codriving_succeeds"]) == (4, 1, 1)
+    assert (row["success_difference"], row["mcnemar_p"]) == (0.0, 1.0)
+
+
+def test_an_error_is_no_driving_and_leaves_its_pair_out(make: Make) -> None:
+    row = paired([make(0), make(1, Ending.ERROR), make(2)], [make(0, LOST), make(1), make(2, Ending.ERROR)])
+    assert (row["pairs"], row["success_difference"]) == (1, 1.0)
+    assert paired([make(0, Ending.ERROR)], [make(0)])["mcnemar_p"] is None
+
+
+def test_velocity_and_pet_are_means_of_an_episode_where_both_succeed(make: Make) -> None:
+    theirs = [
+        make(0, pets=(2.0, 4.0), velocities=(6.0, 8.0)),
+        make(1, pets=(), velocities=(5.0,)),
+        make(2, LOST, pets=(90.0,), velocities=(90.0,)),
+    ]
+    ours = [
+        make(0, pets=(1.0,), velocities=(6.0,)),
+        make(1, pets=(1.0,), velocities=(6.0,)),
+        make(2, pets=(1.0,), velocities=(6.0,)),
+    ]
+    row = paired(theirs, ours)
+    assert (row["velocity_pairs"], row["velocity_difference"]) == (2, 0.0)
+    assert (row["pet_pairs"], row["pet_difference"]) == (1, 2.0)
+    assert row["pet_difference_low"] is None
+
+
+def test_the_interval_is_of_the_pairs_and_not_of_the_methods(make: Make) -> None:
+    # The seeds differ by far more than the methods: only pairing shows that one of them is faster.
+    theirs = [make(seed, velocities=(5.0 + seed % 7 + 0.1 + 0.01 * (seed % 3),)) for seed in range(20)]
+    ours = [make(seed, velocities=(5.0 + seed % 7,)) for seed in range(20)]
+    row = paired(theirs, ours)
+    low, high = row["velocity_difference_low"], row["velocity_difference_high"]
+    assert isinstance(low, float)
+    assert isinstance(high, float)
+    assert 0.1 <= low < high <= 0.12
+    assert better_in(row) == ("velocity",)
+    assert worse_in(paired(ours, theirs)) == ("velocity",)
+
+
+def limits(**given: float) -> Row:
+    return {"mcnemar_p": 1.0, "success_difference": 0.0, **given}
+
+
+@pytest.mark.parametrize(
+    ("row", "better", "worse"),
+    [
+        (limits(), (), ()),
+        (limits(mcnemar_p=0.049, success_difference=0.1), ("success",), ()),
+        (limits(mcnemar_p=0.05, success_difference=0.1), (), ()),
+        (limits(mcnemar_p=0.01, success_difference=-0.1), (), ("success",)),
+        (limits(velocity_difference_low=0.1, velocity_difference_high=0.2), ("velocity",), ()),
+        (limits(velocity_difference_low=-0.1, velocity_difference_high=0.2), (), ()),
+        (limits(pet_difference_low=-0.2, pet_difference_high=-0.1), (), ("PET",)),
+        (limits(pet_difference_low=0.0, pet_difference_high=0.0), (), ()),
+    ],
+)
+def test_better_and_worse_need_a_p_below_005_or_an_interval_without_0(
+    row: Row, better: tuple[str, ...], worse: tuple[str, ...]
+) -> None:
+    assert (better_in(row), worse_in(row)) == (better, worse)

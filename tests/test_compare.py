@@ -1,0 +1,137 @@
+"""codriving compare with the real simulator: short episodes, two methods that exist and one that does not."""
+
+import csv
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import codriving
+from codriving.experiment import run_comparison
+
+PACKAGE = "toy_methods"
+SOURCE = '''"""Methods for tests."""
+from dataclasses import dataclass, field
+from codriving.datatypes.action import Action
+
+
+@dataclass
+class Said:
+    """Nothing but actions."""
+
+    actions: dict
+    counts: dict = field(default_factory=dict)
+
+    def as_dict(self):
+        """One line."""
+        return {"actions": {name: action.name for name, action in self.actions.items()}}
+
+
+@dataclass
+class Steady:
+    """Every CAV does the same."""
+
+    action: str
+    name: str = "steady"
+    variant: str = ""
+    reasoner: str = "none"
+
+    def reset(self, road_map, model, seed):
+        """Nothing to forget."""
+
+    def act(self, world):
+        """The one action."""
+        return Said({cav.id: Action[self.action] for cav in world.cavs})
+'''
+YAML = "# Always the same.\n_target_: toy_methods.Steady\nplugins: [toy_methods]\naction: {action}\n{rest}"
+BOTH = ("launcher=serial", "scenario.time_limit=4", "run=x")
+
+
+@pytest.fixture
+def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A config folder with a method of the paper's, as far as this test goes, and one of a user's."""
+    for module in ("comparison", "compared"):
+        monkeypatch.setattr(f"codriving.experiment.{module}.COMPARED", ("fcfs_toy", "madqn_toy", "codriving"))
+    folder = tmp_path / "conf" / "method"
+    folder.mkdir(parents=True)
+    (tmp_path / f"{PACKAGE}.py").write_text(SOURCE)
+    (folder / "fcfs_toy.yaml").write_text(YAML.format(action="FASTER", rest="name: fcfs_toy\n"))
+    (folder / "mine.yaml").write_text(YAML.format(action="SLOWER", rest=""))
+    yield tmp_path / "conf"
+    sys.modules.pop(PACKAGE, None)
+    if str(tmp_path) in sys.path:
+        sys.path.remove(str(tmp_path))
+
+
+def compare(own: Path, table: str, *tokens: str) -> Path:
+    assert run_comparison(table, [*BOTH, f"output={own.parent}", *tokens], own) == 0
+    return own.parent / ("compare" if table == "baselines" else "load") / "x"
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    """The tables that must not depend on the clock or on how they came about."""
+    kept = [*folder.glob("*.csv"), *folder.glob("*.md"), *folder.glob("figures/*")]
+    return {path.name: path.read_bytes() for path in kept if path.name != "timing.csv"}
+
+
+def test_baselines_are_one_run_with_a_row_for_every_method(own: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = compare(own, "baselines", "episodes=2", "method=mine")
+    table = rows(folder / "comparison.csv")
+    assert [(row["method"], row["status"]) for row in table] == [
+        ("fcfs_toy", "driven"),
+        ("madqn_toy", "not there yet"),
+        ("codriving", "driven"),
+        ("steady", "driven"),
+    ]
+    assert [row["pairs"] for row in table] == ["2", "", "", "2"]
+    episodes = rows(folder / "episodes.csv")
+    assert [row["seed"] for row in episodes] == ["0", "1"] * 3
+    assert {path.name for path in folder.iterdir()} >= {"summary.csv", "summary.md", "timing.csv", "comparison.md"}
+    assert all(float(row["decision_cpu_mean"]) >= 0 for row in rows(folder / "timing.csv"))
+    out = capsys.readouterr().out
+    assert "madqn_toy" in out
+    assert "CPU [ms]" in out
+    assert "CPU" not in (folder / "comparison.md").read_text()
+    assert out.splitlines()[-1] == f"Run folder: {folder}"
+
+
+def test_a_comparison_grows_under_its_name_and_repeats_to_the_byte(
+    own: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    compare(own, "baselines", "episodes=1")
+    capsys.readouterr()
+    grown = files(compare(own, "baselines", "episodes=2", "method=mine"))
+    assert "4 of 4 episodes done" in capsys.readouterr().err
+    assert files(compare(own, "baselines", "episodes=2", "method=mine")) == grown
+    assert capsys.readouterr().out.startswith("Nothing to do: all 6 episodes")
+    (own.parent / "compare").rename(own.parent / "before")
+    assert files(compare(own, "baselines", "episodes=2", "method=mine")) == grown
+
+
+def test_load_is_a_table_and_a_figure(own: Path) -> None:
+    folder = compare(own, "load", "episodes=1", "scenario.cavs=2,3", "scenario=intersection,merge")
+    table = rows(folder / "load.csv")
+    assert [(row["scenario"], row["method"]) for row in table] == [
+        (scenario, method)
+        for scenario in ("intersection", "merge")
+        for method in ("fcfs_toy", "madqn_toy", "codriving")
+    ]
+    assert [bool(row["completed_2"] and row["completed_3"]) for row in table] == [True, False, True] * 2
+    assert {path.name for path in (folder / "figures").iterdir()} == {"load.png", "load.svg"}
+    assert [row["scenario.cavs"] for row in rows(folder / "summary.csv")] == ["2"] * 4 + ["3"] * 4
+
+
+def test_python_gets_the_comparison_as_a_frame(own: Path) -> None:
+    tokens = [*BOTH, f"output={own.parent}", "episodes=1"]
+    results = codriving.compare("baselines", *tokens, config_dir=own)
+    assert list(results.table["method"]) == ["fcfs_toy", "madqn_toy", "codriving"]
+    assert results.table["velocity_mean"].dtype == float
+    assert list(results.table["status"]) == ["driven", "not there yet", "driven"]
+    assert len(results.episodes) == len(results.summary) == 2
+    assert results.folder == own.parent / "compare" / "x"
