@@ -5,8 +5,11 @@ CodrivingError                      anything this program raises on purpose
 │   ├── ConfigError                 a key, value, range or cross-field rule of the config
 │   │   └── ScenarioError           a scenario whose vehicles cannot be placed or whose road is broken
 │   ├── RunFolderError              a run folder that is unwritable, of another config, or damaged
-│   └── FilmError                   a film that cannot be written
+│   ├── FilmError                   a film that cannot be written
+│   └── ModelError                  a language model that cannot be used, or must not be used any more
+│       └── SpendingLimitError      the tokens or the money that may be spent are used up
 └── EpisodeError                    an episode could not go on; it becomes a record and the batch continues
+    └── ModelUnavailableError       a language model did not answer in time, retries included
 """
 
 
@@ -36,3 +39,15 @@ class FilmError(UserError):
 
 class EpisodeError(CodrivingError):
     """Raised when an episode cannot go on; the batch records it and continues."""
+
+
+class ModelError(UserError):
+    """Raised when a language model cannot be used: no key, no server, no such model."""
+
+
+class SpendingLimitError(ModelError):
+    """Raised when the tokens or the money that may be spent are used up; the batch stops and can be resumed."""
+
+
+class ModelUnavailableError(EpisodeError):
+    """Raised when a language model does not answer, retries included; the episode ends, the batch goes on."""

@@ -1,0 +1,55 @@
+"""What was asked during one decision step: the counters of the tables and the lines of the transcript."""
+
+from collections import Counter
+from typing import Any
+
+from codriving.llm.question import Answer, Question, as_line
+
+
+class Ledger:
+    """Notes every answer; one for each episode."""
+
+    def __init__(self) -> None:
+        self._counts: Counter[str] = Counter()
+        self._cost = 0.0
+        self._asked: list[tuple[Question, Answer]] = []
+
+    def note(self, question: Question, answer: Answer) -> None:
+        """Note an answer.
+
+        Args:
+            question: What was asked.
+            answer: What became of it.
+        """
+        self._asked.append((question, answer))
+        self._counts["model_calls"] += len(answer.calls)
+        self._counts["prompt_tokens"] += sum(call.prompt_tokens for call in answer.calls)
+        self._counts["completion_tokens"] += sum(call.completion_tokens for call in answer.calls)
+        self._counts["re_asks"] += answer.asked_again
+        self._counts["fallbacks"] += answer.value is None
+        self._counts["shortened"] += answer.shortened
+        self._cost += sum(call.cost or 0.0 for call in answer.calls)
+
+    def count(self, name: str, number: int = 1) -> None:
+        """Count something else, for instance a repaired order.
+
+        Args:
+            name: Its column.
+            number: How many.
+        """
+        self._counts[name] += number
+
+    def close_step(self, time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:
+        """Return what has been noted since the last step, and begin the next one.
+
+        Args:
+            time: Simulated time of the step [s].
+
+        Returns:
+            Counters by column, and one line an answer.
+        """
+        counts: dict[str, float] = dict(self._counts)
+        counts["cost_usd"] = self._cost
+        lines = [as_line(question.purpose, question.subject, time, answer) for question, answer in self._asked]
+        self._counts, self._cost, self._asked = Counter(), 0.0, []
+        return counts, lines
