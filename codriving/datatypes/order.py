@@ -35,6 +35,6 @@ class PassingOrder:
     def first_of(self, one: str, other: str) -> str | None:
         """Return which of two vehicles goes first, or None if they were not asked about."""
         for p in self.precedences:
-            if {p.first, p.second} == {one, other}:
+            if (p.first == one and p.second == other) or (p.first == other and p.second == one):
                 return p.first
         return None

@@ -37,7 +37,7 @@ class EpisodeRecord:
         score: What it is judged by; None for ``error``.
         participants: Who took part, in order of id.
         decisions: Number of decision steps.
-        counts: Further counters a method reports (fallbacks, repaired orders, ...), summed over the episode.
+        counts: Further counters a method reports (fallbacks, repaired orders, cost, ...), summed over the episode.
     """
 
     scenario: str
@@ -49,4 +49,4 @@ class EpisodeRecord:
     score: Score | None
     participants: tuple[Participant, ...]
     decisions: int
-    counts: dict[str, int]
+    counts: dict[str, int | float]

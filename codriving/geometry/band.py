@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from codriving.geometry.curve import FloatArray
 
@@ -33,27 +33,44 @@ class Band:
 
     def highest(self, s: ArrayLike) -> FloatArray:
         """Return the end of the blocked stretch [m] while one is at s [m]; -inf outside the zone."""
-        return np.asarray(np.maximum(*self._neighbours(s, self._padded_high)) + _BULGE)
+        return np.asarray(self._high.take(self._where(s)))
 
     def lowest(self, s: ArrayLike) -> FloatArray:
         """Return the start of the blocked stretch [m] while one is at s [m]; +inf outside the zone."""
-        return np.asarray(np.minimum(*self._neighbours(s, self._padded_low)) - _BULGE)
+        return np.asarray(self._low.take(self._where(s)))
+
+    def blocked(self, s: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Return `lowest` and `highest` [m] while one is at s [m]; the place in the table is looked up once."""
+        where = self._where(s)
+        return np.asarray(self._low.take(where)), np.asarray(self._high.take(where))
 
     # Rows -1 and n are the places where the zone has just not begun or has just ended.
     @cached_property
-    def _padded_high(self) -> FloatArray:
-        return np.concatenate(([-np.inf], self.high, [-np.inf]))
+    def _high(self) -> FloatArray:
+        padded = np.concatenate(([-np.inf], self.high, [-np.inf]))
+        return _table(padded, np.maximum(padded[:-1], padded[1:])) + _BULGE
 
     @cached_property
-    def _padded_low(self) -> FloatArray:
-        return np.concatenate(([np.inf], self.low, [np.inf]))
+    def _low(self) -> FloatArray:
+        padded = np.concatenate(([np.inf], self.low, [np.inf]))
+        return _table(padded, np.minimum(padded[:-1], padded[1:])) - _BULGE
 
-    def _neighbours(self, s: ArrayLike, padded: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the values at the row before and the row after each s."""
-        row = (np.asarray(s, dtype=np.float64) - self.start) / self.spacing
+    def _where(self, s: ArrayLike) -> NDArray[np.intp]:
+        """Return the place of each s in the tables: the numbers of the rows before and after it, added up."""
+        row = np.subtract(s, self.start, dtype=np.float64) / self.spacing
         # Outside the zone every row is as good as the padding; numpy's clip costs more than these two.
-        row = np.minimum(np.maximum(row, -1), len(padded) - 2)
-        return padded[np.floor(row).astype(np.intp) + 1], padded[np.ceil(row).astype(np.intp) + 1]
+        row = np.minimum(np.maximum(row, -1), len(self.high))
+        return (np.floor(row) + np.ceil(row)).astype(np.intp)
+
+
+def _table(rows: FloatArray, between: FloatArray) -> FloatArray:
+    """Put the values between two rows between theirs, from row 0 on; row -1 and what follows it come last.
+
+    So a single look-up finds the worse of both neighbours, and row -1 is found where Python's index -2 is.
+    """
+    found = np.empty(len(rows) + len(between))
+    found[::2], found[1::2] = rows, between
+    return np.roll(found, -2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,3 +90,7 @@ class FollowingBand:
     def lowest(self, s: ArrayLike) -> FloatArray:
         """Return the place of the follower [m] whose nose touches one's tail at s [m]."""
         return np.asarray(s, dtype=np.float64) - self.body
+
+    def blocked(self, s: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Return `lowest` and `highest` [m] while one is at s [m]."""
+        return self.lowest(s), self.highest(s)

@@ -1,7 +1,7 @@
 """A way through the road as a polyline, measured by arc length."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,16 +20,28 @@ class Path:
         points: Points of the centre line (n, 2) [m], n at least 2.
         headings: Unwrapped headings at the points (n,) [rad].
         length: Arc length of the whole path [m].
+        spacing: Arc length between two points [m].
     """
 
     points: FloatArray
     headings: FloatArray
     length: float
+    spacing: float = field(init=False, repr=False)
+    # The same numbers once more: contiguous for all points at once, and as plain numbers for one place.
+    _x: FloatArray = field(init=False, repr=False)
+    _y: FloatArray = field(init=False, repr=False)
+    _places: list[list[float]] = field(init=False, repr=False)
+    _turns: list[float] = field(init=False, repr=False)
 
-    @property
-    def spacing(self) -> float:
-        """Arc length between two points [m]."""
-        return self.length / (len(self.points) - 1)
+    def __post_init__(self) -> None:
+        for name, value in (
+            ("spacing", self.length / (len(self.points) - 1)),
+            ("_x", np.ascontiguousarray(self.points[:, 0])),
+            ("_y", np.ascontiguousarray(self.points[:, 1])),
+            ("_places", self.points.tolist()),
+            ("_turns", self.headings.tolist()),
+        ):
+            object.__setattr__(self, name, value)
 
     @property
     def arc_lengths(self) -> FloatArray:
@@ -46,13 +58,30 @@ class Path:
         inside = np.clip(s, 0.0, self.length)
         k = np.minimum((inside / self.spacing).astype(np.intp), len(self.points) - 2)
         t = inside / self.spacing - k
-        x, y = self.points[:, 0], self.points[:, 1]
+        x, y = self._x, self._y
         overshoot = s - inside
         heading = np.where(overshoot < 0, self.headings[0], self.headings[-1])
         return (
             x[k] + t * (x[k + 1] - x[k]) + overshoot * np.cos(heading),
             y[k] + t * (y[k + 1] - y[k]) + overshoot * np.sin(heading),
         )
+
+    def place(self, s: float) -> tuple[float, float, float]:
+        """Return x and y [m] and heading [rad] at one arc length, as `position` and `heading` do, without numpy.
+
+        Args:
+            s: Arc length [m].
+        """
+        inside = min(max(s, 0.0), self.length)
+        k = min(int(inside / self.spacing), len(self._places) - 2)
+        t = inside / self.spacing - k
+        turn = self._turns[k] + t * (self._turns[k + 1] - self._turns[k])
+        if inside != s:
+            # Numpy's cosine is not that of the mathematics library to the last bit.
+            x, y = self.position(s)
+            return float(x), float(y), turn
+        (x0, y0), (x1, y1) = self._places[k], self._places[k + 1]
+        return x0 + t * (x1 - x0), y0 + t * (y1 - y0), turn
 
     def heading(self, s: ArrayLike) -> FloatArray:
         """Return the unwrapped heading [rad] at arc length s [m]; constant before the start and past the end."""
@@ -78,25 +107,39 @@ class Path:
         if near is not None:
             first = min(max(math.floor((near - _BEHIND) / self.spacing), 0), last - 2)
             last = min(max(math.ceil((near + _AHEAD) / self.spacing) + 1, 2), last)
-        offset = self.points[first:last] - (x, y)
-        return self.project_at(first + int(np.einsum("ij,ij->i", offset, offset).argmin()), x, y)
+        dx, dy = self._x[first:last] - x, self._y[first:last] - y
+        return self.project_at(first + int((dx * dx + dy * dy).argmin()), x, y)
+
+    def project_all(self, x: FloatArray, y: FloatArray) -> list[tuple[float, float]]:
+        """Return what `project` returns for each of several points.
+
+        Args:
+            x: Points (m,) [m].
+            y: Points (m,) [m].
+        """
+        dx, dy = self._x - x[:, None], self._y - y[:, None]
+        nearest = (dx * dx + dy * dy).argmin(axis=1)
+        return [self.project_at(*one) for one in zip(nearest.tolist(), x.tolist(), y.tolist(), strict=True)]
 
     def project_at(self, k: int, x: float, y: float) -> tuple[float, float]:
         """Return arc length and lateral offset [m] of a point whose nearest path point is the k-th."""
-        last = len(self.points) - 1
+        last = len(self._places) - 1
         if k in (0, last):
-            cos, sin = math.cos(self.headings[k]), math.sin(self.headings[k])
-            dx, dy = x - float(self.points[k, 0]), y - float(self.points[k, 1])
+            cos, sin = math.cos(self._turns[k]), math.sin(self._turns[k])
+            dx, dy = x - self._places[k][0], y - self._places[k][1]
             along = dx * cos + dy * sin
             if along < 0 if k == 0 else along > 0:
                 return (self.length if k else 0.0) + along, cos * dy - sin * dx
-        options = [self._on_segment(j, x, y) for j in (k - 1, k) if 0 <= j < last]
-        _, s, lateral = min(options)
-        return s, lateral
+        # What is nearest along either segment; if both are as near, the one before wins.
+        if k == 0:
+            return self._on_segment(0, x, y)[1:]
+        if k == last:
+            return self._on_segment(k - 1, x, y)[1:]
+        return min(self._on_segment(k - 1, x, y), self._on_segment(k, x, y))[1:]
 
     def _on_segment(self, k: int, x: float, y: float) -> tuple[float, float, float]:
         """Return squared distance, arc length and lateral offset against the k-th segment."""
-        (x0, y0), (x1, y1) = self.points[k].tolist(), self.points[k + 1].tolist()
+        (x0, y0), (x1, y1) = self._places[k], self._places[k + 1]
         dx, dy, px, py = x1 - x0, y1 - y0, x - x0, y - y0
         square = dx * dx + dy * dy
         t = min(max((px * dx + py * dy) / square, 0.0), 1.0)

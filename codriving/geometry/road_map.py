@@ -1,7 +1,9 @@
 """All that geometry knows of a road, worked out once."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
+
+import numpy as np
 
 from codriving.datatypes.road import Lane, LaneId, Road, Route
 from codriving.geometry.box import PLANNING, Footprint
@@ -50,6 +52,11 @@ class RoadMap:
                 route.lanes, lane_starts([self.lanes[k] for k in route.lanes], route.taper), strict=True
             )
         }
+        # Lanes of each route from its end to its start, to find the one at a place.
+        self._backwards = {
+            route.id: tuple((lane, self._starts[route.id, lane]) for lane in reversed(route.lanes))
+            for route in road.routes
+        }
         self.changes = LaneChanges(self.lanes, self.routes, self._starts)
         self.nearby = Nearby(self.lanes, self.routes, self.paths, self._starts)
         self._projected: dict[tuple[str, float, float], tuple[float, float]] = {}
@@ -75,6 +82,25 @@ class RoadMap:
             found = self._projected[key] = self.paths[route_id].project(x, y)
         return found
 
+    def project_all(self, route_id: str, places: Iterable[tuple[float, float]]) -> None:
+        """Work out together what `project` will be asked for.
+
+        Args:
+            route_id: Id of the route.
+            places: Places, x and y [m].
+
+        Raises:
+            KeyError: If the route does not exist.
+        """
+        new = list(dict.fromkeys(place for place in places if (route_id, *place) not in self._projected))
+        if not new:
+            return
+        if len(self._projected) + len(new) > _REMEMBERED:
+            self._projected.clear()
+        x, y = np.array(new, dtype=np.float64).T
+        for place, found in zip(new, self.paths[route_id].project_all(x, y), strict=True):
+            self._projected[route_id, *place] = found
+
     def lane_at(self, route_id: str, s: float) -> LaneId:
         """Return the lane of a route at an arc length.
 
@@ -85,8 +111,10 @@ class RoadMap:
         Raises:
             KeyError: If the route does not exist.
         """
-        lanes = self.routes[route_id].lanes
-        return next((lane for lane in reversed(lanes) if self._starts[route_id, lane] <= s), lanes[0])
+        for lane, start in self._backwards[route_id]:
+            if start <= s:
+                return lane
+        return self.routes[route_id].lanes[0]
 
     def lane_start(self, route_id: str, lane_id: LaneId) -> float:
         """Return the arc length on a route at which one of its lanes begins [m].

@@ -67,6 +67,14 @@ class ConflictZone:
         """
         return self.over_j.lowest(s_j)
 
+    def blocked(self, s_j: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Return `back` and `front` [m] in one go.
+
+        Args:
+            s_j: Arc length of j on its route, a number or an array [m].
+        """
+        return self.over_j.blocked(s_j)
+
     def mirrored(self) -> "ConflictZone":
         """Return the same zone seen from route j."""
         return ConflictZone(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.prediction.human import fastest, likely, slowest
-from codriving.prediction.rollout import Plan, rollout
+from codriving.prediction.rollout import Plan, canonical, travelled
 
 Array = NDArray[np.float64]
 
@@ -21,6 +21,9 @@ SAMPLE = 0.2
 
 SPEEDING = 1.0
 """How much faster than the CAVs' top speed a human driver may become [m/s]."""
+
+FEW = 8
+"""Plans that are looked up one by one in no time."""
 
 BRAKE: Plan = (Action.SLOWER,)
 GO: Plan = (Action.FASTER,)
@@ -60,10 +63,16 @@ class Forecast:
         self.sample = self._stride * model.step
         self.steps = round(HORIZON / self.sample)
         self.times: Array = np.arange(self.steps + 1, dtype=np.float64) * self.sample
-        self._library = tuple(dict.fromkeys((BRAKE, GO, *library)))
-        self._index = {plan: k for k, plan in enumerate(self._library)}
+        asked = tuple(dict.fromkeys((*library, BRAKE, GO)))
+        # Plans that mean the same, written differently, are worked out once.
+        self._library = tuple(dict.fromkeys(canonical(plan) for plan in asked))
+        rows = {plan: k for k, plan in enumerate(self._library)}
+        self._index = {plan: rows[canonical(plan)] for plan in asked}
+        self._asked: tuple[Plan, ...] = ()
+        self._rows: NDArray[np.intp] = np.empty(0, dtype=np.intp)
         self._travel: dict[tuple[float, float], Array] = {}
         self._reach: dict[tuple[bool, float], Reach] = {}
+        self._likely: dict[float, tuple[Array, Array]] = {}
 
     def begin_step(self, states: Sequence[tuple[float, float]] = ()) -> None:
         """Forget the predictions of the step before, and predict the CAVs of this one.
@@ -73,14 +82,28 @@ class Forecast:
         """
         self._travel.clear()
         self._reach.clear()
+        self._likely.clear()
         self._predict(states)
 
     def _predict(self, states: Sequence[tuple[float, float]]) -> None:
         new = list(dict.fromkeys(state for state in states if state not in self._travel))
         if new:
             speeds, targets = zip(*new, strict=True)
-            distances, _ = rollout(self.model, speeds, targets, self._library, self.steps * self._stride)
-            self._travel.update(zip(new, distances[..., :: self._stride], strict=True))
+            distances = travelled(self.model, speeds, targets, self._library, self.steps, self._stride)
+            self._travel.update(zip(new, distances, strict=True))
+
+    def travel_each(self, states: Sequence[tuple[float, float]], plans: Sequence[Plan]) -> Array:
+        """Distances of several CAVs, each for a plan of its own, which need not be in the library.
+
+        Args:
+            states: Speed and target speed of each CAV [m/s].
+            plans: The plan of each.
+
+        Returns:
+            Distance travelled (n, steps + 1) [m].
+        """
+        speeds, targets = [speed for speed, _ in states], [target for _, target in states]
+        return travelled(self.model, speeds, targets, tuple(plans), self.steps, self._stride, paired=True)
 
     def travel(self, speed: float, target: float, plans: Sequence[Plan]) -> Array:
         """Distances of a CAV for several plans of the library.
@@ -93,8 +116,23 @@ class Forecast:
         Returns:
             Distance travelled (len(plans), steps + 1) [m].
         """
-        self._predict([(speed, target)])
-        return self._travel[speed, target][[self._index[plan] for plan in plans]]
+        return self._travels(speed, target)[self._rows_of(plans)]
+
+    def _travels(self, speed: float, target: float) -> Array:
+        """Distances for every plan of the library."""
+        if (speed, target) not in self._travel:
+            self._predict([(speed, target)])
+        return self._travel[speed, target]
+
+    def _rows_of(self, plans: Sequence[Plan]) -> NDArray[np.intp]:
+        """Rows of several plans in the library."""
+        if plans is not self._asked:
+            rows = np.array([self._index[plan] for plan in plans], dtype=np.intp)
+            if not isinstance(plans, tuple) or len(plans) <= FEW:
+                return rows
+            # A long tuple is a library that is asked for again and again; looking at every plan of it takes long.
+            self._asked, self._rows = plans, rows
+        return self._rows
 
     def reach(self, speed: float, is_cav: bool) -> Reach:
         """Bounds of how far a vehicle comes.
@@ -108,7 +146,8 @@ class Forecast:
             if is_cav:
                 # Neither depends on the present target, so that of any state with this speed will do.
                 target = next((goal for v, goal in self._travel if v == speed), speed)
-                least, most = self.travel(speed, target, (BRAKE, GO))
+                travels = self._travels(speed, target)
+                least, most = travels[self._index[BRAKE]], travels[self._index[GO]]
             else:
                 least = slowest(speed, self.times)
                 most = fastest(speed, self.times, self.model.target_speeds[-1] + SPEEDING)
@@ -124,7 +163,9 @@ class Forecast:
         Returns:
             The least and the most, each (steps + 1,) [m].
         """
-        return likely(speed, self.times)
+        if speed not in self._likely:
+            self._likely[speed] = likely(speed, self.times)
+        return self._likely[speed]
 
     def time_to(self, distance: float, travel: Array) -> float:
         """Return when a distance has been covered.

@@ -1,6 +1,7 @@
 """What CAVs do when they are given lists of actions: highway-env's rule, simulated exactly."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -18,10 +19,65 @@ CHANGE = {Action.SLOWER: -1, Action.FASTER: 1}
 """Steps of the target speed that an action asks for; every other action leaves the target alone."""
 
 
-@lru_cache(maxsize=64)
+def canonical(plan: Plan) -> Plan:
+    """Return the shortest way to write a plan: its last action is repeated anyway.
+
+    Args:
+        plan: A plan.
+    """
+    n = len(plan)
+    while n > 1 and plan[n - 2] is plan[n - 1]:
+        n -= 1
+    return plan[:n]
+
+
 def _changes(plans: tuple[Plan, ...], decisions: int) -> Array:
     """Steps of the target speed that every plan asks for at every decision (decisions, len(plans))."""
-    return np.array([[CHANGE.get(p[min(d, len(p) - 1)], 0) for p in plans] for d in range(decisions)], dtype=np.float64)
+    found = np.empty((decisions, len(plans)))
+    for k, plan in enumerate(plans):
+        steps = [CHANGE.get(action, 0) for action in plan[:decisions]]
+        found[: len(steps), k], found[len(steps) :, k] = steps, steps[-1]
+    return found
+
+
+_known_changes = lru_cache(maxsize=64)(_changes)
+"""The same for libraries, which are asked for at every step."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Law:
+    """The speed law between two decisions, and the allowed targets as numbers.
+
+    While the target stays the same, Euler's steps are a geometric series: its sum replaces the loop.
+
+    Attributes:
+        low: Lowest target speed [m/s].
+        span: Highest target speed less the lowest [m/s].
+        top: Index of the highest target speed.
+        spacing: Difference of two neighbouring target speeds [m/s].
+        elapsed: Time since the decision after each simulation step (substeps,) [s].
+        summed: Distance for each m/s of excess over the target, likewise [s].
+        left: Share of the excess that is left, likewise.
+    """
+
+    low: float
+    span: float
+    top: int
+    spacing: float
+    elapsed: Array
+    summed: Array
+    left: Array
+
+
+@lru_cache(maxsize=64)
+def _law(model: DrivingModel) -> _Law:
+    low, top = model.target_speeds[0], len(model.target_speeds) - 1
+    span = model.target_speeds[-1] - low
+    counts = np.arange(1, model.substeps + 1)
+    left: Array = np.asarray((1 - model.speed_gain * model.step) ** counts, dtype=np.float64)
+    return _Law(
+        low, span, top, span / top, np.asarray(counts * model.step), np.asarray((1 - left) / model.speed_gain), left
+    )
 
 
 def rollout(
@@ -42,25 +98,80 @@ def rollout(
     Returns:
         Distance travelled [m] and speed [m/s], each (n, len(plans), steps + 1), the first column being now.
     """
-    decisions = -(-steps // model.substeps)
-    low, high = model.target_speeds[0], model.target_speeds[-1]
-    top = len(model.target_speeds) - 1
-    spacing = (high - low) / top
+    law = _law(model)
     shape = (len(speeds), len(plans))
     v = np.broadcast_to(np.array(speeds, dtype=np.float64)[:, None], shape)
     goal = np.broadcast_to(np.array(targets, dtype=np.float64)[:, None], shape)
     s = np.zeros(shape)
-    # While the target stays the same, Euler's steps are a geometric series: its sum replaces the loop.
-    counts = np.arange(1, model.substeps + 1)
-    left = (1 - model.speed_gain * model.step) ** counts
-    summed, elapsed = (1 - left) / model.speed_gain, counts * model.step
     distances, reached = [np.zeros((*shape, 1))], [v[..., None]]
-    for change in _changes(plans, decisions):
-        index = np.minimum(np.maximum(np.rint((v - low) / (high - low) * top), 0), top)
-        asked = low + spacing * np.minimum(np.maximum(index + change, 0), top)
+    for change in _known_changes(plans, -(-steps // model.substeps)):
+        index = np.minimum(np.maximum(np.rint((v - law.low) / law.span * law.top), 0), law.top)
+        asked = law.low + law.spacing * np.minimum(np.maximum(index + change, 0), law.top)
         goal = np.where(change != 0, asked, goal)
         excess = v - goal
-        distances.append(s[..., None] + goal[..., None] * elapsed + excess[..., None] * summed)
-        reached.append(goal[..., None] + excess[..., None] * left)
+        distances.append(s[..., None] + goal[..., None] * law.elapsed + excess[..., None] * law.summed)
+        reached.append(goal[..., None] + excess[..., None] * law.left)
         s, v = distances[-1][..., -1], reached[-1][..., -1]
     return np.concatenate(distances, axis=-1)[..., : steps + 1], np.concatenate(reached, axis=-1)[..., : steps + 1]
+
+
+def travelled(
+    model: DrivingModel,
+    speeds: Sequence[float],
+    targets: Sequence[float],
+    plans: tuple[Plan, ...],
+    samples: int,
+    stride: int,
+    paired: bool = False,
+) -> Array:
+    """Return the distances of `rollout` at every `stride`-th step, bit for bit, without working out the others.
+
+    Args:
+        model: The vehicle model.
+        speeds: Speed of each state (n,) [m/s].
+        targets: Target speed of each state (n,) [m/s].
+        plans: The plans.
+        samples: Samples to look ahead.
+        stride: Simulation steps between two samples.
+        paired: Whether each state has a plan of its own, the k-th plan for the k-th state, instead of every plan.
+
+    Returns:
+        Distance travelled (n, len(plans), samples + 1), or (n, samples + 1) if paired; contiguous [m].
+    """
+    law, substeps = _law(model), model.substeps
+    decisions = -(-samples * stride // substeps)
+    changes = _changes(plans, decisions) if paired else _known_changes(plans, decisions)
+    shape = (len(speeds),) if paired else (len(speeds), len(plans))
+    v, goals, excess = np.empty(shape), np.empty((decisions + 1, *shape)), np.empty((decisions, *shape))
+    v.T[...], goals[-1].T[...] = speeds, targets
+    # Nobody steps beyond the highest or lowest target; where the target stays it is copied from the decision before.
+    least, most, stays = np.maximum(changes, 0), law.top + np.minimum(changes, 0), changes == 0
+    for k in range(decisions):
+        goal, over = goals[k], excess[k]
+        np.subtract(v, law.low, out=goal)
+        goal /= law.span
+        goal *= law.top
+        np.rint(goal, out=goal)
+        goal += changes[k]
+        np.maximum(goal, least[k], out=goal)
+        np.minimum(goal, most[k], out=goal)
+        goal *= law.spacing
+        goal += law.low
+        np.copyto(goal, goals[k - 1], where=stays[k])
+        np.subtract(v, goal, out=over)
+        np.multiply(over, law.left[-1], out=v)
+        v += goal
+    # Distances add up in the order of `rollout`: what the target gives, then what the excess gives, at each decision.
+    parts = np.zeros((2 * decisions + 1, *shape))
+    np.multiply(goals[:-1], law.elapsed[-1], out=parts[1::2])
+    np.multiply(excess, law.summed[-1], out=parts[2::2])
+    places = np.add.accumulate(parts, axis=0)[::2]
+    when = np.arange(1, samples + 1) * stride - 1
+    decision, since = when // substeps, when % substeps
+    found = np.zeros((*shape, samples + 1))
+    later = np.moveaxis(found, -1, 0)[1:]
+    factors = (len(when), *(1,) * len(shape))
+    moved = goals[decision] * law.elapsed[since].reshape(factors)
+    moved += places[decision]
+    np.add(moved, excess[decision] * law.summed[since].reshape(factors), out=later)
+    return found

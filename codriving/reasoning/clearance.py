@@ -39,7 +39,8 @@ def stays_ahead(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: flo
     Args:
         zone: The zone, seen from the ego vehicle.
         ego: Arc length of the ego vehicle over time (plans, n) [m].
-        other: Arc length of the other vehicle over time (n,), the most that it may reach [m].
+        other: Arc length of the other vehicle over time (n,), the most that it may reach, or one for each plan
+            (plans, n) [m].
         lag: Steps that must lie between the ego vehicle's leaving and the other's entering.
         pad: Additional room along the route [m].
 
@@ -81,5 +82,6 @@ def first_overlap(zone: ConflictZone, ego: Array, other: Array) -> NDArray[np.in
     Returns:
         One step a plan (plans,); n where they never overlap.
     """
-    hit = (ego >= zone.back(other)) & (ego <= zone.front(other))
+    begin, end = zone.blocked(other)
+    hit = (ego >= begin) & (ego <= end)
     return np.asarray(np.where(hit.any(axis=1), hit.argmax(axis=1), ego.shape[1]))

@@ -136,8 +136,11 @@ def keeps_order(
         certain = vehicles[other].is_cav or len(motions) == 1
         minds = minds_conflicts and certain and order.first_of(name, other) != name
         for motion in motions:
-            for zone in binding_zones(road_map.zones(route, motion.route), place, float(motion.places[0]), minds):
-                following = is_behind(zone, place, float(motion.places[0]))
+            there = float(motion.places[0])
+            for zone in road_map.zones(route, motion.route):
+                following = is_behind(zone, place, there)
+                if not following and not (minds and is_open(zone, place, there)):
+                    continue
                 after = min(lag, round(HEADWAY / sample)) if following else lag
                 keeps &= stays_behind(zone, places, motion.places[: places.shape[1]], after, 0.0)
     return keeps

@@ -1,6 +1,6 @@
 """Scene descriptions: states and intents put in relation to the ego vehicle, lane by lane (Section III-C.1 and 2)."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import cos, pi
 
@@ -21,6 +21,10 @@ ALIGNED = cos(pi / 3)
 """A vehicle on the ego lane heads within 60 degrees of it, where its heading is known."""
 
 
+NO_ROLE: tuple[Role, float | None] = (Role.OTHER, None)
+"""Who is neither ahead nor behind; conflicts are found later."""
+
+
 def describe_scenes(
     world: WorldState, views: Views, intents: Mapping[str, Intent], tracking: Tracking
 ) -> dict[str, SceneDescription]:
@@ -39,10 +43,11 @@ def describe_scenes(
     road_map = tracking.road_map
     scenes = {}
     for ego in world.cavs:
-        intent = world.intents[ego.id]
+        intent, seen = world.intents[ego.id], views[ego.id]
+        road_map.project_all(intent.route, [(ego.x, ego.y), *((other.x, other.y) for other in seen)])
         place, _ = road_map.project(intent.route, ego.x, ego.y)
         change = road_map.changes.ahead(intent.route, place)
-        neighbours = [_neighbour(seen, intents.get(seen.id), tracking, ego.id, world.time) for seen in views[ego.id]]
+        roles = _roles(seen, ego, intent.route, place, road_map)
         scenes[ego.id] = SceneDescription(
             ego=ego,
             intent=intent,
@@ -51,7 +56,10 @@ def describe_scenes(
             conflict_lanes=(),
             covers=road_map.changes.covered(intent.route, road_map.lane_at(intent.route, place), ego.x, ego.y),
             must_change=None if change is None else LaneChange(change[0], change[1] - place),
-            neighbours=with_roles(neighbours, ego, intent.route, place, road_map),
+            neighbours=tuple(
+                _neighbour(other, intents.get(other.id), tracking, ego.id, world.time, *roles.get(other.id, NO_ROLE))
+                for other in seen
+            ),
         )
     return scenes
 
@@ -68,19 +76,31 @@ def with_roles(
         place: Its arc length there [m].
         road_map: The precomputed road.
     """
-    plain = [n if n.role is Role.OTHER and n.gap is None else replace(n, role=Role.OTHER, gap=None) for n in neighbours]
+    everybody = tuple(neighbours)
+    road_map.project_all(route, [(n.x, n.y) for n in everybody])
+    roles = _roles(everybody, ego, route, place, road_map)
+    wanted = [roles.get(n.id, NO_ROLE) for n in everybody]
+    return tuple(
+        n if (n.role, n.gap) == (role, gap) else replace(n, role=role, gap=gap)
+        for n, (role, gap) in zip(everybody, wanted, strict=True)
+    )
+
+
+def _roles(
+    others: Sequence[Glimpse] | Sequence[Neighbour], ego: VehicleState, route: str, place: float, road_map: RoadMap
+) -> dict[str, tuple[Role, float | None]]:
+    """Return who drives next ahead and next behind on the ego vehicle's lane, and at which gap."""
     path = road_map.paths[route]
     nearest: dict[Role, tuple[float, str]] = {}
-    for n in plain:
+    for n in others:
         s, side = road_map.project(route, n.x, n.y)
-        if abs(side) > SAME_LANE or (n.heading is not None and cos(n.heading - float(path.heading(s))) <= ALIGNED):
+        if abs(side) > SAME_LANE or (n.heading is not None and cos(n.heading - path.place(s)[2]) <= ALIGNED):
             continue
         role = Role.LEADING if s > place else Role.REARING
         gap = abs(s - place) - (n.length + ego.length) / 2
         if role not in nearest or gap < nearest[role][0]:
             nearest[role] = (gap, n.id)
-    roles = {name: (role, gap) for role, (gap, name) in nearest.items()}
-    return tuple(replace(n, role=roles[n.id][0], gap=roles[n.id][1]) if n.id in roles else n for n in plain)
+    return {name: (role, gap) for role, (gap, name) in nearest.items()}
 
 
 def with_conflicts(scene: SceneDescription, conflicts: tuple[Conflict, ...], road_map: RoadMap) -> SceneDescription:
@@ -114,7 +134,9 @@ def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
     return tuple(side for side in sides if side in road_map.lanes)
 
 
-def _neighbour(seen: Glimpse, intent: Intent | None, tracking: Tracking, ego: str, time: float) -> Neighbour:
+def _neighbour(
+    seen: Glimpse, intent: Intent | None, tracking: Tracking, ego: str, time: float, role: Role, gap: float | None
+) -> Neighbour:
     return Neighbour(
         id=seen.id,
         # Whoever shares an intent has said that it is a CAV.
@@ -129,6 +151,6 @@ def _neighbour(seen: Glimpse, intent: Intent | None, tracking: Tracking, ego: st
         routes=tracking.places(ego, seen, intent),
         intent=intent,
         standing=tracking.standing(ego, seen, time),
-        role=Role.OTHER,
-        gap=None,
+        role=role,
+        gap=gap,
     )

@@ -18,6 +18,9 @@ CLEARLY = 2.0
 Places = tuple[tuple[str, float], ...]
 """Routes and the arc length on each [m]."""
 
+Spot = tuple[float, float, float | None]
+"""Where a vehicle is seen [m], and its heading [rad] if it is known."""
+
 
 class Tracking:
     """Narrows the possible routes of each vehicle down as it is watched.
@@ -30,11 +33,16 @@ class Tracking:
         self.road_map = road_map
         self._routes: dict[tuple[str, str], frozenset[str]] = {}
         self._standing: dict[tuple[str, str], float] = {}
-        self._near: dict[tuple[float, float, float | None], Places] = {}
+        # Only for one step, in which many ask for the same: by place, and what was possible before if that counts.
+        self._near: dict[Spot, Places] = {}
+        self._shared: dict[tuple[str, float, float], Places] = {}
+        self._narrowed: dict[tuple[Spot, frozenset[str] | None], tuple[frozenset[str], Places]] = {}
 
     def begin_step(self) -> None:
         """Forget what was only worked out for the step before."""
         self._near.clear()
+        self._shared.clear()
+        self._narrowed.clear()
 
     def places(self, ego: str, seen: Glimpse, intent: Intent | None) -> Places:
         """Return the routes on which a vehicle may be.
@@ -48,35 +56,40 @@ class Tracking:
             intent: What it has shared, if anything.
         """
         if intent is not None:
-            s, _ = self.road_map.project(intent.route, seen.x, seen.y)
-            return (
-                (intent.route, s),
-                *self.road_map.changes.covered(intent.route, self.road_map.lane_at(intent.route, s), seen.x, seen.y),
-            )
+            told = (intent.route, seen.x, seen.y)
+            if told not in self._shared:
+                s, _ = self.road_map.project(*told)
+                self._shared[told] = ((intent.route, s), *self._covered(intent.route, s, seen.x, seen.y))
+            return self._shared[told]
         spot = (seen.x, seen.y, seen.heading)
+        key = (spot, self._routes.get((ego, seen.id)))
+        if key not in self._narrowed:
+            self._narrowed[key] = self._narrow(*key)
+        self._routes[ego, seen.id], places = self._narrowed[key]
+        return places
+
+    def _narrow(self, spot: Spot, before: frozenset[str] | None) -> tuple[frozenset[str], Places]:
+        """Return the routes that are still possible, and these with the lanes beside onto which the body reaches."""
         if spot not in self._near:
             self._near[spot] = self._fitting(*spot)
         near = self._near[spot]
-        before = self._routes.get((ego, seen.id))
         kept = tuple(p for p in near if before is None or p[0] in before) or near
-        self._routes[ego, seen.id] = frozenset(route for route, _ in kept)
         # A body that reaches onto the lane beside is there as well, whatever its route.
-        covered = {
-            p
-            for route, s in kept
-            for p in self.road_map.changes.covered(route, self.road_map.lane_at(route, s), seen.x, seen.y)
-        }
-        return kept + tuple(sorted(p for p in covered if all(p[0] != route for route, _ in kept)))
+        covered = {p for route, s in kept for p in self._covered(route, s, spot[0], spot[1])}
+        beside = sorted(p for p in covered if all(p[0] != route for route, _ in kept))
+        return frozenset(route for route, _ in kept), kept + tuple(beside)
+
+    def _covered(self, route: str, s: float, x: float, y: float) -> Places:
+        return self.road_map.changes.covered(route, self.road_map.lane_at(route, s), x, y)
 
     def _fitting(self, x: float, y: float, heading: float | None) -> Places:
         """Return the routes near a place, without those that fit position and heading clearly worse than the best."""
         near = self.road_map.nearby.routes(x, y, heading)
         misfits = []
         for route, s in near:
-            path = self.road_map.paths[route]
-            px, py = path.position(s)
-            turned = 0.0 if heading is None else acos(min(1.0, max(-1.0, cos(heading - float(path.heading(s))))))
-            misfits.append(hypot(float(px) - x, float(py) - y) / SIDE + turned / TURN)
+            px, py, along = self.road_map.paths[route].place(s)
+            turned = 0.0 if heading is None else acos(min(1.0, max(-1.0, cos(heading - along))))
+            misfits.append(hypot(px - x, py - y) / SIDE + turned / TURN)
         return tuple(p for p, misfit in zip(near, misfits, strict=True) if misfit <= min(misfits) + CLEARLY)
 
     def standing(self, ego: str, seen: Glimpse, time: float) -> float:

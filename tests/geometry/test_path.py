@@ -66,3 +66,15 @@ def test_near_tells_two_passages_of_one_place_apart() -> None:
 def test_near_beyond_the_end_still_finds_the_end() -> None:
     s, _ = TURN.project(49, 53, near=TURN.length + 20)
     assert s == pytest.approx(TURN.length + 3)
+
+
+@given(st.lists(st.tuples(st.floats(-15.0, 60.0), st.floats(-25.0, 25.0)), min_size=1, max_size=6))
+def test_many_projections_are_those_one_by_one(places: list[tuple[float, float]]) -> None:
+    x, y = np.array(places).T
+    assert TURN.project_all(x, y) == [TURN.project(*place) for place in places]
+
+
+@given(st.floats(-10.0, TURN.length + 10.0) | st.sampled_from([0.0, TURN.length]))
+def test_a_single_place_is_that_of_the_arrays(s: float) -> None:
+    x, y = TURN.position(s)
+    assert TURN.place(s) == (float(x), float(y), float(TURN.heading(s)))

@@ -150,3 +150,23 @@ def test_equal_roads_share_a_map() -> None:
 def test_a_broken_road_is_refused_with_its_fault(broken: Road, complaint: str) -> None:
     with pytest.raises(ScenarioError, match=complaint):
         RoadMap(broken)
+
+
+def test_projecting_together_changes_nothing(intersection: RoadMap) -> None:
+    together, alone = RoadMap(intersection.road), RoadMap(intersection.road)
+    places = [(2.0 + 0.3 * k, 60.0 - 7.7 * k) for k in range(12)]
+    for route in intersection.routes:
+        together.project_all(route, places)
+        # A second time there is nothing left to do.
+        together.project_all(route, places[:3])
+        assert [together.project(route, *at) for at in places] == [alone.project(route, *at) for at in places]
+        assert [alone.paths[route].project(*at) for at in places] == [alone.project(route, *at) for at in places]
+
+
+def test_the_lane_at_a_place_begins_at_or_before_it(intersection: RoadMap) -> None:
+    for name, route in intersection.routes.items():
+        for lane in route.lanes:
+            start = intersection.lane_start(name, lane)
+            assert intersection.lane_at(name, start) == lane
+            assert intersection.lane_at(name, start + 0.1) == lane
+        assert intersection.lane_at(name, -5.0) == route.lanes[0]

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, is_dataclass, replace
 from typing import Any
 
 import pytest
@@ -53,6 +53,31 @@ def test_a_line_holds_what_was_told_removed_ordered_and_decided(step: Deliberati
         assert [a["action"] for a in cav["assessments"]] == [a.action for a in situation.assessments]
         assert cav["memories"] == []
     assert any(reasons for cav in line["cavs"] for reasons in cav["removed"].values())
+
+
+def as_plain(value: Any) -> Any:
+    """What `dataclasses.asdict` makes of a record, with rounded numbers."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return as_plain(asdict(value))
+    if isinstance(value, dict):
+        return {key: as_plain(v) for key, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [as_plain(v) for v in value]
+    if isinstance(value, float):
+        return round(value, 6) if math.isfinite(value) else None
+    return str(value) if isinstance(value, str) else value
+
+
+def test_a_line_is_what_asdict_would_make_of_it(step: Deliberation) -> None:
+    for cav, situation in zip(step.as_dict()["cavs"], step.situations, strict=True):
+        told = [
+            {**as_plain(c), "clear_time": as_plain(t)}
+            for c, t in zip(situation.conflicts, situation.clear_times, strict=True)
+        ]
+        assert json.dumps(cav["scene"]) == json.dumps(as_plain(situation.scene))
+        assert json.dumps(cav["conflicts"]) == json.dumps(told)
+        assert json.dumps(cav["assessments"]) == json.dumps(as_plain(situation.assessments))
+        assert json.dumps(cav["order"]["precedences"]) == json.dumps(as_plain(situation.order.precedences))
 
 
 @pytest.mark.parametrize("odd", [math.nan, math.inf, -math.inf])

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.prediction.rollout import Plan, rollout
+from codriving.prediction.rollout import Plan, canonical, rollout, travelled
 
 STEPS = 60
 
@@ -125,3 +125,39 @@ def test_how_hard_it_brakes_and_how_long_it_takes_to_start() -> None:
     fast = int(np.argmax(v[1, 1] >= 8.9))
     assert fast * model.step == pytest.approx(2.8, abs=0.1)
     assert s[1, 1, fast] == pytest.approx(18.0, abs=0.5)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    models,
+    st.lists(st.tuples(st.floats(-1.0, 35.0), speeds), min_size=1, max_size=3),
+    st.lists(plans, min_size=1, max_size=3),
+    st.integers(1, 30),
+    st.integers(1, 7),
+)
+def test_samples_are_those_of_the_rollout_bit_for_bit(
+    model: DrivingModel, states: list[tuple[float, float]], some: list[Plan], samples: int, stride: int
+) -> None:
+    now, targets = zip(*states, strict=True)
+    every, _ = rollout(model, now, targets, tuple(some), samples * stride)
+    found = travelled(model, now, targets, tuple(some), samples, stride)
+    assert found.flags.c_contiguous
+    assert found.tobytes() == every[..., ::stride].tobytes()
+
+
+@settings(max_examples=60, deadline=None)
+@given(models, st.lists(st.tuples(speeds, speeds, plans), min_size=1, max_size=4), st.integers(1, 4))
+def test_paired_plans_are_the_diagonal(model: DrivingModel, some: list[tuple[float, float, Plan]], stride: int) -> None:
+    now, targets, own = zip(*some, strict=True)
+    every, _ = rollout(model, now, targets, own, 20 * stride)
+    found = travelled(model, now, targets, own, 20, stride, paired=True)
+    assert found.tobytes() == np.array([every[k, k, ::stride] for k in range(len(some))]).tobytes()
+
+
+@given(models, speeds, speeds, plans)
+def test_a_plan_written_shortly_means_the_same(model: DrivingModel, speed: float, target: float, plan: Plan) -> None:
+    short = canonical(plan)
+    assert len(short) == 1 or short[-1] is not short[-2]
+    assert canonical((*plan, plan[-1])) == short
+    long, brief = rollout(model, [speed], [target], (plan, short), 40)[0][0]
+    assert long.tobytes() == brief.tobytes()

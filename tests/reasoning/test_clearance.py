@@ -62,3 +62,13 @@ def test_a_driver_reacts_to_a_vehicle_in_the_zone_and_no_other(junction: Junctio
     assert slowed[-1] < theirs[-1]
     assert (np.diff(slowed) >= -1e-9).all()
     assert np.array_equal(reacts(zone, 20.0 + 1.0 * TIMES, theirs, 0.2), theirs)
+
+
+@settings(deadline=None)
+@given(OTHERS, st.integers(0, 5), st.floats(0.0, 2.0))
+def test_staying_ahead_of_several_is_that_of_each(junction: Junction, other: str, lag: int, pad: float) -> None:
+    mine = np.array([85.0 + v * TIMES for v in (3.0, 6.0, 9.0)])
+    theirs = np.array([place + 8.0 * TIMES for place in (40.0, 75.0, 90.0)])
+    for zone in junction.road_map.zones("south-north", other):
+        one_by_one = [stays_ahead(zone, m[None], o, lag, pad)[0] for m, o in zip(mine, theirs, strict=True)]
+        assert stays_ahead(zone, mine, theirs, lag, pad).tolist() == one_by_one

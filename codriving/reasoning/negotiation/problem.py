@@ -6,12 +6,15 @@ from dataclasses import dataclass
 from codriving.datatypes.conflict import Conflict, Relation
 from codriving.datatypes.road import Turn
 from codriving.datatypes.scene_description import Role, SceneDescription
-from codriving.geometry.box import TRUE
+from codriving.geometry.box import TRUE, Footprint
 from codriving.geometry.road_map import RoadMap
 from codriving.ordering.instance import Entrant, Instance, Pair
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.negotiation.human_windows import is_blocked, window
 from codriving.reasoning.negotiation.separation import FOLLOWS, GAP, lag_length
+
+COMMITTED = Footprint(5.6, 2.8)
+"""Size of a vehicle that has stopped in time [m]: the body, and the room that others need to cut a corner beside it."""
 
 FOREVER = 1e3
 """Beyond every time that matters [s]."""
@@ -130,11 +133,11 @@ class ProblemMaker:
 
     def _cannot_stop(self, scene: SceneDescription, c: Conflict) -> bool:
         least = c.places[0] + self.forecast.reach(scene.ego.speed, True).least[-1]
-        return any(z.entry_i <= least and c.places[0] < z.exit_i for z in self.road_map.zones(*c.routes, TRUE))
+        return any(z.entry_i <= least and c.places[0] < z.exit_i for z in self.road_map.zones(*c.routes, COMMITTED))
 
     def _other_cannot_stop(self, scenes: Scenes, c: Conflict) -> bool:
         least = c.places[1] + self.forecast.reach(scenes[c.other].ego.speed, True).least[-1]
-        return any(z.entry_j <= least and c.places[1] < z.exit_j for z in self.road_map.zones(*c.routes, TRUE))
+        return any(z.entry_j <= least and c.places[1] < z.exit_j for z in self.road_map.zones(*c.routes, COMMITTED))
 
     def _add_windows(
         self, entrant: Entrant, scene: SceneDescription, conflicts: tuple[Conflict, ...]

@@ -141,9 +141,9 @@ def least_dangerous(outlook: Outlook) -> Action:
     """
     best: tuple[int, int, Action] | None = None
     preferred = {Action.SLOWER: 2, Action.IDLE: 1}
-    for k, action in enumerate(outlook.actions):
-        stops, goes = outlook.stops[k : k + 1], outlook.goes[k : k + 1]
-        margin = sum(max(_soonest(outlook, stops, n), _soonest(outlook, goes, n)) for n in range(3))
+    motions = np.concatenate((outlook.stops, outlook.goes))
+    soonest = sum(_soonest(outlook, motions, n).reshape(2, -1).max(axis=0) for n in range(3))
+    for action, margin in zip(outlook.actions, np.asarray(soonest).tolist(), strict=True):
         key = (margin, preferred.get(action, 0), action)
         if best is None or key[:2] > best[:2]:
             best = key
@@ -151,9 +151,10 @@ def least_dangerous(outlook: Outlook) -> Action:
     return best[2]
 
 
-def _soonest(outlook: Outlook, motion: Array, guess: int) -> int:
-    """Return the step at which a motion first overlaps with anybody's, for one of three guesses of what they do."""
-    scene, soonest = outlook.scene, int(motion.shape[1])
+def _soonest(outlook: Outlook, motions: Array, guess: int) -> NDArray[np.int64]:
+    """Return the step at which each motion first overlaps with anybody's, for one of three guesses of what they do."""
+    scene = outlook.scene
+    soonest: NDArray[np.int64] = np.full(len(motions), motions.shape[1])
     for name, expected in outlook.expected.items():
         if name == scene.ego.id:
             continue
@@ -166,5 +167,6 @@ def _soonest(outlook: Outlook, motion: Array, guess: int) -> int:
             # Whoever drives behind on the same lane has to mind the CAV, not the other way round.
             for zone in binding_zones(zones, scene.place, now, True):
                 ahead = is_behind(zone, scene.place, now)
-                soonest = min(soonest, int(first_overlap(zone, motion, now + (reach.least if ahead else travel))[0]))
+                steps = first_overlap(zone, motions, now + (reach.least if ahead else travel))
+                soonest = np.minimum(soonest, steps)
     return soonest

@@ -1,5 +1,7 @@
 """Third layer: no action may intensify a conflict with a vehicle of a conflict lane (Section III-C.4)."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -38,11 +40,11 @@ def check_conflicts(outlook: Outlook) -> dict[Action, list[str]]:
         Reasons by action; no entry where the action is safe.
     """
     found: dict[Action, list[str]] = {}
-    through = np.ones(len(outlook.actions), dtype=np.bool_)
     conflicts = [c for c in outlook.conflicts if not changes_before(outlook, c)]
+    passes = []
     for c in conflicts:
         goes, stops = passes_and_stops(outlook, c)
-        through &= goes | expected_to_pass(outlook, c)
+        passes.append(goes)
         for action, fine in zip(outlook.actions, goes | stops, strict=True):
             if not fine:
                 add(found, action, f"{action} intensifies the {c.relation} conflict with {c.other} ({c.severity})")
@@ -50,12 +52,33 @@ def check_conflicts(outlook: Outlook) -> dict[Action, list[str]]:
     # ways merge nobody is caught in between.
     for c in (c for c in conflicts if c.relation is Relation.CROSSING and not outlook.others[c.other].is_cav):
         zone = outlook.road_map.zones(*c.routes)[c.zone]
-        if leaves_in_time(outlook, c, zone):
+        ends = (outlook.stops[:, -1] + PAD).tolist()
+        inside = [outlook.scene.place < zone.entry_i < end < zone.exit_i for end in ends]
+        if not any(inside) or leaves_in_time(outlook, c, zone):
             continue
+        through = gets_through(outlook, conflicts, passes)
         for k, action in enumerate(outlook.actions):
-            if not through[k] and outlook.scene.place < zone.entry_i < outlook.stops[k, -1] + PAD < zone.exit_i:
+            if inside[k] and not through[k]:
                 add(found, action, f"after {action} the CAV might have to stop in the way of {c.other}")
     return found
+
+
+def gets_through(outlook: Outlook, conflicts: Sequence[Conflict], passes: Sequence[Flags]) -> Flags:
+    """Whether the CAV can pass, or comes behind a vehicle that moves as expected, in each of its conflicts.
+
+    Args:
+        outlook: The CAV's view.
+        conflicts: The conflicts.
+        passes: Whether it can pass whatever the other one does, one flag an action for each conflict.
+
+    Returns:
+        One flag an action (actions,).
+    """
+    through: Flags = np.ones(len(outlook.actions), dtype=np.bool_)
+    for c, goes in zip(conflicts, passes, strict=True):
+        if not goes.all():
+            through &= goes | expected_to_pass(outlook, c)
+    return through
 
 
 def changes_before(outlook: Outlook, c: Conflict) -> bool:
@@ -135,18 +158,20 @@ def passes_and_stops(outlook: Outlook, c: Conflict) -> tuple[Flags, Flags]:
     least = place + (reach.steady if relied_on else reach.least)
     # A bound on what the other one can do is a margin in itself; an expectation needs one.
     lag = outlook.lag if relied_on else round(BOUND_LAG / outlook.forecast.sample)
-    goes = stays_behind(zone, outlook.goes, least, lag, PAD)
-    stops = stays_behind(zone, outlook.stops, least, lag, PAD)
+    # Both in one go: nearly all of the time goes into calls, not into numbers.
+    motions = np.concatenate((outlook.goes, outlook.stops))
+    fine = stays_behind(zone, motions, least, lag, PAD)
     goes_first = outlook.order.first_of(c.ego, c.other) == c.ego
     if goes_first and (other.is_cav or gives_way(c, other, outlook.road_map)):
-        goes |= keeps_clear(outlook, c, outlook.goes, place + reach.least)
-        stops |= keeps_clear(outlook, c, outlook.stops, place + reach.least)
+        fine |= keeps_clear(outlook, c, motions, place + reach.least)
+    goes, stops = fine[: len(outlook.goes)], fine[len(outlook.goes) :]
     if (goes_first or not (outlook.order.binding and other.is_cav)) and c.distances[1] > 0:
         ahead = round(AHEAD_LAG / outlook.forecast.sample)
-        for k, motion in enumerate(outlook.goes):
-            if not goes[k]:
-                most = reacts(zone, motion, place + reach.most, outlook.forecast.sample)
-                goes[k] = stays_ahead(zone, motion[None], most, ahead, PAD)[0]
+        late = np.flatnonzero(~goes)
+        if len(late):
+            most, after = place + reach.most, outlook.goes[late]
+            reacting = np.array([reacts(zone, motion, most, outlook.forecast.sample) for motion in after])
+            goes[late] = stays_ahead(zone, after, reacting, ahead, PAD)
     return goes, stops
 
 
@@ -156,11 +181,11 @@ def keeps_clear(outlook: Outlook, c: Conflict, motions: Array, other: Array) -> 
     Args:
         outlook: The CAV's view.
         c: The conflict.
-        motions: Arc length of the CAV over time (actions, n) [m].
+        motions: Arc length of the CAV over time, from the same place (motions, n) [m].
         other: Arc length of the other vehicle over time (n,) [m].
 
     Returns:
-        One flag an action (actions,).
+        One flag a motion (motions,).
     """
     for footprint in (BODY, TRUE):
         zones = outlook.road_map.zones(*c.routes, footprint)

@@ -35,18 +35,30 @@ def check_ahead(outlook: Outlook) -> dict[Action, list[str]]:
     """
     found: dict[Action, list[str]] = {}
     travelled = outlook.stops - outlook.scene.place
+    # While it changes lanes, the CAV is on two of them.
+    short = round(CLEARS / outlook.forecast.sample) + 1
+    ways = [
+        (own, place, short if k else outlook.forecast.steps + 1)
+        for k, (own, place) in enumerate(outlook.others[outlook.scene.ego.id].routes)
+    ]
     for n in outlook.scene.neighbours:
-        least = outlook.forecast.reach(n.speed, outlook.others[n.id].is_cav).least
+        there = outlook.others[n.id]
+        ahead = [
+            (zone, place, other, until)
+            for own, place, until in ways
+            for route, other in there.routes
+            for zone in outlook.road_map.zones(own, route)
+            if is_behind(zone, place, other)
+        ]
+        gap = n.gap if n.role is Role.LEADING else None
+        if not ahead and gap is None:
+            continue
+        least = outlook.forecast.reach(n.speed, there.is_cav).least
         keeps = np.ones(len(outlook.actions), dtype=np.bool_)
-        if n.role is Role.LEADING and n.gap is not None:
-            keeps &= (n.gap + least - travelled >= min(STANDSTILL_GAP, n.gap)).all(axis=1)
-        # While it changes lanes, the CAV is on two of them.
-        for k, (own, place) in enumerate(outlook.others[outlook.scene.ego.id].routes):
-            until = len(least) if k == 0 else round(CLEARS / outlook.forecast.sample) + 1
-            for route, other in outlook.others[n.id].routes:
-                for zone in outlook.road_map.zones(own, route):
-                    if is_behind(zone, place, other):
-                        keeps &= stays_behind(zone, place + travelled[:, :until], other + least[:until], 0, 0.0)
+        if gap is not None:
+            keeps &= (gap + least - travelled >= min(STANDSTILL_GAP, gap)).all(axis=1)
+        for zone, place, other, until in ahead:
+            keeps &= stays_behind(zone, place + travelled[:, :until], other + least[:until], 0, 0.0)
         for action, safe in zip(outlook.actions, keeps, strict=True):
             if not safe:
                 found.setdefault(action, []).append(
