@@ -5,8 +5,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import yaml
 from worlds import Car, Junction, Thoughts
 
+from codriving.config.locate import conf_dir
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.trajectory import Trajectory
@@ -25,18 +27,21 @@ from codriving.ordering.protocol import Ordering, OrderRule
 from codriving.prediction.rollout import rollout
 from codriving.reasoning.movers import movers
 
-PLANNED: dict[str, float] = {"gap": 0.6, "margin": 1.5, "pad": 1.0, "headway": 0.8}
-LAYERED: dict[str, Any] = {"gap": 1.0, "hold": 30.0, "brake_anywhere": False, "headway": 0.9}
+
+def configured_executor(name: str) -> dict[str, Any]:
+    """The settings of an executor in the configuration."""
+    text = (conf_dir() / "executor" / f"{name}.yaml").read_text(encoding="utf-8")
+    return {key: value for key, value in yaml.safe_load(text).items() if key != "_target_"}
 
 
 def planned(**change: float) -> Planned:
     """The executor as it is configured, but for what is named."""
-    return Planned(**{**PLANNED, **change})
+    return Planned(**{**configured_executor("planned"), **change})
 
 
 def layered(**change: Any) -> Layered:
     """The reference executor as it is configured, but for what is named."""
-    return Layered(**{**LAYERED, **change})
+    return Layered(**{**configured_executor("layered"), **change})
 
 
 def ordered(world: Junction, rule: OrderRule | None = None, executor: Executor | None = None, seed: int = 0) -> Ordered:
@@ -84,7 +89,8 @@ def drive(environment: Environment, method: Method, seed: int, decisions: int = 
     """Drive one episode to its end, or for some decisions."""
     world = environment.reset(seed)
     method.reset(environment.road_map, environment.driving_model, seed)
-    worlds, steps = [world], []
+    worlds = [world]
+    steps: list[Deliberation] = []
     while environment.outcome is None and len(steps) < decisions:
         steps.append(method.act(world))
         world = environment.step(steps[-1].actions)

@@ -79,7 +79,8 @@ class FuzzyCoalition:
         ):
             if not least <= value <= most:
                 raise ConfigError(f"{key} must be {least:g} to {most:g}{unit}, got {value:g}")
-        self.gap, self.participation, self.shares = gap, participation, shares
+        self.gap = self.margin = gap
+        self.participation, self.shares = participation, shares
         self.weights = Weights(risk, efficiency, comfort, reference_acceleration)
         self.hold, self.horizon = hold, horizon
 

@@ -12,7 +12,7 @@ from codriving.executors.planning_order import cavs, drives_ahead, planning_orde
 from codriving.executors.stage import Stage
 from codriving.executors.violations import SIZES, Array, Steps, first_true
 from codriving.ordering.protocol import JointPlan
-from codriving.prediction.rollout import Plan, rollout
+from codriving.prediction.rollout import Plan
 from codriving.reasoning.conflicts import is_open
 from codriving.reasoning.expectation import CLEARS, is_behind, worth
 from codriving.reasoning.plans import PLANS
@@ -77,13 +77,9 @@ class JointPlans:
         names = list(self._continued)
         if not names:
             return {}
-        forecast, movers = self.stage.forecast, [self.vehicles[n] for n in names]
-        plans = tuple(self._continued[n] for n in names)
-        stride = round(forecast.sample / forecast.model.step)
-        distances, _ = rollout(
-            forecast.model, [v.speed for v in movers], [v.target for v in movers], plans, forecast.steps * stride
-        )
-        return {name: distances[k, k : k + 1, ::stride] for k, name in enumerate(names)}
+        movers = [self.vehicles[name] for name in names]
+        states, plans = [(v.speed, v.target) for v in movers], [self._continued[name] for name in names]
+        return dict(zip(names, self.stage.forecast.travel_each(states, plans)[:, None], strict=True))
 
     def plan_of(self, name: str, k: int) -> Plan:
         """Return a plan of a CAV.

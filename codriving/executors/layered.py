@@ -15,6 +15,9 @@ from codriving.reasoning.safety.same_lane import LANE_END_GAP
 BODY = 5.0
 """Length of a vehicle [m]."""
 
+LATE = 0.1
+"""Difference of times that does not count [s]."""
+
 ROOM = 1.0
 """Room that is left to whoever is ahead [m]."""
 
@@ -41,7 +44,8 @@ class Layered:
         for key, value, most in (("gap", gap, 5), ("hold", hold, 200), ("headway", headway, 5)):
             if not 0 <= value <= most:
                 raise ConfigError(f"{key} must be 0 to {most}, got {value:g}")
-        self.gap, self.hold, self.brake_anywhere, self.headway = gap, hold, brake_anywhere, headway
+        self.gap = self.margin = gap
+        self.hold, self.brake_anywhere, self.headway = hold, brake_anywhere, headway
 
     def reset(self) -> None:
         """Begin an episode; nothing is remembered from the one before."""
@@ -70,16 +74,17 @@ class Layered:
         return Drive(actions, reasons, planned.expected, planned.progress, {"layers": max(layers.values(), default=0)})
 
     def _decide(self, stage: Stage, name: str, layer: int, ordering: Ordering) -> tuple[Action, str]:
-        leader = _too_close(stage, name, self.headway)
+        leader = _too_close(stage, name, self.headway, Action.IDLE)
         if leader:
             return Action.SLOWER, f"{leader} ahead is too close"
         inside = _occupied(stage, name)
         if inside:
             return Action.SLOWER, f"{inside} is in the next zone"
-        human = _human_first(stage, name, ordering)
-        if layer == 0 and not human:
-            return Action.FASTER, "in the first group"
-        who = human or f"layer {layer - 1}"
+        who = _human_first(stage, name, ordering) or _held(stage, name, ordering)
+        if layer == 0 and not who:
+            leader = _too_close(stage, name, self.headway, Action.FASTER)
+            return (Action.IDLE, f"{leader} ahead is close") if leader else (Action.FASTER, "in the first group")
+        who = who or f"layer {layer - 1}"
         if self.brake_anywhere or _distance(stage, name) <= self.hold:
             return Action.SLOWER, f"waits for {who}"
         return Action.IDLE, f"will have to wait for {who}, and is still far away"
@@ -104,11 +109,11 @@ def _distance(stage: Stage, name: str) -> float:
     return min((c.distances[0] for c in stage.conflicts[name]), default=float("inf"))
 
 
-def _too_close(stage: Stage, name: str, headway: float) -> str:
-    """Whoever is so close ahead that the vehicle must slow down now; at two decisions a second that is early."""
+def _too_close(stage: Stage, name: str, headway: float, action: Action) -> str:
+    """Whoever is so close ahead that after an action there is too little room to stop."""
     scene, forecast = stage.scenes[name], stage.forecast
     speed = scene.ego.speed
-    (later,) = forecast.travel(speed, scene.intent.target_speed, [then_stop(Action.IDLE)])[:, -1]
+    (later,) = forecast.travel(speed, scene.intent.target_speed, [then_stop(action)])[:, -1]
     for n in scene.neighbours:
         if n.role is Role.LEADING and n.gap is not None:
             rolls = float(forecast.reach(n.speed, stage.known[name][n.id].is_cav).least[-1])
@@ -137,3 +142,12 @@ def _human_first(stage: Stage, name: str, ordering: Ordering) -> str:
             if begin < time and end > 0:
                 return n.id
     return ""
+
+
+def _held(stage: Stage, name: str, ordering: Ordering) -> str:
+    """What a vehicle waits for that the method holds back for longer than its conflicts do."""
+    distance = _distance(stage, name)
+    if name not in ordering.not_before or distance <= 0:
+        return ""
+    soonest = stage.forecast.time_to(distance, stage.forecast.reach(stage.scenes[name].ego.speed, True).most)
+    return "its turn" if soonest < ordering.not_before[name] - LATE else ""

@@ -2,9 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 
+from codriving.datatypes.action import Action
 from codriving.executors.stage import Stage
+from codriving.reasoning.conflicts import is_open
 from codriving.reasoning.expectation import is_behind
 from codriving.reasoning.movers import Mover
+
+LANE_CHANGES = frozenset((Action.LANE_LEFT, Action.LANE_RIGHT))
+
+BODY = 5.0
+"""Length of a vehicle [m]."""
 
 
 def cavs(stage: Stage) -> dict[str, Mover]:
@@ -33,7 +40,23 @@ def drives_ahead(stage: Stage, vehicles: Mapping[str, Mover]) -> set[tuple[str, 
                     zones = stage.road_map.zones(route, other)
                     if any(is_behind(zone, place, there) for zone in zones):
                         found.add((ahead.id, behind.id))
+            if _is_alongside(stage, behind, ahead):
+                found.add((ahead.id, behind.id))
     return found
+
+
+def _is_alongside(stage: Stage, changing: Mover, other: Mover) -> bool:
+    """Whether somebody drives ahead or alongside on the lane that a CAV has to change to, which then cannot go first."""
+    change = stage.scenes[changing.id].must_change
+    if change is None or not LANE_CHANGES & set(stage.available[changing.id]):
+        return False
+    (route, place), (way, there) = changing.routes[0], other.routes[0]
+    if stage.scenes[other.id].ego.lane != change.lane:
+        return False
+    for zone in stage.road_map.zones(route, way):
+        if zone.merge_i is not None and zone.merge_j is not None and is_open(zone, place, there):
+            return zone.merge_j - there < zone.merge_i - place + BODY
+    return False
 
 
 def planning_order(sequence: Sequence[str], vehicles: Mapping[str, Mover], ahead: set[tuple[str, str]]) -> list[str]:

@@ -36,10 +36,12 @@ class Executor(Protocol):
     Attributes:
         name: Name of the executor in tables.
         gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
+        margin: The same for motions, and for the gap test of lane changes [s].
     """
 
     name: str
     gap: float
+    margin: float
 
     def reset(self) -> None:
         """Begin an episode; nothing is remembered from the one before."""

@@ -58,5 +58,5 @@ def meets(zone: ConflictZone, ego: Array, low: Array, high: Array, lag: int, pad
     n = ego.shape[1]
     least = np.concatenate([np.full(lag, low[0]), low])[:n]
     most = np.concatenate([high[lag:n], np.full(min(lag, n), high[n - 1])])
-    blocked = (zone.over_i.lowest(ego) - pad <= most) & (zone.over_i.highest(ego) + pad >= least)
-    return first_true(blocked)
+    begin, end = zone.over_i.blocked(ego)
+    return first_true((begin - pad <= most) & (end + pad >= least))

@@ -52,7 +52,7 @@ class Ordered:
         self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SharedIntents())
         self._problems = ProblemMaker(road_map, forecast, self.executor.gap)
         self._requests = LaneRequests()
-        self._lag = round(self.executor.gap / forecast.sample)
+        self._lag = round(self.executor.margin / forecast.sample)
         self.rule.reset(seed)
         self.executor.reset()
 
@@ -81,7 +81,7 @@ class Ordered:
         agreed = agreement(problem, ordering.times, stage.conflicts, reason, True)
         drive = self.executor.drive(stage, ordering)
         changes = self._lane_changes(stage, ordering, agreed, drive)
-        situations = tuple(_situation(stage, name, agreed, drive) for name in stage.scenes)
+        situations = tuple(_situation(stage, name, agreed, drive, changes.get(name)) for name in stage.scenes)
         decisions = tuple(
             changes.get(name) or Decision(name, drive.actions[name], drive.reasons[name]) for name in stage.scenes
         )
@@ -103,8 +103,9 @@ class Ordered:
         }
 
 
-def _situation(stage: Stage, name: str, agreed: PassingOrder, drive: Drive) -> Situation:
+def _situation(stage: Stage, name: str, agreed: PassingOrder, drive: Drive, change: Decision | None) -> Situation:
     """Write down what a decision rests on, in the form in which every method's decisions are recorded."""
+    taken = change.action if change is not None else drive.actions[name]
     progress = drive.progress.get(name, {})
     conflicts = stage.conflicts[name]
     return Situation(
@@ -112,11 +113,15 @@ def _situation(stage: Stage, name: str, agreed: PassingOrder, drive: Drive) -> S
         conflicts=conflicts,
         order=agreed,
         clear_times=(0.0,) * len(conflicts),
-        assessments=tuple(_assessment(action, progress.get(action)) for action in stage.available[name]),
+        assessments=tuple(_assessment(action, progress.get(action), taken) for action in stage.available[name]),
     )
 
 
-def _assessment(action: Action, gain: float | None) -> ActionAssessment:
-    fine = gain is not None or action not in LONGITUDINAL
-    why = () if fine else ("no plan that begins with it keeps the order and clear of everybody",)
-    return ActionAssessment(action, fine, why, (), gain)
+def _assessment(action: Action, gain: float | None, taken: Action) -> ActionAssessment:
+    if action not in LONGITUDINAL:
+        why = () if action is taken else ("not asked for, not safe, or granted to somebody else",)
+    elif gain is None:
+        why = ("no plan of the library that begins with it keeps the order and clear of everybody",)
+    else:
+        why = ()
+    return ActionAssessment(action, not why or action is taken, why, (), gain)

@@ -84,7 +84,7 @@ class CoopGame:
         words = [] if levels is None else [f"levels={levels}"]
         words += [] if self.payoff.objective is Goal.INVERSE_DISTANCE else [str(self.payoff.objective)]
         words += [] if self.payoff.scale is Scale.TURNING else [f"scale={self.payoff.scale}"]
-        self.variant = ", ".join([*words, "rational"] if rational else words)
+        self.variant: str = ", ".join([*words, "rational"] if rational else words)
 
     def reset(self, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before.

@@ -35,7 +35,7 @@ class FirstComeFirstServed:
         if mode not in MODES:
             raise ConfigError(f"mode must be {', '.join(MODES[:-1])} or {MODES[-1]}, got {mode}")
         self.tickets, self.mode = TicketBook(control_radius), mode
-        self.variant = "" if mode == "conflict" else mode
+        self.variant: str = "" if mode == "conflict" else mode
 
     def reset(self, seed: int) -> None:
         """Begin an episode: nobody holds a ticket.

@@ -39,7 +39,8 @@ class SpanningTree:
         if not 0 <= hysteresis <= 10:
             raise ConfigError(f"hysteresis must be 0 to 10 s, got {hysteresis:g}")
         self.tickets, self.drift, self.hysteresis = TicketBook(control_radius), drift, hysteresis
-        self.objective, self.variant = Objective(), ""
+        self.objective = Objective()
+        self.variant: str = ""
         self.reset(0)
 
     def reset(self, seed: int) -> None:

@@ -39,7 +39,7 @@ class SearchedOrder(ABC):
             raise ConfigError(f"hysteresis must be 0 to 10 s, got {hysteresis:g}")
         self.hysteresis, self.objective = hysteresis, Objective(evacuation_weight, fairness)
         self.tickets = TicketBook()
-        self.variant = self.objective.variant
+        self.variant: str = self.objective.variant
         self.reset(0)
 
     def reset(self, seed: int) -> None:

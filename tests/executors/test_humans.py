@@ -52,15 +52,17 @@ def test_nobody_runs_into_a_driver_who_stands_ahead(junction: Junction) -> None:
 
 @pytest.mark.parametrize("make", [planned, layered])
 def test_a_driver_who_waits_does_not_hold_up_the_cavs(make: type[Executor], junction: Junction) -> None:
-    # Two CAVs cross, and a driver on the third leg lets everybody pass, whatever its way would be.
-    cars = [
-        car("CAV1", "south-north", 60.0, 8.0),
-        car("CAV2", "east-west", 62.0, 8.0),
-        car("HDV1", "west-east", junction.road_map.routes["west-east"].entry - 4.0, 0.0),
-    ]
-    show = puppets(junction, ordered(junction, executor=make()), cars, 40.0)
-    assert show.arrived("CAV1")
-    assert show.arrived("CAV2")
+    # Two CAVs cross, and a driver right before the zone lets everybody pass, though nobody can tell that at first.
+    (zone,) = junction.road_map.zones("south-north", "west-east")
+    for before in (2.0, 6.0):
+        cars = [
+            car("CAV1", "south-north", 60.0, 8.0),
+            car("CAV2", "east-west", 62.0, 8.0),
+            car("HDV1", "west-east", zone.entry_j - before, 0.0),
+        ]
+        show = puppets(junction, ordered(junction, executor=make()), cars, 40.0)
+        assert show.arrived("CAV1")
+        assert show.arrived("CAV2")
 
 
 def test_a_driver_who_goes_on_is_let_through(junction: Junction) -> None:
@@ -68,8 +70,12 @@ def test_a_driver_who_goes_on_is_let_through(junction: Junction) -> None:
     for place in (60.0, 66.0, 72.0):
         me, human = car("CAV1", "south-north", 66.0, 8.0), car("HDV1", "west-east", place, 8.0)
         show = puppets(junction, ordered(junction), [me, human], 25.0)
-        assert not touching(junction, me, show.places["CAV1"], human, show.places["HDV1"]), place
+        mine, theirs = show.places["CAV1"], show.places["HDV1"]
+        assert not touching(junction, me, mine, human, theirs), place
         assert show.arrived("CAV1")
+        (zone,) = junction.road_map.zones("south-north", "west-east", TRUE)
+        left, entered = np.argmax(theirs > zone.exit_j), np.argmax(mine > zone.entry_i)
+        assert (entered - left) * junction.model.step > 1.0, "there is time between the two"
 
 
 def test_whoever_drives_behind_minds_the_cav_and_not_the_other_way_round(junction: Junction) -> None:

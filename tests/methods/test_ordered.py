@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from driven import Episode, drive, layered, ordered, ordering_of, planned
+from driven import Episode, configured_executor, drive, layered, ordered, ordering_of, planned
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Junction, car
@@ -19,6 +19,7 @@ from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
+from codriving.executors.planned import Planned
 from codriving.methods.ordered import Ordered
 from codriving.ordering.fcfs import FirstComeFirstServed
 from codriving.ordering.instance import Instance
@@ -155,11 +156,20 @@ def test_the_rule_and_nothing_else_decides_who_goes_first(make: Callable[[], Any
 
 
 def test_an_episode_begins_with_the_seed_and_without_a_past(junction: Junction) -> None:
-    rule = InOrderOfNames()
-    made = ordered(junction, rule, seed=3)
+    class Notes(Planned):
+        resets = 0
+
+        def reset(self) -> None:
+            super().reset()
+            self.resets += 1
+
+    rule, executor = InOrderOfNames(), Notes(**configured_executor("planned"))
+    made = ordered(junction, rule, executor, seed=3)
+    before = executor.resets
     made.act(junction.world(car("CAV1", "south-north", 80.0, 8.0), car("CAV2", "west-east", 80.0, 8.0)))
     made.reset(junction.road_map, junction.model, 4)
     assert (rule.seeds, rule.posed) == ([3, 4], [])
+    assert executor.resets == before + 1
 
 
 def kinds(value: object, found: set[str]) -> set[str]:
