@@ -62,6 +62,8 @@ def test_wheel_holds_configs_and_experiments(wheel: Path) -> None:
     assert "codriving/_conf/scenario/intersection.yaml" in names
     assert "codriving/_experiments/experiments/paper_comparison.csv" in names
     assert "codriving/cli/app.py" in names
+    assert "codriving/_conf/llm/openai.yaml" in names
+    assert "codriving/reasoning/prompts/decide.user.md.j2" in names
     assert not [name for name in names if name.startswith(("tests", "conf/", "docs"))]
 
 

@@ -8,6 +8,7 @@ from typer.core import TyperGroup
 
 from codriving import __version__
 from codriving.cli.ablate import ablate
+from codriving.cli.check import check
 from codriving.cli.compare import compare
 from codriving.cli.list import list_choices
 from codriving.cli.replay import replay
@@ -67,6 +68,7 @@ def _options(
 app.command(epilog="Example: codriving run scenario=intersection episodes=50 seed=0 workers=2 run=first")(run)
 app.command(epilog="Example: codriving ablate scenario=intersection episodes=20")(ablate)
 app.command(epilog="Example: codriving compare baselines scenario=intersection episodes=20")(compare)
+app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
 app.command("list", epilog="Example: codriving list scenarios")(list_choices)
 

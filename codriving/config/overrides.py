@@ -6,6 +6,7 @@ from typing import Any
 
 from codriving.config.choices import LISTED, choices
 from codriving.config.schema import GROUPS, ROOT
+from codriving.config.secrets import may_be_secret, shown
 from codriving.errors import ConfigError
 
 KEY_VALUE = "write key=value, for instance scenario=intersection or episodes=20"
@@ -36,12 +37,12 @@ def _prepare(token: str, config_dir: Path | None) -> str:
     override = parse(token)
     key = override.key_or_group
     if override.is_delete():
-        raise ConfigError(f"{token}: keys cannot be removed, only set; {KEY_VALUE}")
+        raise ConfigError(f"{shown(token)}: keys cannot be removed, only set; {KEY_VALUE}")
     if override.package is not None or key == "hydra" or key.startswith(("hydra.", "hydra/")):
-        raise ConfigError(f"{token}: Hydra's own settings and packages are not used here; {KEY_VALUE}")
+        raise ConfigError(f"{shown(token)}: Hydra's own settings and packages are not used here; {KEY_VALUE}")
     if override.is_sweep_override():
         hint = "" if key in LISTED else f"; {TEXT_WITH_COMMAS.format(key=key)}"
-        raise ConfigError(f"{token}: {key} takes one value here{hint}")
+        raise ConfigError(f"{shown(token)}: {key} takes one value here{hint}")
     plain = token.lstrip("+")
     if key in LISTED:
         check_choice(key, override.value(), config_dir)
@@ -79,6 +80,8 @@ def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not 
         said = [str(error) for error in (err.__cause__, err) if error is not None and str(error) not in ("", "None")]
         # What the parser would have expected instead is its whole alphabet.
         reason = said[0].splitlines()[0].partition(" expecting ")[0] if said else "it has no form known here"
+        if may_be_secret(token):
+            raise ConfigError(f"cannot read {shown(token)!r}; {KEY_VALUE}") from None
         raise ConfigError(f"cannot read {token!r} ({reason}); {KEY_VALUE}") from err
 
 

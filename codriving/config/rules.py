@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from codriving.config.schema import LARGEST_SEED
+from codriving.config.secrets import check_secrets
 from codriving.errors import ConfigError
 
 
@@ -16,8 +17,9 @@ def check_rules(resolved: Mapping[str, Any]) -> None:
         resolved: A composed config whose root has been checked.
 
     Raises:
-        ConfigError: If two settings contradict each other.
+        ConfigError: If two settings contradict each other, or one holds a secret.
     """
+    check_secrets(resolved)
     last = resolved["seed"] + resolved["episodes"] - 1
     if last > LARGEST_SEED:
         raise ConfigError(f"seed + episodes - 1 must be at most {LARGEST_SEED}, got {last}; lower seed or episodes")

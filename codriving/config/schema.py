@@ -85,7 +85,7 @@ _PACKAGE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*")
 KEYS = (
     Key("episodes", "number of episodes a cell", int, 1, 100_000),
     Key("seed", "seed of the first episode; the others follow it one by one", int, 0, LARGEST_SEED),
-    Key("workers", "processes that drive episodes; auto takes one a core", int, 1, 256, words=("auto",)),
+    Key("workers", "episodes driven at once; auto: one a core, or llm.max_concurrency", int, 1, 256, words=("auto",)),
     Key("run", "name of the run folder; the same name resumes; null takes the time", str, pattern=_NAME, optional=True),
     Key("output", "folder under which the run folders are written", str),
     Key("experiment", "folder below output, one an experiment", str, pattern=_NAME),

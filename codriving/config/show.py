@@ -8,6 +8,19 @@ from typing import Any
 WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render")
 """Keys that change how much of a run is made, where and how fast, never what an episode is."""
 
+HOW_A_MODEL_IS_ASKED = (
+    "api_key_env",
+    "attempts",
+    "cache",
+    "cache_file",
+    "deadline",
+    "failures_in_a_row",
+    "max_concurrency",
+    "max_cost",
+    "max_tokens_total",
+)
+"""Keys of ``llm`` likewise: with them a run goes on after a limit has been raised, or is replayed under its name."""
+
 
 def show(resolved: Mapping[str, Any]) -> str:
     """Write a composed config as YAML, in the order in which it was composed.
@@ -32,6 +45,26 @@ def fingerprint(resolved: Mapping[str, Any]) -> str:
     Returns:
         The SHA-256 of its canonical JSON, without the keys that have no effect on results.
     """
-    relevant = {key: value for key, value in resolved.items() if key not in WITHOUT_EFFECT}
-    text = json.dumps(relevant, sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False)
+    text = json.dumps(relevant(resolved), sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def relevant(resolved: Mapping[str, Any]) -> dict[str, Any]:
+    """Leave out what has no effect on results.
+
+    Args:
+        resolved: The composed config as a plain dict.
+
+    Returns:
+        A copy; what other nodes hold of ``llm`` is left out likewise.
+    """
+    model = resolved.get("llm")
+    return {key: _without(value, model) for key, value in resolved.items() if key not in WITHOUT_EFFECT}
+
+
+def _without(node: Any, model: object) -> Any:  # noqa: ANN401 - any plain value
+    """A node without the settings of how a model is asked, wherever the model stands in it."""
+    if not isinstance(node, Mapping):
+        return [_without(value, model) for value in node] if isinstance(node, list) else node
+    dropped = HOW_A_MODEL_IS_ASKED if node == model else ()
+    return {key: _without(value, model) for key, value in node.items() if key not in dropped}

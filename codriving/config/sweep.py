@@ -10,6 +10,7 @@ from typing import Any
 from codriving.config.choices import ALL, LISTED, check_config_dir, choices
 from codriving.config.overrides import TEXT_WITH_COMMAS, check_choice, parse
 from codriving.config.schema import ROOT
+from codriving.config.secrets import may_be_secret, shown
 from codriving.errors import ConfigError
 
 MOST = 1000
@@ -80,9 +81,9 @@ def expand(tokens: Sequence[str], config_dir: Path | None = None) -> tuple[Point
     several = [axis for axis in axes if len(axis.values) > 1]
     for axis in several:
         if sum(other.key == axis.key for other in axes) > 1:
-            raise ConfigError(f"{axis.token}: {axis.key} is given again beside its several values; give it once")
+            raise ConfigError(f"{shown(axis.token)}: {axis.key} is given again beside its several values; give it once")
     if prod(len(axis.values) for axis in axes) > MOST:
-        asked = " ".join(axis.token for axis in several)
+        asked = " ".join(shown(axis.token) for axis in several)
         raise ConfigError(f"{asked} asks for more than {MOST} cells; a run has no more, so make several of it")
     indices = product(*(range(len(axis.values)) for axis in axes))
     return tuple(
@@ -105,7 +106,7 @@ def _axis(token: str, config_dir: Path | None) -> _Axis:
     _refuse_one_value(token, key)
     values = tuple(dict.fromkeys(_values(override, token, config_dir)))
     if not values:
-        raise ConfigError(f"{token} stands for no value at all")
+        raise ConfigError(f"{shown(token)} stands for no value at all")
     return _Axis(token, key, values, tuple(f"{override.get_key_element()}={value}" for value in values))
 
 
@@ -114,7 +115,7 @@ def _refuse_one_value(token: str, key: str) -> None:
     if head in ONE_VALUE or head in ROOT:
         reason = ONE_VALUE.get(head, "it belongs to the run as a whole")
         hint = f"; {TEXT_WITH_COMMAS.format(key=key)}" if head in ROOT and ROOT[head].kind is str else ""
-        raise ConfigError(f"{token}: {key} takes one value, since {reason}{hint}")
+        raise ConfigError(f"{shown(token)}: {key} takes one value, since {reason}{hint}")
 
 
 def _values(override: Any, token: str, config_dir: Path | None) -> Iterator[str]:  # noqa: ANN401 - Hydra's own class
@@ -128,10 +129,10 @@ def _values(override: Any, token: str, config_dir: Path | None) -> Iterator[str]
         yield from known
     elif isinstance(value, Glob):
         if not known:
-            raise ConfigError(f"{token}: glob(...) chooses among the files of a group, and {key} is none")
+            raise ConfigError(f"{shown(token)}: glob(...) chooses among the files of a group, and {key} is none")
         yield from value.filter(known)
     elif override.is_interval_sweep() or getattr(value, "shuffle", False):
-        raise ConfigError(f"{token}: a table needs values in a fixed order; write them out, {key}=a,b,c")
+        raise ConfigError(f"{shown(token)}: a table needs values in a fixed order; write them out, {key}=a,b,c")
     else:
         try:
             for item in islice(override.sweep_iterator(Transformer.identity), MOST + 1):
@@ -143,6 +144,8 @@ def _values(override: Any, token: str, config_dir: Path | None) -> Iterator[str]
                     check_choice(key, name, config_dir)
                 yield from known if name == ALL else [str(name)]
         except (HydraException, ValueError) as err:
+            if may_be_secret(token):
+                raise ConfigError(f"cannot read {shown(token)!r}") from None
             raise ConfigError(f"cannot read {token!r} ({err})") from err
 
 

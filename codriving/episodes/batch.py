@@ -1,6 +1,6 @@
 """A batch: many units, wherever they are driven, counted as they end."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 
@@ -31,6 +31,7 @@ def run_batch(
     workers: int | str = 1,
     preload: Sequence[str] = (),
     progress: Progress | None = None,
+    watch: Callable[[Report], None] = lambda report: None,
 ) -> BatchReport:
     """Drive a batch; results are kept by the job, this only counts.
 
@@ -38,15 +39,16 @@ def run_batch(
         units: What to drive.
         job: What to do with each; picklable if there are several workers.
         launcher: Where to drive it.
-        workers: Number of processes, or ``auto`` for one a core.
+        workers: Number of processes or threads, or ``auto`` for one a core.
         preload: Modules that all workers need.
         progress: Who is told of each unit.
+        watch: Sees each report, and may raise to stop the batch.
 
     Returns:
         The counts.
 
     Raises:
-        UserError: If the config cannot be built or a result cannot be saved.
+        UserError: If the config cannot be built, a result cannot be saved, or a language model cannot be used any more.
         KeyboardInterrupt: After the processes have been ended; what was saved stays.
     """
     progress = progress or Silent()
@@ -58,4 +60,5 @@ def run_batch(
             if report.ending is Ending.ERROR:
                 failed.append(report)
             progress.update(report.unit.cell, report.ending is Ending.ERROR)
+            watch(report)
     return BatchReport(done, tuple(sorted(failed, key=lambda r: (r.unit.cell, r.unit.seed))))

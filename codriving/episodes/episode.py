@@ -1,9 +1,10 @@
 """The only loop: look, decide, drive, until the episode has an outcome."""
 
 import traceback
-from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
-from time import perf_counter, process_time
+from time import perf_counter, thread_time
 from typing import Any
 
 from codriving.datatypes.outcome import Ending, Outcome
@@ -12,6 +13,7 @@ from codriving.datatypes.score import Score
 from codriving.datatypes.trajectory import Trajectory
 from codriving.episodes.protocols import Environment, Method, Metrics
 from codriving.episodes.unit import Labels
+from codriving.errors import ModelError, ModelUnavailableError
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +26,9 @@ class EpisodeResult:
         decisions: One line a decision step, for ``decisions.jsonl``.
         seconds: Wall-clock time of the episode [s].
         decision_seconds: Wall-clock time of each decision [s].
-        decision_cpu: CPU time of each decision [s].
+        decision_cpu: CPU time of each decision, of the thread that decides [s].
         traceback: Where it went wrong; empty if nothing did.
+        transcript: One line a question that a language model was asked, for ``transcript.jsonl``.
     """
 
     record: EpisodeRecord
@@ -35,6 +38,7 @@ class EpisodeResult:
     decision_seconds: tuple[float, ...]
     decision_cpu: tuple[float, ...] = ()
     traceback: str = ""
+    transcript: tuple[dict[str, Any], ...] = ()
 
 
 @dataclass(slots=True)
@@ -44,15 +48,30 @@ class _Log:
     begun: bool = False
     time: float = 0.0
     decisions: list[dict[str, Any]] = field(default_factory=list)
+    transcript: list[dict[str, Any]] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
     cpu: list[float] = field(default_factory=list)
-    counts: Counter[str] = field(default_factory=Counter)
+    counts: dict[str, int | float] = field(default_factory=dict)
+
+    def add(self, counts: Mapping[str, int | float], transcript: Sequence[Mapping[str, Any]]) -> None:
+        """Note what a step, or a part of one, counted and asked."""
+        for name, number in counts.items():
+            self.counts[name] = self.counts.get(name, 0) + number
+        self.transcript.extend(dict(line) for line in transcript)
 
 
-def run_episode(environment: Environment, method: Method, metrics: Metrics, seed: int, labels: Labels) -> EpisodeResult:
+def run_episode(
+    environment: Environment,
+    method: Method,
+    metrics: Metrics,
+    seed: int,
+    labels: Labels,
+    go_on: Callable[[], None] = lambda: None,
+) -> EpisodeResult:
     """Drive one episode and judge it.
 
-    Whatever goes wrong becomes a record that ends in ``error``; only an interruption by the user passes through.
+    Whatever goes wrong becomes a record that ends in ``error``. An interruption by the user passes through, and so does
+    a language model that must not be used any more: neither is this episode's fault.
 
     Args:
         environment: The world.
@@ -60,9 +79,13 @@ def run_episode(environment: Environment, method: Method, metrics: Metrics, seed
         metrics: What is judged by.
         seed: Seed of the episode; with the same objects it determines the result.
         labels: What the record is labelled with.
+        go_on: Called before each decision; raises what is no ``Exception`` to give the episode up.
 
     Returns:
         Record, trajectory, decisions and timing.
+
+    Raises:
+        ModelError: If the language model must not be used any more.
     """
     log = _Log()
     started = perf_counter()
@@ -70,14 +93,18 @@ def run_episode(environment: Environment, method: Method, metrics: Metrics, seed
     score: Score | None = None
     trace = ""
     try:
-        outcome = _drive(environment, method, seed, log)
+        outcome = _drive(environment, method, seed, log, go_on)
         trajectory = environment.trajectory()
         if outcome.ending is not Ending.ERROR:
             score = metrics.score(trajectory, outcome, environment.road_map)
+    except ModelError:
+        raise
     except Exception as error:
-        trace = traceback.format_exc()
         score = None
         outcome = failure(error, log.time)
+        _note_unfinished(method, log)
+        # Where a server's failure was noticed helps nobody, and what led to it may quote what the server said.
+        trace = f"{outcome.message}\n" if isinstance(error, ModelUnavailableError) else traceback.format_exc()
         trajectory = _salvage(environment) if log.begun else None
     record = EpisodeRecord(
         scenario=labels.scenario,
@@ -99,22 +126,24 @@ def run_episode(environment: Environment, method: Method, metrics: Metrics, seed
         tuple(log.seconds),
         tuple(log.cpu),
         traceback=trace,
+        transcript=tuple(log.transcript),
     )
 
 
-def _drive(environment: Environment, method: Method, seed: int, log: _Log) -> Outcome:
+def _drive(environment: Environment, method: Method, seed: int, log: _Log, go_on: Callable[[], None]) -> Outcome:
     """The loop itself."""
     world = environment.reset(seed)
     log.begun = True
     method.reset(environment.road_map, environment.driving_model, seed)
     while (outcome := environment.outcome) is None:
+        go_on()
         log.time = world.time
-        before, cpu_before = perf_counter(), process_time()
+        before, cpu_before = perf_counter(), thread_time()
         deliberation = method.act(world)
-        log.cpu.append(process_time() - cpu_before)
+        log.cpu.append(thread_time() - cpu_before)
         log.seconds.append(perf_counter() - before)
         log.decisions.append(deliberation.as_dict())
-        log.counts.update(deliberation.counts)
+        log.add(deliberation.counts, getattr(deliberation, "transcript", ()))
         world = environment.step(deliberation.actions)
     return outcome
 
@@ -129,7 +158,8 @@ def failure(error: BaseException, time: float) -> Outcome:
     Returns:
         An outcome that ends in ``error``, with type and text of the error on one line.
     """
-    text = " ".join(str(error).split())
+    # It may quote what a server said, and ends up in tables and on terminals.
+    text = " ".join("".join(c for c in str(error) if c.isprintable() or c.isspace()).split())
     message = f"{type(error).__name__}: {text}" if text else type(error).__name__
     return Outcome(ending=Ending.ERROR, time=time, arrivals={}, message=message)
 
@@ -159,6 +189,14 @@ def failed_result(labels: Labels, seed: int, error: BaseException, trace: str = 
         counts={},
     )
     return EpisodeResult(record, None, (), 0.0, (), traceback=trace)
+
+
+def _note_unfinished(method: Method, log: _Log) -> None:
+    """Note what was asked in the step that broke off: it has been paid for. Only methods that ask a model have it."""
+    unfinished = getattr(method, "unfinished_step", None)
+    if unfinished is not None and log.begun:
+        with suppress(Exception):
+            log.add(*unfinished(log.time))
 
 
 def _salvage(environment: Environment) -> Trajectory | None:

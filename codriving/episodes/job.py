@@ -60,19 +60,20 @@ class Report:
 
 
 KEPT = 4
-"""Cells whose objects a process keeps."""
+"""Cells whose objects a worker keeps."""
 
 
 class Worker:
-    """Drives the units of one process."""
+    """Drives units one after another, with objects of its own."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: Job, go_on: Callable[[], None] = lambda: None) -> None:
         """Prepare; objects are built when the first unit of their cell comes.
 
         Args:
             job: What to do.
+            go_on: Called before each decision; raises what is no ``Exception`` to give the episode up.
         """
-        self._job = job
+        self._job, self._go_on = job, go_on
         self._objects: dict[str, Objects] = {}
 
     def run(self, unit: Unit) -> Report:
@@ -85,7 +86,8 @@ class Worker:
             How it ended; an episode that fails is saved as a record that says so.
 
         Raises:
-            UserError: If the config cannot be built or the result cannot be saved: the whole batch has to stop.
+            UserError: If the config cannot be built, the result cannot be saved, or the language model must not be used
+                any more: the whole batch has to stop.
         """
         after = self._job.after
         kept = after.kept(unit) if after else None
@@ -141,4 +143,4 @@ class Worker:
             raise
         except Exception as error:
             return failed_result(labels, unit.seed, error, traceback.format_exc())
-        return run_episode(*self._objects[unit.cell], seed=unit.seed, labels=labels)
+        return run_episode(*self._objects[unit.cell], seed=unit.seed, labels=labels, go_on=self._go_on)

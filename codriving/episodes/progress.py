@@ -1,7 +1,7 @@
 """How far a batch is: a bar on a terminal, a few plain lines in a pipe."""
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Protocol, TextIO
 
@@ -50,9 +50,8 @@ class _Count:
 class _Lines:
     """About ten lines a batch, for logs."""
 
-    def __init__(self, count: _Count, stream: TextIO) -> None:
-        self._count = count
-        self._stream = stream
+    def __init__(self, count: _Count, stream: TextIO, note: Callable[[], str] | None) -> None:
+        self._count, self._stream, self._note = count, stream, note
         self._every = max(1, count.total // 10)
 
     def update(self, cell: str, failed: bool) -> None:
@@ -60,17 +59,21 @@ class _Lines:
         count.add(cell, failed)
         if count.done % self._every == 0 or count.done == count.total:
             cells = f", {count.cells} complete" if count.cells else ""
-            text = f"{count.done} of {count.total} episodes done, {count.failed} failed{cells}"
+            note = f"; {self._note()}" if self._note else ""
+            text = f"{count.done} of {count.total} episodes done, {count.failed} failed{cells}{note}"
             print(text, file=self._stream, flush=True)
 
 
 @contextmanager
-def show_progress(units: Mapping[str, int], stream: TextIO | None = None) -> Iterator[Progress]:
+def show_progress(
+    units: Mapping[str, int], stream: TextIO | None = None, note: Callable[[], str] | None = None
+) -> Iterator[Progress]:
     """Show how far a batch is while the block lasts.
 
     Args:
         units: Number of units of each cell.
         stream: Where to show it; standard error by default, so that a pipe gets the table alone.
+        note: Gives what else is worth knowing at the moment, in a few words; called from other threads too.
 
     Yields:
         Whom to tell.
@@ -78,11 +81,26 @@ def show_progress(units: Mapping[str, int], stream: TextIO | None = None) -> Ite
     stream = stream or sys.stderr
     count = _Count(units)
     if not stream.isatty():
-        yield _Lines(count, stream)
+        yield _Lines(count, stream, note)
         return
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        ProgressColumn,
+        Task,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
     from rich.progress import Progress as Bar
+    from rich.text import Text
+
+    class _Note(ProgressColumn):
+        """Asked anew each time that the bar is drawn, so that it moves between two episodes too."""
+
+        def render(self, task: Task) -> Text:
+            return Text(note() if note else "")
 
     columns = (
         TextColumn("episodes"),
@@ -93,6 +111,7 @@ def show_progress(units: Mapping[str, int], stream: TextIO | None = None) -> Ite
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
+        *([_Note()] if note else []),
     )
     with Bar(*columns, console=Console(file=stream)) as bar:
         task = bar.add_task("episodes", total=count.total, failed=0, cells=count.cells)

@@ -23,8 +23,8 @@ class Deliberation(Protocol):
         ...
 
     @property
-    def counts(self) -> Mapping[str, int]:
-        """Counters of this step (fallbacks, repaired orders, ...), summed over the episode."""
+    def counts(self) -> Mapping[str, int | float]:
+        """Counters of this step (fallbacks, repaired orders, cost, ...), summed over the episode."""
         ...
 
     def as_dict(self) -> dict[str, Any]:
@@ -64,7 +64,11 @@ class Environment(Protocol):
 
 
 class Method(Protocol):
-    """Who decides for all CAVs."""
+    """Who decides for all CAVs.
+
+    A method that asks a language model may also have ``unfinished_step(time)``: it gives counters and lines of the
+    transcript of a step that an error has broken off.
+    """
 
     @property
     def name(self) -> str:

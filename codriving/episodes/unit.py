@@ -37,7 +37,7 @@ class Unit:
 
 
 class Objects(NamedTuple):
-    """What the episodes of one cell are driven with, built once a process.
+    """What the episodes of one cell are driven with, built once a worker.
 
     Attributes:
         environment: The world.

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from codriving.config.build import build
-from codriving.config.show import WITHOUT_EFFECT, fingerprint, show
+from codriving.config.show import fingerprint, relevant, show
 from codriving.config.sweep import Point
 from codriving.episodes.unit import Labels
 from codriving.errors import ConfigError
@@ -45,7 +45,6 @@ class Cell:
 
     def entry(self) -> CellEntry:
         """Describe it for the manifest."""
-        relevant = {name: value for name, value in self.resolved.items() if name not in WITHOUT_EFFECT}
         return CellEntry(
             folder=self.folder,
             scenario=self.labels.scenario,
@@ -54,7 +53,7 @@ class Cell:
             reasoner=self.labels.reasoner,
             fingerprint=self.fingerprint,
             swept=dict(self.swept),
-            settings=flat(redact(relevant)),
+            settings=flat(redact(relevant(self.resolved))),
         )
 
 

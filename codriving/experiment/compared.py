@@ -13,6 +13,7 @@ from codriving.reports.load import load_columns, load_rows
 from codriving.reports.load_display import load_display
 from codriving.reports.load_figure import load_figure
 from codriving.reports.markdown import markdown_text
+from codriving.reports.model_columns import FALLBACK_RATE
 from codriving.reports.pairs_display import paired_display
 from codriving.reports.paper import read_paper
 from codriving.reports.run_tables import Table
@@ -34,7 +35,8 @@ def baselines(driven: Driven) -> Further:
         blocks.setdefault(setting(cell.resolved), []).append(entry)
     rows = [row for block in blocks.values() for row in comparison_rows(block, COMPARED, paper)]
     swept = swept_keys(entry for block in blocks.values() for entry in block)
-    table = Table(comparison_columns(swept), tuple(row.row for row in rows), swept, TEXT)
+    model = any(FALLBACK_RATE in row.row for row in rows)
+    table = Table(comparison_columns(swept, model), tuple(row.row for row in rows), swept, TEXT)
     kept, printed = (measured_display(rows, paper, metrics, swept, cpu) for cpu in (False, True))
     against = paired_display(rows, metrics, swept)
     page = markdown_text(kept) + (f"\n{markdown_text(against, level=2)}" if against else "")
@@ -55,7 +57,8 @@ def load(driven: Driven) -> Further:
     loads = list(dict.fromkeys(cavs for cavs, _ in cells))
     rows = load_rows(cells, COMPARED)
     swept = swept_keys(entry for _, entry in cells)
-    table = Table(load_columns(loads, swept), tuple(row.row() for row in rows), swept, TEXT)
+    model = any(row.model for row in rows)
+    table = Table(load_columns(loads, swept, model), tuple(row.row() for row in rows), swept, TEXT)
     kept, printed = (load_display(rows, loads, driven.metrics, swept, cpu) for cpu in (False, True))
     files = {"load.csv": table.csv().encode(), "load.md": markdown_text(kept).encode()}
     figures = {f"figures/{name}": content for name, content in load_figure(rows, loads, driven.metrics).items()}

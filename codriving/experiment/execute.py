@@ -10,24 +10,28 @@ from typing import Any
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
-from codriving.episodes.batch import run_batch
 from codriving.episodes.job import Job, Report
 from codriving.episodes.progress import Progress, Silent
 from codriving.episodes.unit import Objects, Unit
+from codriving.errors import ModelError
+from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell
 from codriving.experiment.film import FilmEpisode
 from codriving.experiment.further import Driven, Further
 from codriving.experiment.keep import KeepEpisode
 from codriving.experiment.plan import Plan
+from codriving.experiment.shares import run_shares
+from codriving.experiment.stopping import HaltedError, Interrupted
 from codriving.reports.display import Display
 from codriving.reports.paper import Paper
 from codriving.reports.rows import Row, csv_text
 from codriving.reports.run_tables import RunTables, run_tables, write_tables
-from codriving.reports.timing_table import timing_columns, timing_rows
+from codriving.reports.timing_table import seconds_per_decision, timing_columns, timing_rows
 from codriving.storage.atomic import write_text
 from codriving.storage.continuation import changed_versions
-from codriving.storage.manifest import FORMAT, CellEntry, Manifest
+from codriving.storage.manifest import FORMAT, MANIFEST, CellEntry, Manifest
 from codriving.storage.provenance import commit, machine, versions
+from codriving.storage.redaction import variables_in
 from codriving.storage.run_folder import RunFolder, new_run_path, unwritable
 from codriving.storage.timing import Timing, read_timing
 
@@ -63,24 +67,7 @@ class Finished:
     @property
     def displays(self) -> tuple[Display, ...]:
         """What is printed."""
-        return self.extra.displays or (self.tables.display,)
-
-
-class Interrupted(KeyboardInterrupt):
-    """Raised when the user stops a batch, after everything has been put in order."""
-
-    def __init__(self, folder: Path, finished: int, planned: int) -> None:
-        """Say what there is.
-
-        Args:
-            folder: The run folder.
-            finished: Episodes that are kept.
-            planned: Episodes of the whole run.
-        """
-        super().__init__(f"stopped with {finished} of {planned} episodes finished")
-        self.folder = folder
-        self.finished = finished
-        self.planned = planned
+        return self.extra.displays or (self.tables.printed,)
 
 
 def execute(
@@ -88,7 +75,9 @@ def execute(
     build: Callable[[Mapping[str, Mapping[str, Any]]], Callable[[str], Objects]],
     preload: Sequence[str] = (),
     paper: Paper | None = None,
-    progress: Callable[[Mapping[str, int]], AbstractContextManager[Progress]] = lambda _: nullcontext(Silent()),
+    progress: Callable[[Mapping[str, int], Callable[[], str] | None], AbstractContextManager[Progress]] = (
+        lambda units, note: nullcontext(Silent())
+    ),
     extend: Callable[[Driven], Further] = lambda _: Further(),
 ) -> Finished:
     """Run a plan, or what is left of it.
@@ -99,16 +88,22 @@ def execute(
             that name; the latter is picklable.
         preload: Modules imported once for all processes.
         paper: The paper's numbers, to stand beside ours.
-        progress: Opens a display of the progress of so many units of each cell.
+        progress: Opens a display of the progress of so many units of each cell, and of what a note says about the
+            language models that are asked.
         extend: Makes what the command has beyond the tables of every run.
 
     Returns:
         The finished run.
 
     Raises:
-        UserError: If the folder cannot be used or the objects cannot be built.
+        UserError: If the folder cannot be used, the objects cannot be built or a language model cannot be reached.
+        HaltedError: If the language model must not be used any more; finished episodes are kept.
         Interrupted: If the user stops it; finished episodes are kept.
     """
+    is_new = plan.run is None or not (plan.output / plan.experiment / plan.run / MANIFEST).exists()
+    if is_new:
+        # Before the folder is made: a model that cannot be reached leaves nothing behind.
+        Asked(plan.cells).preflight()
     configs = {cell.folder: cell.config_text for cell in plan.cells}
     asked = _manifest(plan)
     with RunFolder(_path(plan), asked, configs) as folder:
@@ -122,22 +117,30 @@ def execute(
         film = FilmEpisode(folder.path, {entry.folder: entry for entry in entries}) if plan.render else None
         unfilmed = [unit for unit in units if film and unit in records and film.lacks(unit)]
         resolved = {cell.folder: cell.resolved for cell in cells}
-        job = Job({cell.folder: cell.labels for cell in cells}, build(resolved), KeepEpisode(folder.path), film)
+        keep = KeepEpisode(folder.path, variables_in([cell.resolved for cell in cells]))
+        job = Job({cell.folder: cell.labels for cell in cells}, build(resolved), keep, film)
         failed: tuple[Report, ...] = ()
         todo = missing + unfilmed
+        incomplete = {unit.cell for unit in missing}
+        models = Asked(cell for cell in cells if cell.folder in incomplete)
+        if not is_new:
+            models.preflight()
         try:
             if todo:
-                with progress(Counter(unit.cell for unit in todo)) as display:
-                    failed = run_batch(todo, job, plan.launcher, plan.workers, preload, display).failed
+                with progress(Counter(unit.cell for unit in todo), models.usage if models.models else None) as display:
+                    failed = run_shares(missing, unfilmed, job, plan, models, preload, display)
         except KeyboardInterrupt:
             finished = len(_records(folder, entries, plan.seeds, records))
             raise Interrupted(folder.path, finished, len(units)) from None
+        except ModelError as error:
+            finished = len(_records(folder, entries, plan.seeds, records))
+            raise HaltedError(error, folder.path, finished, len(units)) from error
         finally:
             folder.clean()
         everything = _records(folder, entries, plan.seeds, records, errors=True)
         rows = [[everything[Unit(cell.folder, seed)] for seed in plan.seeds] for cell in cells]
-        tables = _tables(plan, cells, rows, paper or Paper())
         driven = Driven(cells, rows, _timings(folder, cells, rows))
+        tables = _tables(plan, driven, paper or Paper())
         extra = extend(driven)
         _write(folder, tables, _timing_table(driven), extra)
         kept = len(units) - len(missing)
@@ -187,9 +190,10 @@ def _records(
     return found
 
 
-def _tables(plan: Plan, cells: Sequence[Cell], rows: Sequence[Sequence[EpisodeRecord]], paper: Paper) -> RunTables:
-    metrics = ", ".join(dict.fromkeys(cell.metrics for cell in cells))
-    return run_tables(rows, paper, metrics, [cell.swept for cell in cells], plan.notes)
+def _tables(plan: Plan, driven: Driven, paper: Paper) -> RunTables:
+    seconds = [seconds_per_decision(timings) for timings in driven.timings]
+    swept = [cell.swept for cell in driven.cells]
+    return run_tables(driven.records, paper, driven.metrics, swept, plan.notes, seconds)
 
 
 def _timings(

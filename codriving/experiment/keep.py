@@ -6,6 +6,7 @@ from pathlib import Path
 from codriving.episodes.episode import EpisodeResult
 from codriving.episodes.unit import Unit
 from codriving.storage.episode_folder import write_episode
+from codriving.storage.redaction import secrets_of
 from codriving.storage.run_folder import EPISODES
 from codriving.storage.timing import timing_of
 
@@ -16,9 +17,11 @@ class KeepEpisode:
 
     Attributes:
         folder: The run folder.
+        variables: Names of the environment variables whose values must not get into it.
     """
 
     folder: Path
+    variables: tuple[str, ...] = ()
 
     def __call__(self, unit: Unit, result: EpisodeResult) -> None:
         """Write one episode, whole or not at all.
@@ -38,4 +41,6 @@ class KeepEpisode:
             result.decisions,
             timing_of(result.seconds, result.decision_seconds, result.decision_cpu),
             result.traceback,
+            result.transcript,
+            secrets_of(self.variables),
         )

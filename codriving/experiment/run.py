@@ -3,21 +3,23 @@
 import shlex
 import sys
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from codriving.config.locate import experiments_dir
 from codriving.config.sweep import Point, expand
-from codriving.episodes.progress import show_progress
-from codriving.errors import ConfigError
+from codriving.episodes.progress import Progress, show_progress
+from codriving.errors import ConfigError, ModelError
 from codriving.experiment.ablation import ablation_points
 from codriving.experiment.cells import Cell
-from codriving.experiment.execute import Finished, Interrupted, execute
+from codriving.experiment.execute import Finished, execute
 from codriving.experiment.further import Driven, Further
 from codriving.experiment.objects import BuildObjects, modules_to_preload
 from codriving.experiment.plan import Plan, make_plan
+from codriving.experiment.stopping import HaltedError, Interrupted
 from codriving.reports.console import print_table
 from codriving.reports.paper import read_paper
 
@@ -129,7 +131,11 @@ def drive(
 def _run(plan: Plan, extend: Callable[[Driven], Further] | None) -> Finished:
     preload = [*modules_to_preload(plan.configs.values()), *(["codriving.pictures.screening"] if plan.render else [])]
     further = extend or (lambda _: Further())
-    return execute(plan, BuildObjects, preload, read_paper(experiments_dir()), show_progress, further)
+
+    def progress(units: Mapping[str, int], note: Callable[[], str] | None) -> AbstractContextManager[Progress]:
+        return show_progress(units, note=note)
+
+    return execute(plan, BuildObjects, preload, read_paper(experiments_dir()), progress, further)
 
 
 def command(
@@ -164,6 +170,9 @@ def command(
         print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)
         print(f"Go on with: {again}", file=sys.stderr)
         return INTERRUPTED
+    except HaltedError as stop:
+        again = resume_command(name, overrides, config_dir, stop.folder.name)
+        raise ModelError(f"{stop.text}; go on with: {again}") from stop
     report(finished, resume_command(name, overrides, config_dir, finished.folder.name))
     return 1 if finished.failed or finished.unfilmed else 0
 

@@ -1,6 +1,6 @@
 """CoDrivingLLM: the paper's method, with its CDA level, its reasoner and its memory put into the slots."""
 
-from typing import Protocol
+from typing import Any
 
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.world import WorldState
@@ -9,11 +9,10 @@ from codriving.geometry.road_map import RoadMap
 from codriving.methods.deliberation import Deliberation
 from codriving.methods.perception import Perception
 from codriving.methods.pipeline import Pipeline
+from codriving.methods.ports import Reasoner, check_prompts, ports
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.cda import CdaLevel
-from codriving.reasoning.decision.rules import RuleDecider
 from codriving.reasoning.intent_sharing import HiddenIntents, SharedIntents
-from codriving.reasoning.negotiation.coordinator import RuleCoordinator
 from codriving.reasoning.negotiation.negotiation import AgreedOrder, Negotiation
 from codriving.reasoning.negotiation.own_order import OwnOrders
 from codriving.reasoning.plans import PLANS
@@ -21,16 +20,6 @@ from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
 from codriving.reasoning.safety.outlook import CONTINUATIONS
 from codriving.reasoning.state_sharing import SensedStates, SharedStates
 from codriving.reasoning.tracking import Tracking
-
-
-class Reasoner(Protocol):
-    """Who stands behind the two ports, Coordinator and Decider.
-
-    Attributes:
-        name: Name for tables: ``rules``, or that of a model.
-    """
-
-    name: str
 
 
 class CoDriving:
@@ -51,7 +40,8 @@ class CoDriving:
     def __init__(self, cda: CdaLevel, llm: Reasoner, memory: object | None, margin: float) -> None:
         if not 0 <= margin <= 5:
             raise ConfigError(f"margin must be 0 to 5 s, got {margin:g}")
-        self.cda, self.memory, self.margin = cda, memory, margin
+        check_prompts(llm)
+        self.cda, self.llm, self.memory, self.margin = cda, llm, memory, margin
         self.variant, self.reasoner = cda.variant, llm.name
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
@@ -63,11 +53,19 @@ class CoDriving:
             seed: Seed of the episode.
         """
         forecast = Forecast(model, (*CONTINUATIONS, *PLANS))
+        coordinator, decider, ledger = ports(
+            llm=self.llm,
+            road_map=road_map,
+            forecast=forecast,
+            binding=self.cda.binding,
+            sees_conflicts=self.cda.intent_sharing,
+        )
         negotiation: Negotiation
         if self.cda.negotiation:
-            negotiation = AgreedOrder(RuleCoordinator(road_map, forecast, self.cda.binding))
+            negotiation = AgreedOrder(coordinator)
         else:
             negotiation = OwnOrders(road_map, forecast, self.cda.own_order, seed)
+        self._ledger = ledger
         self._pipeline = Pipeline(
             perception=Perception(
                 road_map=road_map,
@@ -78,8 +76,9 @@ class CoDriving:
             ),
             negotiation=negotiation,
             safety=ThreeLayers() if self.cda.safety_check else NoCheck(),
-            decider=RuleDecider(),
+            decider=decider,
             margin=self.margin,
+            ledger=ledger,
         )
 
     def act(self, world: WorldState) -> Deliberation:
@@ -89,3 +88,14 @@ class CoDriving:
             world: The world.
         """
         return self._pipeline.act(world)
+
+    def unfinished_step(self, time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:
+        """Return what was asked in a step that broke off, so that its cost is not lost.
+
+        Args:
+            time: Simulated time of the step [s].
+
+        Returns:
+            Counters by column, and the lines of the transcript.
+        """
+        return self._ledger.close_step(time) if self._ledger is not None else ({}, [])

@@ -10,6 +10,7 @@ from codriving.datatypes.scene_description import SceneDescription
 from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
+from codriving.llm.ledger import Ledger
 from codriving.methods.deliberation import Deliberation
 from codriving.methods.perception import Perception
 from codriving.prediction.forecast import Forecast
@@ -32,6 +33,7 @@ class Pipeline:
         safety: The three-layer check, or none.
         decider: Rules or a language model.
         margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
+        ledger: What is asked of a language model; None if none is.
     """
 
     perception: Perception
@@ -39,6 +41,7 @@ class Pipeline:
     safety: SafetyCheck
     decider: Decider
     margin: float
+    ledger: Ledger | None = None
 
     def act(self, world: WorldState) -> Deliberation:
         """Decide for every CAV on the road.
@@ -57,7 +60,8 @@ class Pipeline:
             for ego in scenes
         )
         decisions = tuple(self.decider.decide(situations))
-        return Deliberation(world.time, world.step, situations, decisions, {})
+        counts, lines = self.ledger.close_step(world.time) if self.ledger is not None else ({}, [])
+        return Deliberation(world.time, world.step, situations, decisions, counts, tuple(lines))
 
     @property
     def road_map(self) -> RoadMap:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from codriving.datatypes.record import EpisodeRecord
+from codriving.reports.model_columns import FALLBACK_RATE
 from codriving.reports.pairs import PAIRED, better_in, paired, worse_in
 from codriving.reports.paper import Paper
 from codriving.reports.rows import Row
@@ -77,15 +78,17 @@ class Compared:
     cpu: float | None = None
 
 
-def comparison_columns(swept: Sequence[str] = ()) -> tuple[str, ...]:
+def comparison_columns(swept: Sequence[str] = (), model: bool = False) -> tuple[str, ...]:
     """Give the columns of ``comparison.csv``.
 
     Args:
         swept: Swept keys that need a column.
+        model: Whether a language model reasons in any row.
     """
     quoted = (f"paper_{name}" for name in QUOTED)
     labels = ("scenario", "method", "variant", "reasoner", "status")
-    return (*labels, *swept, *MEASURED, *PAIRED, "better_in", "worse_in", *quoted)
+    asked = (FALLBACK_RATE,) if model else ()
+    return (*labels, *swept, *MEASURED, *asked, *PAIRED, "better_in", "worse_in", *quoted)
 
 
 def comparison_rows(block: Sequence[Entry], methods: Sequence[str], paper: Paper) -> list[Compared]:
@@ -115,6 +118,7 @@ def _row(entry: Entry, reference: Entry | None, paper: Paper) -> Compared:
         against = {**against, "better_in": " ".join(better_in(against)), "worse_in": " ".join(worse_in(against))}
     row = {
         **{name: summary[name] for name in ("scenario", "method", "variant", "reasoner", *MEASURED)},
+        **{name: summary[name] for name in (FALLBACK_RATE,) if name in summary},
         "status": DRIVEN,
         **entry.swept,
         **against,

@@ -5,6 +5,8 @@ from dataclasses import replace
 
 from codriving.reports.comparison import METHOD_CHOICE, MISSING, Compared
 from codriving.reports.display import NOTES, Display, Line
+from codriving.reports.model_columns import FALLBACK_RATE
+from codriving.reports.model_display import FALLBACK_NOTE, FALLBACKS
 from codriving.reports.paper import Paper
 from codriving.reports.rows import Row
 from codriving.reports.wording import (
@@ -51,7 +53,8 @@ def measured_display(
     Returns:
         The table, the paper's row below each of ours.
     """
-    columns = (*labels(rows, swept), *_MEASURED, *([CPU] if cpu else []))
+    asked = [FALLBACKS] if any(FALLBACK_RATE in compared.row for compared in rows) else []
+    columns = (*labels(rows, swept), *_MEASURED, *asked, *([CPU] if cpu else []))
     lines: list[Line] = []
     for index, compared in enumerate(rows):
         row = compared.row
@@ -81,6 +84,7 @@ def further_notes(rows: Sequence[Row], cpu: bool) -> list[str]:
     """
     missing = dict.fromkeys(str(row["method"]) for row in rows if row["status"] == MISSING)
     return [
+        *([FALLBACK_NOTE] if any(FALLBACK_RATE in row for row in rows) else []),
         *([ALGORITHM] if any(row.get("reasoner") == "none" for row in rows) else []),
         *([f"{MISSING.capitalize()}: {', '.join(missing)}; to come in a later release."] if missing else []),
         *([CPU_NOTE] if cpu else []),
@@ -99,6 +103,7 @@ def _measured(compared: Compared) -> dict[str, str]:
         "PET mean / max / min [s]": three(row, "pet"),
         "PET < 1.5 s": percent(row["pet_below_1_5"]),
         "velocity mean / max / min [m/s]": three(row, "velocity"),
+        FALLBACKS: percent(row.get(FALLBACK_RATE)),
         CPU: fixed(compared.cpu * 1000) if compared.cpu is not None else "-",
     }
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from codriving.reports.model_display import model_heads, model_notes, model_texts
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.rows import Row, Value
 from codriving.reports.wording import episodes_text, interval_text, metrics_text, percent, reasoner_text, three
@@ -51,7 +52,12 @@ class Display:
 
 
 def display(
-    rows: Sequence[Row], paper: Paper, metrics: str = "standard", swept: Sequence[str] = (), notes: Sequence[str] = ()
+    rows: Sequence[Row],
+    paper: Paper,
+    metrics: str = "standard",
+    swept: Sequence[str] = (),
+    notes: Sequence[str] = (),
+    seconds: Sequence[float | None] = (),
 ) -> Display:
     """Prepare the summary for people.
 
@@ -61,6 +67,8 @@ def display(
         metrics: Name of the definitions by which it was measured.
         swept: Swept keys that need a column.
         notes: What a reader has to know of these rows.
+        seconds: Wall-clock time of a decision step in each row [s], shown where a language model reasons; nothing for
+            what has to repeat to the byte.
 
     Returns:
         The table. A column of scenarios or of statements is there only where it says something.
@@ -84,18 +92,21 @@ def display(
         "PET mean / max / min [s]",
         "PET < 1.5 s",
         "velocity mean / max / min [m/s]",
+        *model_heads(rows, bool(seconds)),
         *([CLAIM] if ablation else []),
     )
     words = ("scenario", "method", CLAIM, *(key for key in swept if not all(_is_number(row.get(key)) for row in rows)))
     theirs = _beside(rows, paper)
     lines: list[Line] = []
     for index, (row, claim) in enumerate(zip(rows, claims, strict=True)):
-        lines.append(_line(columns, {**_ours(row, claim), **{key: str(row.get(key, "")) for key in swept}}))
+        model = model_texts(row, seconds[index] if seconds else None)
+        lines.append(_line(columns, {**_ours(row, claim), **model, **{key: str(row.get(key, "")) for key in swept}}))
         if index in theirs:
             lines.append(_line(columns, _theirs(row, theirs[index]), ours=False))
         if index + 1 < len(rows) and rows[index + 1]["scenario"] != row["scenario"]:
             lines[-1] = replace(lines[-1], last=True)
-    return Display(_title(scenarios, rows, metrics), columns, words, tuple(lines), (*NOTES, *notes))
+    told = (*NOTES, *model_notes(rows, bool(seconds)), *notes)
+    return Display(_title(scenarios, rows, metrics), columns, words, tuple(lines), told)
 
 
 def _line(columns: Sequence[str], texts: Mapping[str, str], ours: bool = True) -> Line:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
+from codriving.reports.model_columns import counted, counter_columns
 from codriving.reports.rows import Row, Value
 from codriving.reports.statistics import mean
 
@@ -42,9 +43,8 @@ def episode_columns(records: Iterable[EpisodeRecord], swept: Sequence[str] = ())
     Returns:
         Columns in order.
     """
-    counters = sorted({name for record in records for name in record.counts})
     known = (*LEADING, *swept, *FURTHER)
-    return (*known, *(name for name in counters if name not in known))
+    return (*known, *counter_columns(records, known))
 
 
 def episode_rows(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | None = None) -> list[Row]:
@@ -67,7 +67,7 @@ def _row(record: EpisodeRecord) -> Row:
     travels = record.score.travels if record.score else ()
     kinds = [participant.kind for participant in record.participants]
     row: dict[str, Value] = {
-        **record.counts,
+        **counted([record]),
         "scenario": record.scenario,
         "method": record.method,
         "variant": record.variant,

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from codriving.reports.comparison import DRIVEN, METHOD_CHOICE, MISSING, Entry
+from codriving.reports.model_columns import FALLBACK_RATE
 from codriving.reports.rows import Row, Value
 from codriving.reports.summary import summary_row
 
@@ -33,21 +34,33 @@ class Loaded:
     at: dict[int, Row] = field(default_factory=dict)
     cpu: dict[int, float | None] = field(default_factory=dict)
 
+    @property
+    def model(self) -> bool:
+        """Whether a language model reasons."""
+        return any(FALLBACK_RATE in row for row in self.at.values())
+
     def row(self) -> Row:
         """Give its columns in ``load.csv``."""
-        measured = {f"{name}_{cavs}": row[name] for cavs, row in self.at.items() for name in AT_EACH}
+        measured = {
+            f"{name}_{cavs}": row[name]
+            for cavs, row in self.at.items()
+            for name in (*AT_EACH, FALLBACK_RATE)
+            if name in row
+        }
         return {**self.labels, "episodes": next((row["episodes"] for row in self.at.values()), None), **measured}
 
 
-def load_columns(loads: Sequence[int], swept: Sequence[str] = ()) -> tuple[str, ...]:
+def load_columns(loads: Sequence[int], swept: Sequence[str] = (), model: bool = False) -> tuple[str, ...]:
     """Give the columns of ``load.csv``.
 
     Args:
         loads: The numbers of CAVs.
         swept: Swept keys that need a column, without the number of CAVs.
+        model: Whether a language model reasons in any row.
     """
+    at_each = (*AT_EACH, *([FALLBACK_RATE] if model else []))
     labels = ("scenario", "method", "variant", "reasoner", "status")
-    return (*labels, *swept, "episodes", *(f"{name}_{cavs}" for name in AT_EACH for cavs in loads))
+    return (*labels, *swept, "episodes", *(f"{name}_{cavs}" for name in at_each for cavs in loads))
 
 
 def load_rows(cells: Sequence[tuple[int, Entry]], methods: Sequence[str]) -> list[Loaded]:

@@ -8,6 +8,8 @@ from codriving.reports.comparison import METHOD_CHOICE, MISSING
 from codriving.reports.comparison_display import further_notes
 from codriving.reports.display import Display, Line
 from codriving.reports.load import Loaded
+from codriving.reports.model_columns import FALLBACK_RATE
+from codriving.reports.model_display import FALLBACK_NOTE, FALLBACKS
 from codriving.reports.rows import Row
 from codriving.reports.wording import fixed, metrics_text, percent, reasoner_text
 
@@ -29,7 +31,9 @@ def load_display(
     Returns:
         The table.
     """
-    measures = ("success (95 %)", "velocity [m/s]", *(["CPU [ms]"] if cpu else []))
+    model = any(row.model for row in rows)
+    asked = [FALLBACKS] if model else []
+    measures = ("success (95 %)", "velocity [m/s]", *asked, *(["CPU [ms]"] if cpu else []))
     heads = [f"{measure}, {cavs} CAVs" for measure in measures for cavs in loads]
     columns = ("scenario", "method", *swept, "reasoner", "episodes", *heads)
     lines = [Line(tuple(_texts(row, loads, swept).get(column, "") for column in columns)) for row in rows]
@@ -38,7 +42,7 @@ def load_display(
         if any(one.labels[key] != following.labels[key] for key in keys):
             lines[index] = replace(lines[index], last=True)
     words = ("scenario", "method", *swept, "reasoner")
-    notes = (NOTE, *further_notes([row.labels for row in rows], cpu))
+    notes = (NOTE, *([FALLBACK_NOTE] if model else []), *further_notes([row.labels for row in rows], cpu))
     return Display(load_title(rows, metrics), columns, words, tuple(lines), notes)
 
 
@@ -75,6 +79,7 @@ def _texts(row: Loaded, loads: Sequence[int], swept: Sequence[str]) -> dict[str,
             at, cpu = row.at[cavs], row.cpu[cavs]
             texts[f"success (95 %), {cavs} CAVs"] = _success(at)
             texts[f"velocity [m/s], {cavs} CAVs"] = fixed(at["velocity_mean"], 2) or "-"
+            texts[f"{FALLBACKS}, {cavs} CAVs"] = percent(at.get(FALLBACK_RATE))
             texts[f"CPU [ms], {cavs} CAVs"] = fixed(cpu * 1000) if cpu is not None else "-"
     return texts
 

@@ -61,12 +61,14 @@ class RunTables:
     Attributes:
         episodes: One row an episode.
         summary: One row a cell.
-        display: The summary as people read it.
+        display: The summary as people read it, of ``summary.md``.
+        printed: The same as it is printed, with what differs from run to run.
     """
 
     episodes: Table
     summary: Table
     display: Display
+    printed: Display
 
 
 def run_tables(
@@ -75,6 +77,7 @@ def run_tables(
     metrics: str = "standard",
     swept: Sequence[Mapping[str, str]] = (),
     notes: Sequence[str] = (),
+    seconds: Sequence[float | None] = (),
 ) -> RunTables:
     """Make all tables of a run.
 
@@ -84,6 +87,8 @@ def run_tables(
         metrics: Name of the definitions by which they were scored.
         swept: Each cell's value of the swept keys that need a column, by key; nothing where no key was swept.
         notes: What a reader has to know of these cells.
+        seconds: Wall-clock time of a decision step in each cell [s], None where that is lost; nothing where it is not
+            to be shown.
 
     Returns:
         The tables; they depend on nothing else.
@@ -97,6 +102,7 @@ def run_tables(
         episodes=Table(episode_columns(records, keys), tuple(episodes), keys),
         summary=Table(summary_columns(records, keys), rows, keys),
         display=display(rows, paper, metrics, keys, notes),
+        printed=display(rows, paper, metrics, keys, notes, seconds),
     )
 
 

@@ -7,6 +7,7 @@ from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
 from codriving.metrics.wilson import wilson_interval
 from codriving.reports.episodes_table import LABELS
+from codriving.reports.model_columns import FALLBACK_RATE, counted, counter_columns, fallback_rate, reasoned
 from codriving.reports.rows import Row, Value
 from codriving.reports.statistics import mean, median, share
 
@@ -61,9 +62,8 @@ def summary_columns(records: Iterable[EpisodeRecord], swept: Sequence[str] = ())
     Returns:
         Columns in order.
     """
-    counters = sorted({name for record in records for name in record.counts})
     known = (*LEADING, *swept, *FURTHER)
-    return (*known, *(name for name in counters if name not in known))
+    return (*known, *counter_columns(records, known, rate=True))
 
 
 def summary_row(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | None = None) -> Row:
@@ -84,11 +84,10 @@ def summary_row(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | Non
     low, high = _interval(len(successes), len(completed))
     planned_low, planned_high = _interval(len(successes), planned)
     pairs = Counter(record.outcome.collision.pair for record in completed if record.outcome.collision is not None)
-    counters: Counter[str] = Counter()
-    for record in records:
-        counters.update(record.counts)
+    counters = counted(records)
     return {
         **counters,
+        **({FALLBACK_RATE: fallback_rate(counters)} if any(map(reasoned, records)) else {}),
         "scenario": first.scenario,
         "method": first.method,
         "variant": first.variant,

@@ -59,6 +59,18 @@ def timing_rows(
     ]
 
 
+def seconds_per_decision(timings: Iterable[Timing | None]) -> float | None:
+    """Give the wall-clock time that one decision took, over all decisions of a cell.
+
+    Args:
+        timings: Timing of each episode, None where that is lost.
+
+    Returns:
+        The mean [s], or None where nothing was measured.
+    """
+    return _mean([(t.decisions, t.decision_mean) for t in timings if t and t.decision_mean is not None])
+
+
 def cpu_per_decision(timings: Iterable[Timing | None]) -> float | None:
     """Give the CPU time that one decision took, over all decisions of a cell.
 
@@ -68,6 +80,10 @@ def cpu_per_decision(timings: Iterable[Timing | None]) -> float | None:
     Returns:
         The mean [s], or None where nothing was measured.
     """
-    known = [(t.decisions, t.decision_cpu_mean) for t in timings if t and t.decision_cpu_mean is not None]
+    return _mean([(t.decisions, t.decision_cpu_mean) for t in timings if t and t.decision_cpu_mean is not None])
+
+
+def _mean(known: Sequence[tuple[int, float]]) -> float | None:
+    """The mean over all decisions of episodes of which number of decisions and mean are known."""
     decisions = sum(number for number, _ in known)
     return math.fsum(number * mean for number, mean in known) / decisions if decisions else None

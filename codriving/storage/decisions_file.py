@@ -1,13 +1,10 @@
 """``decisions.jsonl``: what was shared, negotiated, removed and decided, one line a decision step."""
 
-import json
-import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from codriving.errors import RunFolderError
-from codriving.storage.records import damaged
+from codriving.storage.json_lines import lines_text, read_lines
 
 DECISIONS = "decisions.jsonl"
 
@@ -24,31 +21,7 @@ def decisions_text(lines: Iterable[Mapping[str, object]]) -> str:
     Raises:
         ValueError: If a value has no place in JSON.
     """
-    return "".join(_line(line) + "\n" for line in lines)
-
-
-def _line(line: Mapping[str, object]) -> str:
-    try:
-        return _dump(line)
-    except ValueError:
-        return _dump(_finite(line))
-    except TypeError as error:
-        raise ValueError(f"a line of {DECISIONS} cannot be written: {error}") from error
-
-
-def _dump(value: object) -> str:
-    return json.dumps(value, allow_nan=False, ensure_ascii=False, separators=(", ", ": "))
-
-
-def _finite(value: object) -> object:
-    """A copy in which what is not finite is absent."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    if isinstance(value, Mapping):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    return value
+    return lines_text(DECISIONS, lines)
 
 
 def read_decisions(folder: Path) -> tuple[dict[str, Any], ...]:
@@ -63,16 +36,4 @@ def read_decisions(folder: Path) -> tuple[dict[str, Any], ...]:
     Raises:
         RunFolderError: If it is missing, damaged or cannot be read.
     """
-    path = folder / DECISIONS
-    try:
-        # Not splitlines(): it knows line ends that may stand within a text.
-        lines = [json.loads(line) for line in path.read_text(encoding="utf-8").split("\n") if line.strip()]
-    except FileNotFoundError:
-        raise damaged(path, "it is missing") from None
-    except OSError as error:
-        raise RunFolderError(f"cannot read {path}: {error.strerror}; check its permissions") from error
-    except ValueError as error:
-        raise damaged(path, str(error)) from error
-    if not all(isinstance(line, dict) for line in lines):
-        raise damaged(path, "a line is not an object")
-    return tuple(lines)
+    return read_lines(folder / DECISIONS)

@@ -1,13 +1,15 @@
 """Keeps secrets out of what is written: values under names that sound like one are masked."""
 
 import json
+import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 MASK = "<redacted>"
 _SECRET = re.compile(r"key|token|secret|password|credential", re.IGNORECASE)
 # These hold the *name* of a variable, which is no secret and is needed to repeat the run.
 _NAME_OF_VARIABLE = re.compile(r"(_env|_variable)$", re.IGNORECASE)
+_VARIABLE = re.compile(r"[A-Z_][A-Z0-9_]*")
 
 
 def redact(settings: Mapping[str, object]) -> dict[str, object]:
@@ -29,8 +31,70 @@ def _mask(name: str, value: object) -> object:
         return {inner: _mask(str(inner), item) for inner, item in value.items()}
     if isinstance(value, list | tuple):
         return [_mask(name, item) for item in value]
-    if isinstance(value, str) and value and _SECRET.search(name) and not _NAME_OF_VARIABLE.search(name):
-        return MASK
+    if isinstance(value, str) and value and _SECRET.search(name):
+        return value if _NAME_OF_VARIABLE.search(name) and _VARIABLE.fullmatch(value) else MASK
+    return value
+
+
+SHORTEST = 8
+"""A value of fewer characters is no secret but a stand-in such as EMPTY, and would take whole words out of texts."""
+
+
+def variables_in(settings: object) -> tuple[str, ...]:
+    """List the environment variables that hold secrets, as a resolved config names them.
+
+    Args:
+        settings: Resolved config of plain values.
+
+    Returns:
+        Their names, each once.
+    """
+    return tuple(dict.fromkeys(_variables(settings)))
+
+
+def _variables(node: object) -> Iterator[str]:
+    if isinstance(node, Mapping):
+        for name, value in node.items():
+            if isinstance(value, str) and value and _NAME_OF_VARIABLE.search(str(name)):
+                yield value
+            else:
+                yield from _variables(value)
+    elif isinstance(node, list | tuple):
+        for value in node:
+            yield from _variables(value)
+
+
+def secrets_of(variables: Iterable[str]) -> tuple[str, ...]:
+    """Read the secrets that environment variables hold at this moment, the longest first.
+
+    Args:
+        variables: Names of the variables.
+
+    Returns:
+        Their values; one that is too short to be a secret is left out.
+    """
+    values = {os.environ.get(name, "").strip() for name in variables}
+    return tuple(sorted((value for value in values if len(value) >= SHORTEST), key=len, reverse=True))
+
+
+def scrubbed(value: object, secrets: Iterable[str]) -> object:
+    """Take secrets out of every text of plain values, wherever they came from.
+
+    Args:
+        value: Plain values; keys of mappings are ours and stay.
+        secrets: What must not be there.
+
+    Returns:
+        A copy without them.
+    """
+    if isinstance(value, str):
+        for secret in secrets:
+            value = value.replace(secret, MASK)
+        return value
+    if isinstance(value, Mapping):
+        return {name: scrubbed(item, secrets) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [scrubbed(item, secrets) for item in value]
     return value
 
 

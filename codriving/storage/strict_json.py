@@ -66,6 +66,9 @@ def _fields(kind: type) -> Mapping[str, object]:
 def _convert(kind: object, value: object, where: str) -> object:
     """Check a plain JSON value against a declared type and give it that type."""
     origin = typing.get_origin(kind)
+    if kind == int | float:
+        # A counter stays one, an amount stays one.
+        return value if type(value) is int else _number(value, where)
     if origin in (types.UnionType, typing.Union):
         return _optional(kind, value, where)
     if origin is tuple:
@@ -88,7 +91,7 @@ def _convert(kind: object, value: object, where: str) -> object:
 
 
 def _optional(kind: object, value: object, where: str) -> object:
-    """``X | None``, the only union that is used."""
+    """``X | None``, the only union of other types that is used."""
     (inner,) = (option for option in typing.get_args(kind) if option is not type(None))
     return None if value is None else _convert(inner, value, where)
 

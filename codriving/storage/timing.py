@@ -22,8 +22,7 @@ class Timing:
         decisions: Number of decisions timed.
         decision_mean: Mean time of a decision [s], or None without decisions.
         decision_max: Longest decision [s], or None without decisions.
-        decision_cpu_mean: Mean CPU time of a decision [s], all threads of the process together; None where it was not
-            measured.
+        decision_cpu_mean: Mean CPU time of a decision, of the thread that decides [s]; None where it was not measured.
         decision_cpu_max: Largest CPU time of a decision [s], or None.
     """
 

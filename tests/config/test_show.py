@@ -26,3 +26,12 @@ def test_fingerprint_sees_what_has(override: str) -> None:
 def test_fingerprint_does_not_depend_on_the_order_of_keys() -> None:
     resolved = compose([])
     assert fingerprint(dict(reversed(resolved.items()))) == fingerprint(resolved)
+
+
+def test_fingerprint_ignores_how_a_model_is_asked_and_sees_which_one() -> None:
+    model = ["llm=custom", "llm.api_base=http://127.0.0.1:1/v1"]
+    plain = fingerprint(compose(model))
+    for setting in ("max_cost=2.0", "max_concurrency=2", "cache=replay", "cache_file=other", "api_key_env=MY_KEY"):
+        assert fingerprint(compose([*model, f"llm.{setting}"])) == plain
+    for setting in ("model=openai/other", "temperature=0.5", "max_tokens=5", "ask_plain=true", "api_base=null"):
+        assert fingerprint(compose([*model, f"llm.{setting}"])) != plain

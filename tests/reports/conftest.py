@@ -21,7 +21,7 @@ def make() -> Make:
         variant: str = "full",
         scenario: str = "intersection",
         pair: str = "CAV-HDV",
-        counts: dict[str, int] | None = None,
+        counts: dict[str, int | float] | None = None,
         delay: float | None = 1.0,
         method: str = "codriving",
         reasoner: str = "rules",

@@ -63,8 +63,20 @@ def test_a_value_that_is_not_finite_is_never_written(record: EpisodeRecord, valu
 
 
 def test_a_value_of_another_type_is_never_written(record: EpisodeRecord) -> None:
-    with pytest.raises(ValueError, match=r"field counts\.fallbacks must be int, got 1\.5"):
-        record_text(dataclasses.replace(record, counts={"fallbacks": 1.5}))
+    with pytest.raises(ValueError, match=r"field seed must be int, got 1\.5"):
+        record_text(dataclasses.replace(record, seed=1.5))
+    with pytest.raises(ValueError, match=r"field counts\.fallbacks must be a number, got True"):
+        record_text(dataclasses.replace(record, counts={"fallbacks": True}))
+
+
+def test_counters_are_whole_and_amounts_are_not(record: EpisodeRecord, tmp_path: Path) -> None:
+    counts = {"cost_usd": 0.0, "fallbacks": 2, "prompt_tokens": 12_345_678}
+    (tmp_path / "record.json").write_text(record_text(dataclasses.replace(record, counts=counts)))
+    read = read_record(tmp_path).counts
+    assert read == counts
+    assert [type(number) for number in read.values()] == [float, int, int]
+    with pytest.raises(ValueError, match="JSON compliant"):
+        record_text(dataclasses.replace(record, counts={"cost_usd": math.inf}))
 
 
 def change(path: list[str], value: object) -> Callable[[Any], str]:

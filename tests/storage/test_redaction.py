@@ -22,6 +22,10 @@ def test_numbers_switches_and_names_of_variables_stay() -> None:
     assert redact(settings) == settings
 
 
+def test_a_key_in_the_place_of_its_variables_name_is_masked() -> None:
+    assert redact({"api_key_env": "sk-9d8f7a6s5d4f"}) == {"api_key_env": MASK}
+
+
 def test_flattening_gives_a_line_a_setting() -> None:
     assert flat({"scenario": {"cavs": 4, "speeds": [0, 8]}, "run": None, "memory": {}}) == {
         "scenario.cavs": "4",

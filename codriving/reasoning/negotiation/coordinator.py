@@ -1,15 +1,17 @@
 """The conflict coordinator by rules: arrival order, turning yields to straight, who is committed goes (III-C.3)."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Protocol
 
 from codriving.datatypes.order import PassingOrder
 from codriving.geometry.road_map import RoadMap
-from codriving.ordering.instance import Instance
+from codriving.ordering.instance import Instance, Pair
 from codriving.ordering.schedule import start_time
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.negotiation.agreement import agreement
 from codriving.reasoning.negotiation.improve import improve
-from codriving.reasoning.negotiation.problem import Conflicts, ProblemMaker, Scenes
+from codriving.reasoning.negotiation.problem import Conflicts, Problem, ProblemMaker, Scenes
 from codriving.reasoning.negotiation.reasons import reason_between
 
 TURN_YIELDS = 1.0
@@ -52,12 +54,23 @@ class RuleCoordinator:
             scenes: What each CAV knows, by id.
             conflicts: Conflicts of each CAV, by id.
         """
-        problem = self.problems.pose(scenes, conflicts, 0.0)
-        instance = problem.instance
+        return self.settle(self.problems.pose(scenes, conflicts, 0.0), conflicts, {})
+
+    def settle(self, problem: Problem, conflicts: Conflicts, told: Mapping[Pair, str]) -> PassingOrder:
+        """Return an order without cycles in which some pairs are given.
+
+        Args:
+            problem: What is to be ordered.
+            conflicts: Conflicts of each CAV, by id.
+            told: Pairs of CAVs that somebody else has decided, with the reasons; they must not contradict one another
+                or what is physically fixed.
+        """
+        instance = replace(problem.instance, before=problem.instance.before | told.keys())
         times = improve(self._list_schedule(instance), instance, self.previous)
 
         def reason(first: str, second: str) -> str:
-            return reason_between(instance.entrants[first], instance.entrants[second])
+            known = told.get((first, second))
+            return reason_between(instance.entrants[first], instance.entrants[second]) if known is None else known
 
         self.previous = agreement(problem, times, conflicts, reason, self.binding)
         return self.previous

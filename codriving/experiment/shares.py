@@ -1,0 +1,67 @@
+"""One batch in two shares: who only computes in processes, who waits for a language model in threads."""
+
+from collections.abc import Sequence
+
+from codriving.episodes.batch import run_batch
+from codriving.episodes.failures import FailuresInARow
+from codriving.episodes.job import Job, Report
+from codriving.episodes.launcher import Launcher, Processes
+from codriving.episodes.progress import Progress
+from codriving.episodes.threads import Threads
+from codriving.episodes.unit import Unit
+from codriving.experiment.asking import Asked
+from codriving.experiment.plan import Plan
+
+
+def run_shares(
+    missing: Sequence[Unit],
+    unfilmed: Sequence[Unit],
+    job: Job,
+    plan: Plan,
+    asked: Asked,
+    preload: Sequence[str],
+    progress: Progress,
+) -> tuple[Report, ...]:
+    """Drive a batch.
+
+    Episodes whose method asks no language model are driven as the plan says. Those that ask one wait for its server
+    nearly all the time, and share one client with its limits: they are driven in threads of this process, as many at
+    once as requests may be under way, unless the plan says otherwise than in processes.
+
+    Args:
+        missing: What to drive.
+        unfilmed: What is saved already and lacks its film only.
+        job: What to do with each.
+        plan: The run.
+        asked: The language models of the cells that something is missing of.
+        preload: Modules imported once for all processes.
+        progress: Who is told of each unit.
+
+    Returns:
+        Reports of those that ended in an error, by cell and seed.
+
+    Raises:
+        UserError: If the batch has to stop.
+        KeyboardInterrupt: If the user stops it; what was saved stays.
+    """
+    waiting = [unit for unit in missing if unit.cell in asked.models]
+    computing = [*(unit for unit in missing if unit.cell not in asked.models), *unfilmed]
+    failed: list[Report] = []
+    if computing:
+        failed += run_batch(computing, job, plan.launcher, plan.workers, preload, progress).failed
+    if waiting:
+        watch = FailuresInARow(asked.names, asked.patience)
+        launcher: Launcher = Threads() if isinstance(plan.launcher, Processes) else plan.launcher
+        threads = side_by_side(plan.workers, asked.concurrency)
+        failed += run_batch(waiting, job, launcher, threads, preload, progress, watch.note).failed
+    return tuple(sorted(failed, key=lambda report: (report.unit.cell, report.unit.seed)))
+
+
+def side_by_side(workers: int | str, concurrency: int) -> int:
+    """Give the number of episodes that ask a language model to drive at once.
+
+    Args:
+        workers: A number, or ``auto`` for as many as requests may be under way.
+        concurrency: Requests that may be under way.
+    """
+    return concurrency if workers == "auto" else min(int(workers), concurrency)

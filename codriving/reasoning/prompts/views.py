@@ -1,0 +1,205 @@
+"""What a prompt is made of: facts in plain numbers and words, which the templates turn into sentences."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleView:
+    """A vehicle beside or on the lane of the CAV.
+
+    Attributes:
+        id: What it is called.
+        driver: ``CAV``, ``human`` or ``unknown driver``.
+        gap: Free distance along the road [m].
+        speed: Speed [m/s].
+    """
+
+    id: str
+    driver: str
+    gap: float
+    speed: float
+
+
+@dataclass(frozen=True, slots=True)
+class LaneView:
+    """A lane that runs the CAV's way.
+
+    Attributes:
+        name: ``ego lane``, ``left lane`` or ``right lane``.
+        leading: The next vehicle ahead there, or None.
+        rear: The next vehicle behind there, or None.
+    """
+
+    name: str
+    leading: VehicleView | None
+    rear: VehicleView | None
+
+
+@dataclass(frozen=True, slots=True)
+class OtherView:
+    """A vehicle of which the CAV does not know the lane.
+
+    Attributes:
+        id: What it is called.
+        driver: ``CAV``, ``human`` or ``unknown driver``.
+        ahead: Distance ahead, negative behind [m].
+        right: Distance to the right, negative to the left [m].
+        speed: Speed [m/s].
+    """
+
+    id: str
+    driver: str
+    ahead: float
+    right: float
+    speed: float
+
+
+@dataclass(frozen=True, slots=True)
+class ConflictView:
+    """Everything that one other vehicle may get in the CAV's way; of several zones the most urgent one.
+
+    Attributes:
+        id: What it is called.
+        driver: ``CAV``, ``human`` or ``unknown driver``.
+        lane: Lane that it is on; empty if that is not known.
+        speed: Its speed [m/s].
+        relation: How the ways meet.
+        mine: The CAV's distance to the zone [m].
+        its: The other's distance to the zone [m].
+        my_ttcp: The CAV's time to the conflict zone [s].
+        its_ttcp: The other's time to the conflict zone [s].
+        dttcp: Difference of the two [s].
+        severity: The paper's words for it.
+        zones: Number of zones, more than one if it may take several ways.
+        free: When the CAV's way through all of them is expected to be free [s]; 0 if the CAV goes first.
+    """
+
+    id: str
+    driver: str
+    lane: str
+    speed: float
+    relation: str
+    mine: float
+    its: float
+    my_ttcp: float
+    its_ttcp: float
+    dttcp: float
+    severity: str
+    zones: int
+    free: float
+
+
+@dataclass(frozen=True, slots=True)
+class IntentView:
+    """What another CAV means to do.
+
+    Attributes:
+        id: What it is called.
+        route: Its route.
+        target_speed: The speed that it aims at [m/s].
+    """
+
+    id: str
+    route: str
+    target_speed: float
+
+
+@dataclass(frozen=True, slots=True)
+class OrderView:
+    """One pair of the passing order.
+
+    Attributes:
+        id: What the other vehicle is called.
+        reason: Why this order.
+    """
+
+    id: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class ActionView:
+    """Actions of which the safety check says the same.
+
+    Attributes:
+        names: The actions.
+        safe: Whether they are allowed.
+        reasons: Why they were removed.
+        progress: How far the CAV gets within 10 s if it then keeps the order [m]; None if it cannot keep it.
+        arrivals: Earliest arrival at the zones of each conflict, in the order of the conflicts [s].
+    """
+
+    names: tuple[str, ...]
+    safe: bool
+    reasons: tuple[str, ...]
+    progress: float | None
+    arrivals: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EntrantView:
+    """A CAV that is to be ordered.
+
+    Attributes:
+        id: What it is called.
+        speed: Speed [m/s].
+        route: Its route.
+        turns: Whether it turns where ways cross, and so yields to who goes straight.
+        target_speed: The speed that it aims at [m/s].
+        distance: Distance to its first conflict zone [m].
+        earliest: Earliest time at which it can be there [s].
+        can_stop: Whether it can still stop before the zone.
+        behind: The CAV ahead of it on its lane; empty if none.
+        blocked: Intervals in which human drivers may be in its way there [s].
+    """
+
+    id: str
+    speed: float
+    route: str
+    turns: bool
+    target_speed: float
+    distance: float
+    earliest: float
+    can_stop: bool
+    behind: str
+    blocked: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PairView:
+    """Two CAVs of which the order is open.
+
+    Attributes:
+        name: ``p1``, ``p2``, ..., most urgent first.
+        one: What one of them is called.
+        other: What the other one is called.
+        relation: How their ways meet.
+        distances: Distance of each to the zone [m].
+        ttcp: Time of each to the conflict zone [s].
+        dttcp: Difference of the two [s].
+        severity: The paper's words for it.
+        agreed: Who has been told to go first until now; empty if nobody.
+    """
+
+    name: str
+    one: str
+    other: str
+    relation: str
+    distances: tuple[float, float]
+    ttcp: tuple[float, float]
+    dttcp: float
+    severity: str
+    agreed: str
+
+
+@dataclass(frozen=True, slots=True)
+class FixedView:
+    """Two CAVs of which the order cannot be changed any more.
+
+    Attributes:
+        first: What the one that goes first is called.
+        second: What the other one is called.
+    """
+
+    first: str
+    second: str

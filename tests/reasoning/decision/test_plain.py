@@ -1,0 +1,76 @@
+"""When nobody has to be asked: nobody to consider, and nothing to weigh up."""
+
+from dataclasses import replace
+
+import pytest
+from worlds import Car, Junction, car, order_of
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.scene_description import LaneChange
+from codriving.datatypes.situation import ActionAssessment, Situation
+from codriving.reasoning.decision.plain import is_plain
+
+GOOD = tuple(
+    ActionAssessment(action, True, (), (), gain)
+    for action, gain in ((Action.SLOWER, 70.0), (Action.IDLE, 80.0), (Action.FASTER, 80.0))
+)
+
+
+def situation(world: Junction, *cars: Car) -> Situation:
+    thoughts = world.thoughts(*cars)
+    return Situation(thoughts.scenes["CAV1"], thoughts.conflicts["CAV1"], order_of(), (), GOOD)
+
+
+ALONE = car("CAV1", "south-north", 75, 8)
+
+
+def test_alone_on_the_road_everything_is_plain(junction: Junction) -> None:
+    assert is_plain(situation(junction, ALONE), True)
+    assert is_plain(situation(junction, ALONE), False)
+
+
+@pytest.mark.parametrize(
+    ("other", "plain"),
+    [
+        (car("CAV2", "west-east", 20, 8), False),
+        (car("HDV1", "west-east", 80, 8), False),
+        (car("CAV2", "south-north", 90, 8), False),
+        (car("CAV2", "south-north", 100, 8), True),
+        (car("CAV2", "south-north", 100, 7.7), True),
+        (car("CAV2", "south-north", 100, 6), False),
+        (car("HDV1", "south-north", 60, 8), True),
+    ],
+    ids=["crossing", "human crossing", "near ahead", "far ahead", "caught up a little", "caught up", "behind"],
+)
+def test_somebody_to_consider(junction: Junction, other: Car, plain: bool) -> None:
+    assert is_plain(situation(junction, ALONE, other), True) is plain
+
+
+def test_where_conflicts_cannot_be_seen_everybody_ahead_counts(junction: Junction) -> None:
+    ahead = replace(situation(junction, ALONE, car("CAV2", "west-east", 62, 8)), conflicts=())
+    assert is_plain(ahead, True)
+    assert not is_plain(ahead, False)
+    behind = replace(
+        situation(junction, car("CAV1", "south-north", 120, 8), car("CAV2", "west-east", 20, 8)), conflicts=()
+    )
+    assert is_plain(behind, False)
+
+
+def assessed(action: Action, **change: object) -> tuple[ActionAssessment, ...]:
+    return tuple(replace(a, **change) if a.action is action else a for a in GOOD)  # type: ignore[arg-type]
+
+
+def test_best_action_must_be_plain(junction: Junction) -> None:
+    good = situation(junction, ALONE)
+    for changed in (
+        replace(good, assessments=assessed(Action.SLOWER, safe=False, reasons=("same lane: no",))),
+        replace(good, assessments=assessed(Action.FASTER, progress=60.0)),
+        replace(good, assessments=assessed(Action.IDLE, progress=None)),
+        replace(good, assessments=(*GOOD, ActionAssessment(Action.LANE_LEFT, True, (), (), 120.0))),
+        replace(good, order=order_of("HDV1 CAV1")),
+        replace(good, scene=replace(good.scene, must_change=LaneChange(("a", "b", 1), 50.0))),
+        replace(good, scene=replace(good.scene, covers=(("south-west", 20.0),))),
+    ):
+        assert not is_plain(changed, True)
+    stays = replace(good, assessments=(*GOOD, ActionAssessment(Action.LANE_LEFT, True, (), (), 81.0)))
+    assert is_plain(stays, True)

@@ -1,0 +1,132 @@
+"""Whole runs over HTTP, against a server on loopback that answers from the prompt alone."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+sys.path.insert(0, str(Path(__file__).with_name("llm")))
+
+from loopback import Loopback
+
+from codriving.cli.app import app
+
+CANARY = "canary-3f7a91c2"
+TABLES = ("episodes.csv", "summary.csv", "summary.md")
+
+
+def call(*args: str) -> Result:
+    return CliRunner().invoke(app, list(args))
+
+
+def toy(server: Loopback, *more: str) -> list[str]:
+    """A model that nobody has to pay for, in short episodes."""
+    return ["llm=custom", "llm.model=openai/toy", f"llm.api_base={server.url}", "llm.attempts=1", *more]
+
+
+def run(server: Loopback, output: Path, *more: str) -> Result:
+    settings = ["episodes=2", "seed=10000", "scenario.time_limit=3", f"output={output}", "run=mine"]
+    return call("run", *toy(server, *settings, *more))
+
+
+def lasting(folder: Path) -> dict[str, bytes]:
+    """What has to be the same in a replay."""
+    paths = [folder / name for name in TABLES]
+    paths += [path for path in folder.glob("episodes/*/*/*") if path.name not in {"timing.json", "error.txt"}]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
+
+
+@pytest.fixture
+def closed() -> Loopback:
+    """A server that was there once."""
+    with Loopback() as server:
+        pass
+    return server
+
+
+@pytest.mark.parametrize("scenario", ["intersection", "roundabout", "highway", "merge"])
+def test_a_model_drives_every_scenario(scenario: str, tmp_path: Path) -> None:
+    with Loopback() as server:
+        result = run(server, tmp_path, f"scenario={scenario}")
+    assert result.exit_code == 0, result.output
+    folder = tmp_path / "run" / "mine"
+    counts: dict[str, float] = {}
+    for record in folder.glob("episodes/*/*/record.json"):
+        found = json.loads(record.read_text())
+        assert found["reasoner"] == "openai/toy"
+        for name, number in found["counts"].items():
+            counts[name] = counts.get(name, 0) + number
+    # One more than the episodes count: the request before the first of them.
+    assert counts["model_calls"] == len(server.requests) - 1 > 0
+    assert counts["prompt_tokens"] > counts["completion_tokens"] > 0
+    assert counts.get("fallbacks", 0) == 0
+    assert " tokens, " in result.stderr
+
+
+def test_a_replay_leaves_the_same_bytes_without_a_server(tmp_path: Path) -> None:
+    cache = f"llm.cache_file={tmp_path / 'answers.sqlite'}"
+    with Loopback() as server:
+        assert run(server, tmp_path / "live", "llm.cache=use", cache).exit_code == 0
+    replayed = run(server, tmp_path / "again", "llm.cache=replay", cache, "workers=1")
+    assert replayed.exit_code == 0, replayed.output
+    first, second = (lasting(tmp_path / name / "run" / "mine") for name in ("live", "again"))
+    assert sorted(first) == sorted(second)
+    assert any(name.endswith("transcript.jsonl") for name in first)
+    for name in first:
+        assert first[name] == second[name], name
+    # What is not in the cache is asked for nowhere else.
+    missing = run(server, tmp_path / "other", "llm.cache=replay", cache, "seed=10007")
+    assert missing.exit_code == 2
+    assert "answer cache" in missing.stderr
+
+
+@pytest.mark.parametrize("fault", ["echo_key_401", "echo_key_400", "echo_key_500", "echo_key_answer"])
+@pytest.mark.parametrize("fine", [0, 6])
+def test_a_key_is_found_nowhere(
+    fault: str, fine: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("CANARY_KEY", CANARY)
+    cache = ("llm.cache=use", f"llm.cache_file={tmp_path / 'answers.sqlite'}")
+    with Loopback(lambda request: "ok" if request.number < fine else fault) as server:
+        result = run(server, tmp_path, "llm.api_key_env=CANARY_KEY", *cache)
+    assert any(CANARY in request.headers["authorization"] for request in server.requests[fine:])
+    if fault != "echo_key_answer":
+        assert result.exit_code == (1 if fine else 2), result.output
+    captured = capfd.readouterr()
+    assert CANARY not in result.output + captured.out + captured.err
+    for path in tmp_path.rglob("*"):
+        assert not path.is_file() or CANARY.encode() not in path.read_bytes(), path
+
+
+def test_check_asks_for_one_order_and_one_decision() -> None:
+    with Loopback() as server:
+        result = call("check", *toy(server))
+    assert result.exit_code == 0, result.output
+    assert "Negotiation" in result.stdout
+    assert "Decision of CAV" in result.stdout
+    assert result.stdout.splitlines()[-1] == "Answered in the form asked for."
+    # One to see that it is there, one order, one decision.
+    assert len(server.requests) == 3
+
+
+def test_check_says_when_a_fallback_was_needed() -> None:
+    with Loopback(lambda request: "ok" if request.number < 2 else "empty_content") as server:
+        result = call("check", *toy(server))
+    assert result.exit_code == 1, result.output
+    assert result.stdout.splitlines()[-1] == "No usable answer for the decision: a fallback was needed."
+
+
+def test_check_of_a_server_that_is_not_there_is_one_line(closed: Loopback) -> None:
+    result = call("check", *toy(closed))
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith("error: ")
+    assert result.stderr.count("\n") == 1
+
+
+def test_a_server_that_is_not_there_leaves_nothing_behind(closed: Loopback, tmp_path: Path) -> None:
+    result = run(closed, tmp_path)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
