@@ -29,6 +29,8 @@ class Ledger:
         self._counts["fallbacks"] += answer.value is None
         self._counts["shortened"] += answer.shortened
         self._cost += sum(call.cost or 0.0 for call in answer.calls)
+        if unpriced := sum(call.cost is None for call in answer.calls):
+            self._counts["unpriced_calls"] += unpriced
 
     def count(self, name: str, number: int = 1) -> None:
         """Count something else, for instance a repaired order.

@@ -2,6 +2,15 @@
 
 
 class Offline:
-    """The built-in rule reasoner; no network, no key, deterministic."""
+    """The built-in rule reasoner; no network, no key, deterministic.
+
+    Attributes:
+        name: Name for tables.
+        max_concurrency: Episodes that one process drives at once: the rules never wait.
+    """
 
     name = "rules"
+    max_concurrency = 1
+
+    def chat(self) -> None:
+        """Return nothing: there is no model to ask."""

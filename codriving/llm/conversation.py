@@ -1,0 +1,66 @@
+"""One question until it is answered or given up: shorter if it is too long, and asked again once."""
+
+from collections.abc import Awaitable, Callable
+
+from codriving.llm.extract import one_line
+from codriving.llm.forms import schema_of, worded
+from codriving.llm.question import Answer, Call, Message, Question
+from codriving.llm.reply import TOO_LONG, Reply
+from codriving.llm.verdict import judge
+
+Fetch = Callable[[tuple[Message, ...], Question], Awaitable[tuple[Reply, bool]]]
+"""Gives the reply to a conversation, and whether it came from the cache."""
+
+_NOTHING = "(no answer)"
+_LONGEST = 2000
+
+
+async def converse(question: Question, fetch: Fetch) -> Answer:
+    """Ask a question.
+
+    Args:
+        question: The question.
+        fetch: Asks the model.
+
+    Returns:
+        The answer; without a value if the model gave none that can be used.
+    """
+    calls: list[Call] = []
+    shortened = 0
+    again: tuple[Message, ...] = ()
+    while True:
+        messages = question.messages + again
+        reply, cached = await fetch(messages, question)
+        value, problem = judge(reply, question)
+        calls.append(_call(messages, question, reply, cached, problem))
+        if reply.finish_reason == TOO_LONG:
+            shorter = question.shorter()
+            if shorter is None:
+                return Answer(None, tuple(calls), problem, shortened)
+            question, shortened = shorter, shortened + 1
+        elif value is not None or again:
+            return Answer(value, tuple(calls), problem, shortened)
+        else:
+            again = _again(reply, problem)
+
+
+def _again(reply: Reply, problem: str) -> tuple[Message, ...]:
+    """Say what was wrong; some servers insist that user and assistant take turns."""
+    said = one_line(reply.text, _LONGEST) or _NOTHING
+    wish = f"This answer cannot be used: {problem}. Answer again, with one JSON object of the form asked for."
+    return (Message("assistant", said), Message("user", wish))
+
+
+def _call(messages: tuple[Message, ...], question: Question, reply: Reply, cached: bool, problem: str) -> Call:
+    return Call(
+        messages=worded(messages, reply.form, schema_of(question.schema)),
+        text=reply.text,
+        form=reply.form,
+        prompt_tokens=reply.prompt_tokens,
+        completion_tokens=reply.completion_tokens,
+        cost=reply.cost,
+        seconds=reply.seconds,
+        attempts=reply.attempts,
+        cached=cached,
+        problem=problem,
+    )

@@ -1,0 +1,85 @@
+"""The JSON object in a model's words: behind thoughts, inside code fences, among prose."""
+
+import json
+import re
+from typing import Any
+
+LONGEST = 20_000
+"""More of an answer is neither read nor written down [characters]."""
+
+_LEFT_OUT = " ... "
+_WORDY = 2_000
+"""More of one text inside an answer is never used [characters]."""
+
+# Control and direction characters, and halves of surrogate pairs, which no file can hold; line ends and tabs stay.
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]")
+_THOUGHT = re.compile(r"(?is)<(think|thinking|reasoning)>.*?</\1>")
+_ENDED = re.compile(r"(?is)^.*</(?:think|thinking|reasoning)>")
+_BEGUN = re.compile(r"(?is)<(?:think|thinking|reasoning)>.*$")
+_PAGE = re.compile(r"(?is)^\s*(?:<\?xml[^>]*>\s*)?<(?:!doctype html|html|head|body)\b")
+
+_DECODER = json.JSONDecoder(strict=False)
+
+
+def clean(text: str, longest: int = LONGEST) -> str:
+    """Cap a text and take out the characters that neither a file nor a terminal should be given.
+
+    What is too long loses its middle: an answer may stand at either end.
+
+    Args:
+        text: What a model said.
+        longest: How much of it is kept [characters].
+    """
+    if len(text) > longest:
+        half = longest // 2
+        text = f"{text[:half]}{_LEFT_OUT}{text[-half:]}"
+    return _CONTROL.sub("", text.replace("\r\n", "\n").replace("\r", "\n"))
+
+
+def one_line(text: str, longest: int) -> str:
+    """Put a text on one line and shorten it.
+
+    Args:
+        text: Any text.
+        longest: Where it is cut [characters].
+    """
+    line = " ".join(clean(text).split())
+    return line if len(line) <= longest else f"{line[: longest - 3]}..."
+
+
+def is_page(text: str) -> bool:
+    """Whether a text is a web page, as proxies and login portals send it."""
+    return bool(_PAGE.match(text))
+
+
+def without_thoughts(text: str) -> str:
+    """Leave out what a reasoning model said to itself, whether or not it closed or opened its thoughts properly."""
+    return _BEGUN.sub("", _ENDED.sub("", _THOUGHT.sub("", text)))
+
+
+def last_object(text: str) -> dict[str, Any] | None:
+    """Read the last balanced JSON object of a text.
+
+    Args:
+        text: What a model said.
+
+    Returns:
+        The object, its texts without control characters; None if there is none.
+    """
+    text, found, start = without_thoughts(text), None, 0
+    while (start := text.find("{", start)) >= 0:
+        try:
+            value, start = _DECODER.raw_decode(text, start)
+        except (ValueError, RecursionError):
+            start += 1
+        else:
+            found = value
+    return None if found is None else _cleaned(found)
+
+
+def _cleaned(value: Any) -> Any:  # noqa: ANN401 - any JSON
+    if isinstance(value, str):
+        return clean(value, _WORDY)
+    if isinstance(value, dict):
+        return {clean(name, _WORDY): _cleaned(inner) for name, inner in value.items()}
+    return [_cleaned(inner) for inner in value] if isinstance(value, list) else value

@@ -1,0 +1,146 @@
+"""What a call failed with, told from what really went over the wire rather than from LiteLLM's choice of class."""
+
+import re
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from email.utils import parsedate_to_datetime
+from enum import Enum
+
+import httpx
+
+from codriving.llm.extract import one_line
+from codriving.llm.redact import redacted
+
+_TOO_LONG = re.compile(
+    r"(?i)context[ _-]?(length|window|size)|maximum context|too many tokens|prompt is too long|"
+    r"\b(input|prompt|messages)\b.{0,40}(too long|too large|exceeds?\b.{0,40}\btokens?|longer than)"
+)
+_FORM = re.compile(
+    r"(?i)response_?format|response_?schema|json_schema|json_object|json mode|schema|grammar|guided|structured output"
+)
+_FILTERED = re.compile(r"(?i)content[ _-]?(policy|filter)|safety system|content management policy")
+_NO_MONEY = re.compile(r"(?i)insufficient_quota|exceeded your current quota|billing")
+_UNREADABLE = re.compile(r"(?i)empty or invalid response|returned 'choices'|unable to (get|parse) json")
+_NO_PROVIDER = re.compile(r"(?i)LLM Provider NOT provided")
+_PREFIX = re.compile(r"^(?:(?:litellm\.)?\w*(?:Error|Exception|Timeout)(?: -|:)\s*)+")
+_LONGEST = 300
+
+
+class Kind(Enum):
+    """Kinds of faults, each of which is met in its own way."""
+
+    TIMEOUT = "did not answer in time"
+    DROPPED = "dropped the connection"
+    RATE = "takes no more requests for now"
+    SERVER = "failed"
+    UNREACHABLE = "cannot be reached"
+    KEY = "refuses the key"
+    QUOTA = "has no credit left for this key"
+    MODEL = "does not know the model"
+    FORM = "does not support this form of answer"
+    TOO_LONG = "finds the question too long"
+    FILTERED = "refuses the question"
+    UNREADABLE = "sent something that is no chat completion"
+    REFUSED = "refuses the request"
+
+    @property
+    def passes(self) -> bool:
+        """Whether the same request may work in a moment."""
+        return self in (Kind.TIMEOUT, Kind.DROPPED, Kind.RATE, Kind.SERVER, Kind.UNREACHABLE)
+
+
+class CallError(Exception):
+    """Raised by one attempt that failed; it never leaves this room.
+
+    Attributes:
+        kind: What kind of failure it is.
+        detail: The server's or the library's own words, without keys, on one line.
+        retry_after: How long the server asks to wait [s]; None if it doesn't say.
+        attempts: How often the request had been sent when it was given up.
+    """
+
+    def __init__(self, kind: Kind, detail: str = "", retry_after: float | None = None) -> None:
+        super().__init__(kind, detail, retry_after)
+        self.kind, self.detail, self.retry_after, self.attempts = kind, detail, retry_after, 1
+
+    def __str__(self) -> str:
+        return f"{self.kind.value} ({self.detail})" if self.detail else self.kind.value
+
+
+def fault_of(error: BaseException, key: str | None) -> CallError:
+    """Tell what went wrong.
+
+    LiteLLM names its exceptions after words in the body and gives status 500 to a connection that was never made, so
+    the HTTP exception in the chain of causes decides where there is one.
+
+    Args:
+        error: What was raised.
+        key: The key that was sent; taken out of every text.
+    """
+    chain = list(_chain(error))
+    detail = _words(str(error), key)
+    for link in chain:
+        if isinstance(link, httpx.HTTPStatusError):
+            kind = _by_status(link.response.status_code, str(error))
+            return CallError(kind, f"{link.response.status_code}: {detail}", _retry_after(link.response.headers))
+        if isinstance(link, httpx.ConnectError | httpx.ConnectTimeout | httpx.UnsupportedProtocol | httpx.InvalidURL):
+            return CallError(Kind.UNREACHABLE, _words(str(link), key))
+        if isinstance(link, httpx.TimeoutException | TimeoutError):
+            return CallError(Kind.TIMEOUT)
+        if isinstance(link, httpx.TransportError):
+            return CallError(Kind.DROPPED, _words(str(link), key))
+    if any(isinstance(link, ValueError) for link in chain) or _UNREADABLE.search(str(error)):
+        return CallError(Kind.UNREADABLE, detail)
+    if _NO_PROVIDER.search(str(error)):
+        return CallError(Kind.MODEL, "LiteLLM knows no provider of that name")
+    status = getattr(error, "status_code", None)
+    return CallError(_by_status(status if isinstance(status, int) else 400, str(error)), detail)
+
+
+def _chain(error: BaseException | None) -> Iterator[BaseException]:
+    seen: set[int] = set()
+    while error is not None and id(error) not in seen:
+        seen.add(id(error))
+        yield error
+        error = error.__cause__ or error.__context__
+
+
+def _by_status(status: int, text: str) -> Kind:
+    if status in (401, 403):
+        return Kind.KEY
+    if status == 404:
+        return Kind.MODEL
+    if status in (402, 429) and (status == 402 or _NO_MONEY.search(text)):
+        return Kind.QUOTA
+    if status == 429:
+        return Kind.RATE
+    if status == 408:
+        return Kind.TIMEOUT
+    if status < 400:
+        return Kind.UNREADABLE
+    if status in (400, 413, 422) and (status == 413 or _TOO_LONG.search(text)):
+        return Kind.TOO_LONG
+    if status in (400, 422, 501) and _FORM.search(text):
+        return Kind.FORM
+    if status >= 500 or status in (409, 425):
+        return Kind.SERVER
+    return Kind.FILTERED if _FILTERED.search(text) else Kind.REFUSED
+
+
+def _words(text: str, key: str | None) -> str:
+    """Shorten a text for a message; keys go first, so that none is cut in half and overlooked."""
+    return one_line(_PREFIX.sub("", redacted(text, key)), _LONGEST)
+
+
+def _retry_after(headers: httpx.Headers) -> float | None:
+    """Read how long to wait, given in seconds or as a date (RFC 9110, 10.2.3)."""
+    given = headers.get("retry-after", "").strip()
+    try:
+        return max(0.0, float(given))
+    except ValueError:
+        pass
+    try:
+        when = parsedate_to_datetime(given)
+    except ValueError:
+        return None
+    return max(0.0, (when.replace(tzinfo=when.tzinfo or UTC) - datetime.now(UTC)).total_seconds())

@@ -1,0 +1,123 @@
+"""How an answer is asked for, from the strictest form to the plainest; each model is remembered by what it supports."""
+
+import json
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from codriving.llm.question import Message
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+FORMS = ("json_schema", "json_object", "text")
+"""Strictest first."""
+
+_NAME = "answer"
+_LEFT_OUT = ("title", "default")
+
+
+@lru_cache(maxsize=256)
+def schema_of(model: "type[BaseModel]") -> dict[str, Any]:
+    """Write a form of answer as a JSON schema that the strict mode of servers takes.
+
+    Strict mode wants every property required and none beside them.
+
+    Args:
+        model: The form.
+
+    Returns:
+        The schema; shared, so it must not be changed.
+    """
+    strict = _strict(model.model_json_schema())
+    assert isinstance(strict, dict)
+    return strict
+
+
+def _strict(node: Any, names: bool = False) -> Any:  # noqa: ANN401 - any JSON
+    """Make a node strict; the keys of a mapping of ``names`` (properties, definitions) are not keywords."""
+    if isinstance(node, list):
+        return [_strict(inner) for inner in node]
+    if not isinstance(node, dict):
+        return node
+    made = {
+        key: _strict(inner, names=not names and key in ("properties", "$defs"))
+        for key, inner in node.items()
+        if names or key not in _LEFT_OUT
+    }
+    if not names and "properties" in made:
+        made |= {"additionalProperties": False, "required": list(made["properties"])}
+    return made
+
+
+def response_format(form: str, schema: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    """Return what a request says about the form of its answer; None for nothing.
+
+    Args:
+        form: One of ``FORMS``.
+        schema: Schema of the answer; None if any text will do.
+    """
+    if schema is None or form == "text":
+        return None
+    if form == "json_object":
+        return {"type": "json_object"}
+    return {"type": "json_schema", "json_schema": {"name": _NAME, "strict": True, "schema": dict(schema)}}
+
+
+def worded(messages: tuple[Message, ...], form: str, schema: Mapping[str, Any] | None) -> tuple[Message, ...]:
+    """Describe the schema in the first user message where the form does not carry it.
+
+    Args:
+        messages: The conversation.
+        form: One of ``FORMS``.
+        schema: Schema of the answer; None if any text will do.
+    """
+    if schema is None or form == "json_schema":
+        return messages
+    wish = (
+        "Answer with one JSON object and nothing else, no code fence, no prose. It has to fit this JSON schema:\n"
+        + json.dumps(schema, separators=(",", ":"), ensure_ascii=False)
+    )
+    at = next((index for index, message in enumerate(messages) if message.role == "user"), None)
+    if at is None:
+        return (*messages, Message("user", wish))
+    told = Message("user", f"{messages[at].content}\n\n{wish}")
+    return (*messages[:at], told, *messages[at + 1 :])
+
+
+class Forms:
+    """The strictest form that each model is known to support; starts with the strictest there is."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, str | None], int] = {}
+
+    def best(self, model: str, api_base: str | None) -> str:
+        """Return the form to ask in.
+
+        Args:
+            model: The model.
+            api_base: Where it is served.
+        """
+        return FORMS[self._known.get((model, api_base), 0)]
+
+    def step_down(self, model: str, api_base: str | None, refused: str) -> bool:
+        """Remember that a form is not supported.
+
+        Args:
+            model: The model.
+            api_base: Where it is served.
+            refused: The form that was refused.
+
+        Returns:
+            Whether there is a plainer one.
+        """
+        below = FORMS.index(refused) + 1
+        if below == len(FORMS):
+            return False
+        # Questions that were asked at the same time are refused one after the other and step down once.
+        self._known[model, api_base] = max(below, self._known.get((model, api_base), 0))
+        return True
+
+
+KNOWN = Forms()
+"""What this process knows; changed on the one loop alone."""

@@ -1,0 +1,152 @@
+"""The only place that knows LiteLLM: one request out, one reply in, and nothing decided."""
+
+import asyncio
+import logging
+import os
+from types import ModuleType
+from typing import Any, Protocol
+
+from codriving.llm.extract import clean
+from codriving.llm.faults import fault_of
+from codriving.llm.forms import response_format, worded
+from codriving.llm.loop import loop
+from codriving.llm.redact import without_key
+from codriving.llm.reply import Reply, Request
+
+NO_KEY = "none"
+"""Sent where no key is named; without it LiteLLM would take one from the environment and give it to a stranger."""
+
+_COMPATIBLE = "openai"
+"""LiteLLM's word for a server that speaks OpenAI's protocol."""
+
+
+class Sender(Protocol):
+    """Sends requests; replaced in tests."""
+
+    async def load(self) -> None:
+        """Do what takes long the first time, so that no deadline runs meanwhile."""
+        ...
+
+    async def send(self, request: Request, form: str, key: str | None, deadline: float) -> Reply:
+        """Send a request once.
+
+        Args:
+            request: What to send.
+            form: Form of the answer.
+            key: Key of the server, if it has one.
+            deadline: How long one read may take [s].
+
+        Raises:
+            CallError: If there is no reply.
+        """
+        ...
+
+
+class LiteLLMSender:
+    """Sends through LiteLLM, over connections that the whole process shares."""
+
+    async def load(self) -> None:
+        """Import LiteLLM and what it imports in its first call, which takes seconds."""
+        async with _loading:
+            if not _loaded:
+                _loaded.append(await _import())
+
+    async def send(self, request: Request, form: str, key: str | None, deadline: float) -> Reply:
+        """See ``Sender``."""
+        options: dict[str, Any] = {"max_tokens": request.max_tokens}
+        if request.temperature is not None:
+            options["temperature"] = request.temperature
+        wanted = response_format(form, request.schema)
+        if wanted is not None:
+            options["response_format"] = wanted
+        messages = worded(request.messages, form, request.schema)
+        try:
+            response = await _loaded[0].acompletion(
+                model=request.model,
+                custom_llm_provider=_provider(request),
+                messages=[{"role": m.role, "content": m.content} for m in messages],
+                api_base=request.api_base,
+                api_key=key or NO_KEY,
+                timeout=deadline,
+                max_retries=0,
+                num_retries=0,
+                stream=False,
+                **options,
+            )
+            return _reply(response, form, key)
+        except Exception as err:
+            fault = fault_of(err, key)
+        # Outside the handler: LiteLLM's exception, which may quote the key, is not dragged along as context.
+        raise fault
+
+
+_loaded: list[Any] = []
+_loading = asyncio.Lock()
+
+
+async def _import() -> ModuleType:
+    """Import LiteLLM, make it keep quiet, and give it one way of sending for all providers."""
+    os.environ.setdefault("LITELLM_LOCAL_MODEL_COST_MAP", "True")
+    import litellm
+    import openai
+
+    from codriving.llm import connections
+
+    litellm.suppress_debug_info = True
+    litellm.telemetry = False
+    for name in ("LiteLLM", "httpx", "openai"):
+        # Their lines may hold addresses with keys; what goes wrong is told by us.
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    litellm.disable_aiohttp_transport = True
+    session = connections.client()
+    litellm.aclient_session = session
+    loop().at_close(session.aclose)
+    # Nothing is sent: LiteLLM makes the reply up. It does so only if that is not empty.
+    await litellm.acompletion(
+        model=f"{_COMPATIBLE}/none",
+        messages=[{"role": "user", "content": "Answer with the one word: yes"}],
+        api_base="http://127.0.0.1:9",
+        api_key=NO_KEY,
+        mock_response="yes",
+    )
+    openai.AsyncOpenAI(api_key=NO_KEY, http_client=session).chat.completions  # noqa: B018 - imports it
+    return litellm
+
+
+def _provider(request: Request) -> str | None:
+    """Name the protocol where a server of one's own is given and the model's name does not say it."""
+    if request.api_base is None:
+        return None
+    try:
+        _loaded[0].get_llm_provider(model=request.model)
+    except Exception:
+        return _COMPATIBLE
+    return None
+
+
+def _reply(response: Any, form: str, key: str | None) -> Reply:  # noqa: ANN401 - LiteLLM's response has no narrow type
+    """Normalise a response: any text that is there, and why it ends."""
+    usage = getattr(response, "usage", None)
+    tokens: dict[str, Any] = {
+        name: max(0, int(getattr(usage, name, None) or 0)) for name in ("prompt_tokens", "completion_tokens")
+    }
+    choices = getattr(response, "choices", None) or ()
+    if not choices:
+        return Reply("", "", form=form, **tokens)
+    message = choices[0].message
+    beside = getattr(message, "provider_specific_fields", None) or {}
+    refusal = getattr(message, "refusal", None) or beside.get("refusal") or ""
+    return Reply(
+        text=clean(without_key(_text(getattr(message, "content", None)), key)),
+        finish_reason=str(choices[0].finish_reason or ""),
+        refusal=clean(without_key(str(refusal), key)),
+        form=form,
+        **tokens,
+    )
+
+
+def _text(content: object) -> str:
+    """Return the text of a message, whose content may come in parts."""
+    if isinstance(content, list):
+        return "".join(str(part.get("text") or "") for part in content if isinstance(part, dict))
+    return content if isinstance(content, str) else ""

@@ -1,0 +1,99 @@
+"""The number of requests at once falls on 429 and comes back slowly."""
+
+import asyncio
+
+import pytest
+
+from codriving.llm.gate import Gate
+
+
+def test_no_more_than_the_limit_are_inside_and_all_get_through() -> None:
+    async def crowd() -> tuple[int, int]:
+        gate, inside, most, done = Gate(3), 0, 0, 0
+
+        async def one() -> None:
+            nonlocal inside, most, done
+            async with gate.slot():
+                inside += 1
+                most = max(most, inside)
+                await asyncio.sleep(0)
+                inside -= 1
+                done += 1
+
+        await asyncio.gather(*(one() for _ in range(20)))
+        return most, done
+
+    assert asyncio.run(crowd()) == (3, 20)
+
+
+def test_requests_turned_away_together_halve_it_once() -> None:
+    async def run() -> list[int]:
+        gate = Gate(16)
+        async with gate.slot() as first, gate.slot() as second:
+            gate.shrink(first)
+            gate.shrink(second)
+        limits = [gate.limit]
+        async with gate.slot() as later:
+            gate.shrink(later)
+        return [*limits, gate.limit]
+
+    assert asyncio.run(run()) == [8, 4]
+
+
+def test_it_never_closes_and_grows_back_to_where_it_was() -> None:
+    async def run() -> tuple[int, int, int]:
+        gate = Gate(4)
+        for _ in range(5):
+            async with gate.slot() as ticket:
+                gate.shrink(ticket)
+        low = gate.limit
+        gate.grow()
+        after_one = gate.limit
+        for _ in range(50):
+            gate.grow()
+        return low, after_one, gate.limit
+
+    assert asyncio.run(run()) == (1, 2, 4)
+
+
+def test_one_who_gives_up_waiting_leaves_no_hole() -> None:
+    async def run() -> bool:
+        gate = Gate(1)
+
+        async def one() -> None:
+            async with gate.slot():
+                await asyncio.sleep(0)
+
+        async with gate.slot():
+            waiting = [asyncio.create_task(one()) for _ in range(3)]
+            await asyncio.sleep(0)
+            waiting[0].cancel()
+        waiting[1].cancel()
+        results = await asyncio.gather(*waiting, return_exceptions=True)
+        async with asyncio.timeout(5):
+            await one()
+        return results[2] is None
+
+    assert asyncio.run(run())
+
+
+@pytest.mark.parametrize("limit", [1, 2, 7])
+def test_limit_is_kept_after_shrinking(limit: int) -> None:
+    async def run() -> int:
+        gate = Gate(limit)
+        async with gate.slot() as ticket:
+            gate.shrink(ticket)
+        inside = most = 0
+
+        async def one() -> None:
+            nonlocal inside, most
+            async with gate.slot():
+                inside += 1
+                most = max(most, inside)
+                await asyncio.sleep(0)
+                inside -= 1
+
+        await asyncio.gather(*(one() for _ in range(10)))
+        return most
+
+    assert asyncio.run(run()) == max(1, limit // 2)

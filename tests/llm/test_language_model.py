@@ -1,0 +1,95 @@
+"""Settings of a language model: what is refused, and that a process shares one client."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from codriving.config.build import build
+from codriving.config.compose import compose
+from codriving.errors import ConfigError
+from codriving.llm.language_model import LanguageModel
+from codriving.llm.offline import Offline
+
+MODELS = ("openai", "anthropic", "gemini", "ollama", "vllm", "custom")
+
+
+def model(name: str = "openai", *overrides: str) -> Any:
+    return build(compose([f"llm={name}", *overrides])["llm"], key="llm")
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_choice_is_a_model_with_its_name_in_tables(name: str) -> None:
+    made = model(name)
+    assert isinstance(made, LanguageModel)
+    assert made.name == made.model
+    assert made.cache == "off"
+    assert (made.api_key_env is None) == (name in ("ollama", "vllm", "custom"))
+
+
+def test_defaults_of_the_paper() -> None:
+    made = model()
+    assert (made.model, made.temperature, made.max_tokens) == ("gpt-4o-mini", 0.0, 300)
+
+
+@pytest.mark.parametrize(
+    ("override", "rule"),
+    [
+        ("model=''", "llm.model must be the name of a model"),
+        ("api_base=localhost:8000", "llm.api_base must be an address such as http"),
+        ("temperature=3", "llm.temperature must be 0 to 2, got 3"),
+        ("max_tokens=0", "llm.max_tokens must be 1 to 100000, got 0"),
+        ("deadline=0", "llm.deadline must be 0.1 to 3600 s, got 0"),
+        ("attempts=0", "llm.attempts must be 1 to 20, got 0"),
+        ("max_concurrency=0", "llm.max_concurrency must be 1 to 1000, got 0"),
+        ("cache=maybe", "llm.cache must be one of off, use, replay, got maybe"),
+        ("cache_file=''", "llm.cache_file must be the name of a file"),
+        ("max_cost=0", "llm.max_cost must be above 0 USD, got 0"),
+        ("max_tokens_total=0", "llm.max_tokens_total must be above 0, got 0"),
+        ("input_cost_per_token=-1", "llm.input_cost_per_token must be 0 USD or more, got -1"),
+        ("input_cost_per_token=1e-6", "llm.input_cost_per_token must be given together with output_cost_per_token"),
+        ("failures_in_a_row=0", "llm.failures_in_a_row must be 1 to 1000, got 0"),
+    ],
+)
+def test_what_breaks_a_rule_is_refused_with_key_rule_and_value(override: str, rule: str) -> None:
+    with pytest.raises(ConfigError) as refusal:
+        model("openai", f"llm.{override}")
+    assert str(refusal.value).startswith(rule)
+
+
+@pytest.mark.parametrize(
+    "override",
+    ["llm.api_key_env=sk-canary", "llm.api_base='http://me:canary@host/v1'", "llm.api_base='http://h/?k=canary'"],
+)
+def test_key_in_the_wrong_place_is_refused_and_not_repeated(override: str) -> None:
+    with pytest.raises(ConfigError, match="the key|not shown") as refusal:
+        model("openai", override)
+    assert "canary" not in str(refusal.value)
+
+
+def test_equal_settings_share_a_client_and_others_do_not(tmp_path: Path) -> None:
+    base = "llm.api_base=http://127.0.0.1:1/v1"
+    shared = model("custom", base).chat()
+    assert model("custom", base).chat() is shared
+    assert model("custom", base, "llm.ask_plain=true").chat() is shared
+    assert model("custom", base, "llm.max_tokens=100").chat() is not shared
+    assert shared.name == "openai/default"
+
+
+def test_building_and_connecting_is_quick_because_nothing_is_imported_yet() -> None:
+    code = (
+        "import sys; from codriving.config.build import build; from codriving.config.compose import compose; "
+        "build(compose(['llm=custom'])['llm'], key='llm').chat(); "
+        "print('litellm' in sys.modules, 'openai' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["False", "False"]
+
+
+def test_offline_has_no_chat() -> None:
+    made = model("offline")
+    assert isinstance(made, Offline)
+    assert made.chat() is None
+    assert made.max_concurrency == 1
