@@ -90,6 +90,7 @@ KEYS = (
     Key("output", "folder under which the run folders are written", str),
     Key("experiment", "folder below output, one an experiment", str, pattern=_NAME),
     Key("render", "whether each episode leaves a film, replay.mp4 beside its record", bool),
+    Key("prompts", "folder with templates that replace ours, for language models; null takes ours", str, optional=True),
     Key("plugins", "packages of yours whose classes a config may name", list),
 )
 

@@ -5,8 +5,8 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render")
-"""Keys that change how much of a run is made, where and how fast, never what an episode is."""
+WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render", "prompts")
+"""Keys that change how much of a run is made, where and how fast, never what an episode is; prompts are in `llm`."""
 
 HOW_A_MODEL_IS_ASKED = (
     "api_key_env",

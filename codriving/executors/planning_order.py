@@ -46,7 +46,7 @@ def drives_ahead(stage: Stage, vehicles: Mapping[str, Mover]) -> set[tuple[str, 
 
 
 def _is_alongside(stage: Stage, changing: Mover, other: Mover) -> bool:
-    """Whether somebody drives ahead or alongside on the lane that a CAV has to change to, which then cannot go first."""
+    """Whether somebody drives ahead or alongside on the lane that a CAV must change to, which then cannot go first."""
     change = stage.scenes[changing.id].must_change
     if change is None or not LANE_CHANGES & set(stage.available[changing.id]):
         return False

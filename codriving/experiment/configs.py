@@ -14,8 +14,8 @@ from codriving.storage.redaction import MASK, redact
 
 T = TypeVar("T")
 
-SHARED = (*(name for name in ROOT if name != "plugins"), "launcher")
-"""What all cells of a run have in common; a package of classes may belong to one scenario alone."""
+SHARED = (*(name for name in ROOT if name not in ("plugins", "prompts")), "launcher")
+"""What all cells of a run have in common; classes may belong to one scenario alone, templates to one cell."""
 
 
 def composed(points: Sequence[Point], config_dir: Path | None = None) -> list[dict[str, Any]]:

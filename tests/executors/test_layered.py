@@ -91,7 +91,7 @@ def test_nobody_enters_a_zone_that_is_taken(junction: Junction) -> None:
 
 @pytest.mark.parametrize(("gap", "action"), [(6.0, Action.SLOWER), (7.5, Action.IDLE), (14.0, Action.FASTER)])
 def test_nobody_comes_too_close_to_whoever_drives_ahead(gap: float, action: Action, junction: Junction) -> None:
-    # 0.9 s at 6 m/s, and a metre: 6.4 m between the bodies. A little farther away it does not slow down, nor accelerate.
+    # 0.9 s at 6 m/s, and a metre: 6.4 m between the bodies. A little farther away it neither slows down nor speeds up.
     cars = [car("CAV1", "south-north", 40.0, 6.0), car("CAV2", "south-north", 45.0 + gap, 6.0)]
     drive = act(junction, cars)
     assert drive.actions == {"CAV1": action, "CAV2": Action.FASTER}

@@ -64,7 +64,7 @@ def test_what_breaks_a_rule_is_refused_with_key_rule_and_value(override: str, ru
     ["llm.api_key_env=sk-canary", "llm.api_base='http://me:canary@host/v1'", "llm.api_base='http://h/?k=canary'"],
 )
 def test_key_in_the_wrong_place_is_refused_and_not_repeated(override: str) -> None:
-    with pytest.raises(ConfigError, match="the key|not shown") as refusal:
+    with pytest.raises(ConfigError, match=r"the key|not shown") as refusal:
         model("openai", override)
     assert "canary" not in str(refusal.value)
 
