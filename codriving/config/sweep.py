@@ -28,6 +28,7 @@ ONE_VALUE = {
     "seed": _SEEDS,
     "workers": _WORKERS,
     "launcher": _WORKERS,
+    "prompts": "templates belong to a model, whose llm.prompts takes several",
     "plugins": "it holds a list already, as in plugins=[a,b]",
     "render": "it changes no result",
 }

@@ -76,8 +76,7 @@ class ModelChat:
         """
         if not questions:
             return []
-        if not self.settings.replay:
-            self.spending.check()
+        self.spending.check()
         return loop().run(self._ask_all(questions))
 
     def preflight(self) -> None:

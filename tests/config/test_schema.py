@@ -17,6 +17,7 @@ PLAIN: dict[str, Any] = {
     "output": "outputs",
     "experiment": "run",
     "render": False,
+    "prompts": None,
     "plugins": [],
     **{name: {"_target_": "codriving.x.Y"} for name in NODES},
 }

@@ -4,8 +4,11 @@ LiteLLM takes seconds to import, so everything that needs it stands in this one 
 """
 
 import os
-from collections.abc import Callable
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -234,18 +237,28 @@ def test_many_at_once_share_few_connections(serve: Callable[..., Loopback], conn
     assert server.connections <= 5
 
 
-@pytest.mark.parametrize("batch", [20])
-def test_2000_calls_leave_no_file_open(loopback: Loopback, connect: Connect, batch: int) -> None:
-    client = connect(loopback, max_concurrency=batch)
+@pytest.fixture
+def apart() -> Iterator[str]:
+    """Address of a server in a process of its own, so that its work and its files are not counted as ours."""
+    code = [sys.executable, str(Path(__file__).with_name("loopback.py")), "--port", "0"]
+    with subprocess.Popen(code, stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        yield f"http://127.0.0.1:{int(server.stdout.readline())}/v1"
+        server.terminate()
 
-    def drive(calls: int) -> int:
-        for _ in range(calls // batch):
-            assert all(answer.value is not None for answer in client.ask([question()] * batch))
-        loopback.requests.clear()
+
+def test_2000_calls_leave_no_file_open(apart: str, connect: Connect) -> None:
+    at_once = 20
+    client = connect(apart, max_concurrency=at_once)
+
+    def files() -> int:
         return len(os.listdir("/proc/self/fd"))  # noqa: PTH208 - counted, not walked
 
-    before = drive(200)
-    assert drive(1800) <= before
+    before = files()
+    for _ in range(2000 // at_once):
+        assert all(answer.value is not None for answer in client.ask([question()] * at_once))
+    # The greeting has opened one connection; there may be one for each request under way, and no more.
+    assert files() < before + at_once
 
 
 def test_settings_make_a_client_that_works(loopback: Loopback) -> None:
