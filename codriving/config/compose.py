@@ -1,7 +1,7 @@
 """Overrides to one resolved config, as a plain dict; in the parent process only, since Hydra's state is global."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from codriving.config.overrides import prepare
 from codriving.config.plugins import find_beside, gathered
 from codriving.config.rules import check_rules
 from codriving.config.schema import check_root
+from codriving.config.texts import texts
 from codriving.errors import ConfigError
 
 _ENVIRONMENT = re.compile(r"\$\{\s*oc\.env\b")
@@ -66,21 +67,9 @@ def _search_path(config_dir: Path | None) -> str:
     return "hydra.searchpath=[" + ",".join(f"'file://{root}'" for root in escaped) + "]"
 
 
-def _texts(node: object, key: str = "") -> Iterator[tuple[str, str]]:
-    """Yield every text of the config with its key."""
-    if isinstance(node, Mapping):
-        for name, value in node.items():
-            yield from _texts(value, f"{key}.{name}" if key else str(name))
-    elif isinstance(node, list):
-        for index, value in enumerate(node):
-            yield from _texts(value, f"{key}.{index}")
-    elif isinstance(node, str):
-        yield key, node
-
-
 def _refuse_environment(raw: object) -> None:
     """Keep environment variables out: what is resolved is written to the run folder, and they may be secrets."""
-    for key, text in _texts(raw):
+    for key, text in texts(raw):
         if _ENVIRONMENT.search(text):
             raise ConfigError(
                 f"{key} reads an environment variable, which would be written to the run folder; "

@@ -1,9 +1,10 @@
 """Keys of language models are given by the name of an environment variable; one that was typed instead is not shown."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
+from codriving.config.texts import texts
 from codriving.errors import ConfigError
 
 _VARIABLE = re.compile(r"[A-Z_][A-Z0-9_]*")
@@ -20,7 +21,7 @@ def check_secrets(resolved: Mapping[str, Any]) -> None:
     Raises:
         ConfigError: If a setting that ends in ``_env`` is not the name of a variable, or an address has a password.
     """
-    for key, value in sorted(_texts(resolved), key=lambda pair: pair[0].count(".")):
+    for key, value in sorted(texts(resolved), key=lambda pair: pair[0].count(".")):
         if key.endswith("_env") and not _VARIABLE.fullmatch(value):
             raise ConfigError(
                 f"{key} must be the name of an environment variable (capitals, digits and _) that holds the key, not "
@@ -52,14 +53,3 @@ def may_be_secret(token: str) -> bool:
         token: ``key=value`` as typed.
     """
     return _SECRET.search(token.partition("=")[0]) is not None
-
-
-def _texts(node: object, key: str = "") -> Iterator[tuple[str, str]]:
-    if isinstance(node, Mapping):
-        for name, value in node.items():
-            yield from _texts(value, f"{key}.{name}" if key else str(name))
-    elif isinstance(node, list):
-        for index, value in enumerate(node):
-            yield from _texts(value, f"{key}.{index}")
-    elif isinstance(node, str):
-        yield key, node

@@ -4,11 +4,13 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import Role
 from codriving.errors import ConfigError
 from codriving.executors.joint_planner import JointPlans
-from codriving.executors.planned import Planned, drive_of
+from codriving.executors.planned import drive_of
 from codriving.executors.protocol import Drive
 from codriving.executors.stage import Stage
 from codriving.ordering.protocol import Ordering
+from codriving.prediction.rollout import Plan
 from codriving.reasoning.negotiation.human_windows import window
+from codriving.reasoning.plans import PLANS
 from codriving.reasoning.safety.outlook import then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
 
@@ -38,7 +40,7 @@ class Layered:
     """
 
     name = "layered"
-    library = Planned.library
+    library: tuple[Plan, ...] = PLANS
 
     def __init__(self, gap: float, hold: float, brake_anywhere: bool, headway: float) -> None:
         for key, value, most in (("gap", gap, 5), ("hold", hold, 200), ("headway", headway, 5)):

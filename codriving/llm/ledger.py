@@ -52,6 +52,15 @@ class Ledger:
         """
         counts: dict[str, float] = dict(self._counts)
         counts["cost_usd"] = self._cost
+        counts["model_seconds"] = self._waited()
         lines = [as_line(question.purpose, question.subject, time, answer) for question, answer in self._asked]
         self._counts, self._cost, self._asked = Counter(), 0.0, []
         return counts, lines
+
+    def _waited(self) -> float:
+        """How long the step waited [s]: the questions of one purpose are asked at once, the purposes one by one."""
+        longest: dict[str, float] = {}
+        for question, answer in self._asked:
+            seconds = sum(call.seconds for call in answer.calls)
+            longest[question.purpose] = max(seconds, longest.get(question.purpose, 0.0))
+        return sum(longest.values())

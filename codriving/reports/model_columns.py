@@ -9,11 +9,18 @@ from codriving.reports.statistics import share
 
 COST = "cost_usd"
 
+SECONDS = "step_seconds"
+"""Time that a decision step waited for the model, on average [s]; of a cached answer, the time that it took then."""
+
+WAITED = "model_seconds"
+"""Counter of the time that was waited for the model [s]; it has no column but the mean of a step."""
+
 ASKED = (
     "model_calls",
     "prompt_tokens",
     "completion_tokens",
     COST,
+    SECONDS,
     "re_asks",
     "fallbacks",
     "shortened",
@@ -44,7 +51,7 @@ def counter_columns(records: Iterable[EpisodeRecord], known: Sequence[str], rate
         rate: Whether the table has the share of fallbacks.
     """
     records = list(records)
-    names = {name for record in records for name in record.counts} - {UNPRICED}
+    names = {name for record in records for name in record.counts} - {UNPRICED, WAITED}
     model = any(map(reasoned, records))
     asked = [name for name in ASKED if model or name in names]
     columns = [*asked, *([FALLBACK_RATE] if model and rate else []), *sorted(names.difference(asked))]
@@ -70,6 +77,8 @@ def counted(records: Sequence[EpisodeRecord]) -> dict[str, Value]:
         sums = {**dict.fromkeys(ASKED, 0), COST: 0.0, **sums}
         if sums.pop(UNPRICED, 0):
             sums[COST] = None
+        steps, waited = sum(record.decisions for record in records), sums.pop(WAITED, 0)
+        sums[SECONDS] = float(waited or 0) / steps if steps else None
     return sums
 
 

@@ -42,8 +42,8 @@ def asked(make: Make) -> Callable[..., EpisodeRecord]:
 
 def test_the_columns_stand_in_their_order_after_all_others(make: Make, asked: Make) -> None:
     records = [asked(0), make(1, counts={"nodes": 3})]
-    assert episode_columns(records)[-12:] == (FURTHER[-1], *ASKED, "nodes")
-    assert summary_columns(records)[-12:] == (*ASKED, "fallback_rate", "nodes")
+    assert episode_columns(records)[-13:] == (FURTHER[-1], *ASKED, "nodes")
+    assert summary_columns(records)[-13:] == (*ASKED, "fallback_rate", "nodes")
 
 
 def test_tables_without_a_model_are_as_they_were(make: Make) -> None:
@@ -66,6 +66,14 @@ def test_a_model_that_was_never_asked_has_zeros_and_rules_have_nothing(make: Mak
 def test_failed_episodes_have_been_paid_for_too(make: Make, asked: Make) -> None:
     row = summary_row([asked(0), asked(1, Ending.ERROR), make(2, Ending.ERROR)])
     assert (row["completed"], row["model_calls"], row["cost_usd"], row["kept_orders"]) == (1, 2400, 0.2, 0)
+
+
+def test_a_step_has_the_mean_time_that_was_waited_for_the_model(make: Make, asked: Make) -> None:
+    records = [asked(0, model_seconds=6.0), asked(1, model_seconds=2.0)]
+    steps = sum(record.decisions for record in records)
+    assert summary_row(records)["step_seconds"] == pytest.approx(8.0 / steps)
+    assert episode_rows(records)[0]["step_seconds"] == pytest.approx(6.0 / records[0].decisions)
+    assert "model_seconds" not in {*episode_columns(records), *summary_columns(records)}
 
 
 def test_a_question_that_was_asked_again_counts_once_in_the_share_of_fallbacks(asked: Make) -> None:

@@ -6,9 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, Thoughts, car
 
+from codriving.geometry.box import TRUE
 from codriving.geometry.zone import ConflictZone
 from codriving.ordering.schedule import repaired, schedule
-from codriving.reasoning.negotiation.problem import FOREVER, Problem, ProblemMaker
+from codriving.reasoning.negotiation.problem import COMMITTED, FOREVER, Problem, ProblemMaker
 from codriving.reasoning.negotiation.separation import FOLLOWS
 from codriving.reasoning.tracking import Tracking
 
@@ -188,3 +189,13 @@ def test_every_moment_is_a_problem_that_can_be_solved(
         assert all(times[n] >= instance.entrants[n].eta for n in order)
     else:
         assert circle or len(instance.before) > 2
+
+
+def test_who_can_only_stop_where_the_other_cuts_the_corner_goes_first(junction: Junction) -> None:
+    # Far enough in for a turning car to brush it, though on the centre lines the bodies would not touch.
+    routes = ("south-north", "west-east")
+    (reach,), (body,) = (junction.road_map.zones(*routes, size) for size in (COMMITTED, TRUE))
+    assert reach.entry_i < body.entry_i
+    for place, fixed in ((reach.entry_i - 0.3, False), ((reach.entry_i + body.entry_i) / 2, True)):
+        before = pose(junction, car("CAV1", routes[0], place, 0.0), car("CAV2", routes[1], 40.0, 8.0)).instance.before
+        assert (("CAV1", "CAV2") in before) is fixed

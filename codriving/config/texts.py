@@ -1,0 +1,23 @@
+"""Every text of a config, wherever it stands."""
+
+from collections.abc import Iterator, Mapping
+
+
+def texts(node: object, key: str = "") -> Iterator[tuple[str, str]]:
+    """Yield every text with its dotted key.
+
+    Args:
+        node: A config, or a part of one.
+        key: Key of the part.
+
+    Yields:
+        Key and text.
+    """
+    if isinstance(node, Mapping):
+        for name, value in node.items():
+            yield from texts(value, f"{key}.{name}" if key else str(name))
+    elif isinstance(node, list):
+        for index, value in enumerate(node):
+            yield from texts(value, f"{key}.{index}")
+    elif isinstance(node, str):
+        yield key, node
