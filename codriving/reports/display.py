@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from codriving.reports.episodes_table import MEMORY
 from codriving.reports.model_display import model_heads, model_notes, model_texts
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.rows import Row, Value
@@ -92,10 +93,12 @@ def display(
         "PET mean / max / min [s]",
         "PET < 1.5 s",
         "velocity mean / max / min [m/s]",
+        *([MEMORY] if _any(rows, MEMORY) else []),
         *model_heads(rows, bool(seconds)),
         *([CLAIM] if ablation else []),
     )
-    words = ("scenario", "method", CLAIM, *(key for key in swept if not all(_is_number(row.get(key)) for row in rows)))
+    named = (key for key in swept if not all(_is_number(row.get(key)) for row in rows))
+    words = ("scenario", "method", MEMORY, CLAIM, *named)
     theirs = _beside(rows, paper)
     lines: list[Line] = []
     for index, (row, claim) in enumerate(zip(rows, claims, strict=True)):
@@ -143,6 +146,7 @@ def _ours(row: Row, claim: str) -> dict[str, str]:
         "PET mean / max / min [s]": three(row, "pet"),
         "PET < 1.5 s": percent(row["pet_below_1_5"]),
         "velocity mean / max / min [m/s]": three(row, "velocity"),
+        MEMORY: str(row.get(MEMORY) or "off"),
         CLAIM: claim,
     }
 

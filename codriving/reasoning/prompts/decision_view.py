@@ -78,7 +78,7 @@ def decision_view(situation: Situation, nearest: int | None = None, with_memorie
         "before": [OrderView(names(p.first), names.sentence(p.reason)) for p in pairs if p.second == ego],
         "after": [OrderView(names(p.second), names.sentence(p.reason)) for p in pairs if p.first == ego],
         "actions": _actions(situation.assessments, list(groups.values()), names),
-        "memories": [names.sentence(text, LONGEST_MEMORY) for text in situation.memories] if with_memories else [],
+        "memories": [names.sentence(m.text, LONGEST_MEMORY) for m in situation.memories] if with_memories else [],
         "allowed": [str(action) for action in situation.allowed],
     }
 
