@@ -88,15 +88,16 @@ class NonCooperativeGame:
         met = self.others.met(view)
         partner = met[0].conflict.other if met else ""
         rest = tuple(e for e in met if e.conflict.other != partner)
-        wished, why, precedences, crept = self.others.wish(view, rest, waited)
-        if partner:
+        crept = self.others.may_start(view, met, waited)
+        wished, why, precedences = self.others.wish(view, met if crept else rest, waited)
+        if partner and not crept:
             played, said, precedence = self.play(view, [e for e in met if e.conflict.other == partner])
             precedences = (precedence, *precedences)
             if played <= wished:
                 wished, why = played, said
         means = mean_accelerations(view.forecast, ego.speed, view.scene.intent.target_speed, self.others.window)
         action = closest_action(wished, means, self.others.brake_at)
-        counts = {"games": int(bool(partner)), "creeps": int(crept)}
+        counts = {"games": int(bool(partner) and not crept), "creeps": int(crept)}
         return Choice(action, f"{why}; it wishes {wished:+.1f} m/s2", precedences, refused, counts)
 
     def play(self, view: View, met: Sequence[Encounter]) -> tuple[float, str, Precedence]:
@@ -111,7 +112,8 @@ class NonCooperativeGame:
         """
         ego, other = view.scene.ego, met[0].other
         game = passing_game(met, ego.speed, view.top, self.hold, self.times)
-        first, _ = goes_first(met[0], view.road_map, self.others.tie)
+        # Only who is first on every way that the partner may take can be: so two can never both believe that they are.
+        first = all(goes_first(e, view.road_map, self.others.tie)[0] for e in met)
         answers = self.answers(game, first)
         row, _ = best_answer(game.own(self.own), answers, self.shares)
         likely = answers[int(np.argmax(self.shares))]

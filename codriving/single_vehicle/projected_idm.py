@@ -2,7 +2,6 @@
 
 from math import cos, inf
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import Precedence
 from codriving.errors import ConfigError
 from codriving.prediction.idm import IntelligentDriver
@@ -102,11 +101,12 @@ class ProjectedIdm:
         change, refused = self.lanes.choose(view, self.idm)
         if change is not None:
             return Choice(change.action, change.reason, (), refused)
-        wished, why, precedences, crept = self.wish(view, self.met(view), waited)
+        met = self.met(view)
+        wished, why, precedences = self.wish(view, met, waited)
         means = mean_accelerations(view.forecast, scene.ego.speed, scene.intent.target_speed, self.window)
         action = closest_action(wished, means, self.brake_at)
         reason = f"{why}; IDM wishes {wished:+.1f} m/s2"
-        return Choice(action, reason, precedences, refused, {"creeps": int(crept and action is Action.FASTER)})
+        return Choice(action, reason, precedences, refused, {"creeps": int(self.may_start(view, met, waited))})
 
     def met(self, view: View) -> tuple[Encounter, ...]:
         """Return where it is open who goes first, most urgent first.
@@ -116,9 +116,7 @@ class ProjectedIdm:
         """
         return encounters(view, float(view.forecast.reach(view.scene.ego.speed, True).least[-1]), self.firm)
 
-    def wish(
-        self, view: View, met: tuple[Encounter, ...], waited: float
-    ) -> tuple[float, str, tuple[Precedence, ...], bool]:
+    def wish(self, view: View, met: tuple[Encounter, ...], waited: float) -> tuple[float, str, tuple[Precedence, ...]]:
         """Return the acceleration that is wished.
 
         Args:
@@ -127,14 +125,14 @@ class ProjectedIdm:
             waited: How long it has been standing [s].
 
         Returns:
-            Acceleration [m/s2], why, who goes first wherever it is open, and whether it starts for having waited.
+            Acceleration [m/s2], why, and who goes first wherever it is open.
         """
         scene = view.scene
         speed, top = scene.ego.speed, view.top
         options = [(self.idm.accelerate(speed, top), "nobody is in the way")]
         for ahead in leaders(scene, view.road_map):
             options.append((self.idm.accelerate(speed, top, ahead.gap, ahead.speed), f"{ahead.id} is ahead"))
-        creeps = waited >= self.patience and self._empty(view, met)
+        creeps = self.may_start(view, met, waited)
         precedences: dict[str, Precedence] = {}
         for e in met:
             first, why = goes_first(e, view.road_map, self.tie)
@@ -148,7 +146,7 @@ class ProjectedIdm:
                 precedences[other] = Precedence(other, scene.ego.id, why)
             options.append((self._behind(e, view), f"{other} goes first: {why}"))
         wished, why = min(options)
-        return wished, why, tuple(precedences.values()), creeps and bool(met)
+        return wished, why, tuple(precedences.values())
 
     def _behind(self, e: Encounter, view: View) -> float:
         """The acceleration behind somebody who goes first: to follow its projection, or to stop before the zone.
@@ -164,9 +162,15 @@ class ProjectedIdm:
         following = self.idm.accelerate(speed, view.top, lead, e.other.speed * along)
         return following if waiting == inf else max(following, waiting)
 
-    def _empty(self, view: View, met: tuple[Encounter, ...]) -> bool:
-        """Whether nobody is in the zones ahead, nor will be before the vehicle is through."""
-        return all(self._lets_start(e, view) for e in met)
+    def may_start(self, view: View, met: tuple[Encounter, ...], waited: float) -> bool:
+        """Whether the CAV has waited long enough, and nobody is in the zones ahead or will be before it is through.
+
+        Args:
+            view: What the CAV sees.
+            met: Where it is open who goes first.
+            waited: How long it has been standing [s].
+        """
+        return bool(met) and waited >= self.patience and all(self._lets_start(e, view) for e in met)
 
     def _lets_start(self, e: Encounter, view: View) -> bool:
         if e.other_inside:
