@@ -6,7 +6,7 @@ from codriving.datatypes.order import Precedence
 from codriving.errors import ConfigError
 from codriving.prediction.idm import IntelligentDriver
 from codriving.single_vehicle.action_mapping import closest_action, mean_accelerations
-from codriving.single_vehicle.encounters import FRONT, Encounter, crossing_angle, encounters
+from codriving.single_vehicle.encounters import FRONT, Encounter, crossing_angle, encounters, passes_by
 from codriving.single_vehicle.expected_first import goes_first
 from codriving.single_vehicle.lane_choice import LaneChoice
 from codriving.single_vehicle.leaders import leaders
@@ -129,7 +129,7 @@ class ProjectedIdm:
         """
         scene = view.scene
         speed, top = scene.ego.speed, view.top
-        options = [(self.idm.accelerate(speed, top), "nobody is in the way")]
+        options = [(self.idm.accelerate(speed, top), "nobody holds it up")]
         for ahead in leaders(scene, view.road_map):
             options.append((self.idm.accelerate(speed, top, ahead.gap, ahead.speed), f"{ahead.id} is ahead"))
         creeps = self.may_start(view, met, waited)
@@ -145,7 +145,8 @@ class ProjectedIdm:
             if other not in precedences or precedences[other].first == scene.ego.id:
                 precedences[other] = Precedence(other, scene.ego.id, why)
             options.append((self._behind(e, view), f"{other} goes first: {why}"))
-        wished, why = min(options)
+        # Of several that wish the same the first one counts, so that nobody is named who is not in the way.
+        wished, why = min(options, key=lambda option: option[0])
         return wished, why, tuple(precedences.values())
 
     def _behind(self, e: Encounter, view: View) -> float:
@@ -173,10 +174,10 @@ class ProjectedIdm:
         return bool(met) and waited >= self.patience and all(self._lets_start(e, view) for e in met)
 
     def _lets_start(self, e: Encounter, view: View) -> bool:
+        if e.other.standing > 0:
+            return passes_by(e, view.road_map)
         if e.other_inside:
             return False
-        if e.other.standing > 0:
-            return True
         go = view.forecast.reach(view.scene.ego.speed, True).most
         through = view.forecast.time_to(e.conflict.exits[0], go)
         return e.conflict.ttcp[1] > through + self.clear
