@@ -12,6 +12,7 @@ from worlds import Junction, car
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.outcome import Ending
+from codriving.datatypes.scene import Start
 from codriving.environment.environment import Environment
 from codriving.methods.alone import Alone
 from codriving.storage.decisions_file import decisions_text
@@ -98,9 +99,9 @@ def test_each_road_is_driven_to_the_end(scenario: str, name: str, configured: Ma
 @pytest.mark.parametrize("name", METHODS)
 def test_cavs_alone_do_not_run_into_one_another(name: str, configured: Make) -> None:
     environment = configured("scenario=intersection", "scenario.hdvs=[0,0]", "scenario.cavs=6")
-    endings = [outcome.ending for seed in range(10_100, 10_110) if (outcome := _end(environment, name, seed))]
+    endings = [outcome.ending for seed in range(10_100, 10_106) if (outcome := _end(environment, name, seed))]
     assert endings.count(Ending.COLLISION) == 0
-    assert endings.count(Ending.SUCCESS) >= 8
+    assert endings.count(Ending.SUCCESS) >= 5
 
 
 def _end(environment: Environment, name: str, seed: int) -> object:
@@ -111,8 +112,6 @@ def _end(environment: Environment, name: str, seed: int) -> object:
 def test_four_at_once_do_not_wait_for_one_another_for_ever(name: str, junction: Junction) -> None:
     legs = ("south", "west", "north", "east")
     starts = [car(f"CAV{k}", f"{leg}-{legs[(k + 2) % 4]}", 60.0, 7.0) for k, leg in enumerate(legs)]
-    from codriving.datatypes.scene import Start
-
     environment = junction.drive(*(Start(c.id, c.kind, c.route, c.place, c.speed) for c in starts))
     outcome = drive(environment, made(name), 0).outcome
     assert outcome is not None

@@ -45,7 +45,7 @@ def test_two_never_both_go_first(
 @pytest.mark.parametrize(
     ("one", "other", "winner"),
     [
-        (("south-north", 80.0, 7.0), ("west-east", 70.0, 7.0), "CAV1"),
+        (("south-north", 84.0, 7.0), ("west-east", 80.0, 7.0), "CAV1"),
         (("south-north", 80.0, 7.0), ("west-east", 90.0, 7.0), "CAV2"),
         (("south-north", 80.0, 3.0), ("west-east", 80.0, 7.0), "CAV2"),
         (("south-north", 108.0, 2.0), ("west-east", 80.0, 9.0), "CAV1"),
@@ -59,31 +59,28 @@ def test_who_is_there_earlier_goes_first(
 
 
 def test_at_once_who_comes_from_the_right_goes_first(junction: Junction) -> None:
-    # Whoever comes from the east has whoever comes from the south on its left.
-    found = first(junction, car("CAV1", "south-north", 74.0, 7.0), car("CAV2", "east-west", 78.0, 7.0))
+    # Whoever comes from the south has whoever comes from the east on its right.
+    found = first(junction, car("CAV1", "south-north", 84.0, 7.0), car("CAV2", "east-west", 80.0, 7.0))
     assert found["CAV1"] == (False, "CAV2 comes from the right")
     assert found["CAV2"] == (True, "CAV1 comes from the left")
 
 
 def test_at_once_from_opposite_sides_names_decide(junction: Junction) -> None:
-    found = first(junction, car("CAV2", "south-west", 80.0, 7.0), car("CAV1", "north-south", 80.0, 7.0))
-    if (
-        abs(
-            met(seen(junction, car("CAV2", "south-west", 80.0, 7.0), car("CAV1", "north-south", 80.0, 7.0)))[
-                0
-            ].conflict.dttcp
-        )
-        <= TIE
-    ):
-        assert found["CAV1"][0]
-        assert not found["CAV2"][0]
+    (zone,) = junction.road_map.zones("south-west", "north-south")
+    turning = car("CAV2", "south-west", zone.entry_i - 16.0, 7.0)
+    found = first(junction, turning, car("CAV1", "north-south", zone.entry_j - 16.0, 7.0))
+    assert found["CAV1"] == (True, "both are there at once, and names decide")
+    assert found["CAV2"] == (False, "both are there at once, and names decide")
 
 
 def test_whoever_would_have_to_brake_hard_is_not_expected_to_wait(junction: Junction) -> None:
-    # CAV1 would be there earlier, but can still wait; HDV1 cannot.
-    found = first(junction, car("CAV1", "south-north", 104.0, 2.5), car("HDV1", "west-east", 97.0, 9.0))
-    assert found == {} or "CAV1" in found
-    view = seen(junction, car("CAV1", "south-north", 100.0, 3.0), car("HDV1", "west-east", 99.0, 9.0))
-    (e,) = [e for e in met(view) if e.conflict.routes[1] == "west-east"]
+    # The CAV would be there at about the same time and comes from the right, but can still wait; HDV1 cannot.
+    cars = (car("CAV1", "south-north", 99.0, 3.0), car("HDV1", "west-east", 92.0, 9.0))
+    (e,) = [e for e in met(seen(junction, *cars)) if e.conflict.routes[1] == "west-east"]
     assert (e.bound, e.other_bound) == (False, True)
     assert goes_first(e, junction.road_map, TIE) == (False, "HDV1 cannot be expected to stop")
+
+
+def test_whoever_is_in_the_zone_goes_first(junction: Junction) -> None:
+    found = first(junction, car("CAV1", "south-north", 106.0, 1.0), car("CAV2", "west-east", 107.0, 9.0))
+    assert found == {"CAV1": (True, "it is there already"), "CAV2": (False, "CAV1 is there already")}

@@ -34,7 +34,7 @@ def played(view: View) -> PassingGame:
 
 
 def test_a_partner_far_away_does_not_keep_it_from_accelerating(junction: Junction) -> None:
-    ego, far = car("CAV1", "south-north", 95.0, 6.0), car("HDV1", "west-east", 66.0, 5.0)
+    ego, far = car("CAV1", "south-north", 95.0, 6.0), car("HDV1", "west-east", 76.0, 5.0)
     choice = decide(game(), junction, ego, far)
     assert choice.counts["games"] == 1
     assert choice.action is Action.FASTER
@@ -45,7 +45,7 @@ def test_a_partner_far_away_does_not_keep_it_from_accelerating(junction: Junctio
 
 
 def test_it_lets_a_partner_pass_who_is_there_first(junction: Junction) -> None:
-    ego, near = car("CAV1", "south-north", 88.0, 7.0), car("HDV1", "west-east", 102.0, 7.0)
+    ego, near = car("CAV1", "south-north", 88.0, 7.0), car("HDV1", "west-east", 98.0, 7.0)
     driver, view = game(), seen(junction, ego, near)
     acceleration, _, precedence = driver.play(view, partner(view))
     assert acceleration < 0
@@ -53,7 +53,7 @@ def test_it_lets_a_partner_pass_who_is_there_first(junction: Junction) -> None:
 
 
 def test_a_symmetric_meeting_has_two_asymmetric_equilibria(junction: Junction) -> None:
-    view = seen(junction, car("CAV1", "south-north", 86.0, 7.0), car("CAV2", "west-east", 82.0, 7.0))
+    view = seen(junction, car("CAV1", "south-north", 86.0, 7.0), car("CAV2", "west-east", 90.0, 7.0))
     (e,) = [e for e in partner(view) if e.conflict.routes[1] == "west-east"]
     assert e.own_way == pytest.approx(e.its_way, abs=0.6)
     driver = game()
@@ -65,7 +65,7 @@ def test_a_symmetric_meeting_has_two_asymmetric_equilibria(junction: Junction) -
 
 
 def test_of_two_who_meet_at_once_not_both_accelerate(junction: Junction) -> None:
-    cars = (car("CAV1", "south-north", 86.0, 7.0, 7.0), car("CAV2", "west-east", 82.0, 7.0, 7.0))
+    cars = (car("CAV1", "south-north", 86.0, 7.0, 7.0), car("CAV2", "west-east", 90.0, 7.0, 7.0))
     actions = {ego: decide(game(), junction, *cars, ego=ego).action for ego in ("CAV1", "CAV2")}
     assert Action.SLOWER in actions.values()
 
