@@ -100,6 +100,8 @@ async def _import() -> ModuleType:
 
     litellm.suppress_debug_info = True
     litellm.telemetry = False
+    # For embeddings a 0 of the call counts as nothing said; retries have one owner.
+    litellm.DEFAULT_MAX_RETRIES = 0
     for name in ("LiteLLM", "httpx", "openai"):
         # Their lines may hold addresses with keys; what goes wrong is told by us.
         logging.getLogger(name).setLevel(logging.CRITICAL)
