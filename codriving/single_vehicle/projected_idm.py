@@ -6,12 +6,13 @@ from codriving.datatypes.order import Precedence
 from codriving.errors import ConfigError
 from codriving.prediction.idm import IntelligentDriver
 from codriving.single_vehicle.action_mapping import closest_action, mean_accelerations
-from codriving.single_vehicle.encounters import FRONT, Encounter, crossing_angle, encounters, passes_by
+from codriving.single_vehicle.encounters import FRONT, Encounter, crossing_angle, encounters
 from codriving.single_vehicle.expected_first import goes_first
 from codriving.single_vehicle.lane_choice import LaneChoice
 from codriving.single_vehicle.leaders import leaders
 from codriving.single_vehicle.patience import Patience
 from codriving.single_vehicle.protocol import Choice, View
+from codriving.single_vehicle.starting import lets_start
 
 LIMITS = {
     "acceleration": (0.1, 10.0),
@@ -171,13 +172,4 @@ class ProjectedIdm:
             met: Where it is open who goes first.
             waited: How long it has been standing [s].
         """
-        return bool(met) and waited >= self.patience and all(self._lets_start(e, view) for e in met)
-
-    def _lets_start(self, e: Encounter, view: View) -> bool:
-        if e.other.standing > 0:
-            return passes_by(e, view.road_map)
-        if e.other_inside:
-            return False
-        go = view.forecast.reach(view.scene.ego.speed, True).most
-        through = view.forecast.time_to(e.conflict.exits[0], go)
-        return e.conflict.ttcp[1] > through + self.clear
+        return bool(met) and waited >= self.patience and all(lets_start(e, view, self.clear) for e in met)
