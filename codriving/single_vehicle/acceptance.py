@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from codriving.datatypes.action import Action
 from codriving.reasoning.clearance import stays_behind
 from codriving.single_vehicle.encounters import Encounter
+from codriving.single_vehicle.lane_choice import Side
 from codriving.single_vehicle.leaders import Leader, leaders
 from codriving.single_vehicle.protocol import View
 
@@ -57,11 +58,39 @@ def refusals(view: View, before: Sequence[Encounter], limits: Limits, actions: S
     times = forecast.times[:last]
     found: dict[Action, str] = {}
     for leader in leaders(scene, view.road_map):
-        _note(found, actions, _too_close(leader, travel, times, forecast.sample, limits), f"{leader.id} ahead is close")
+        _note(found, actions, _too_close(leader, travel, times, forecast.sample, limits.headway, limits.gap), f"{leader.id} ahead is close")
     for e in before:
         why = f"{e.conflict.other} may be there first"
         _note(found, actions, _in_the_way(e, travel, times, forecast.sample, limits), why)
     return found
+
+
+def change_refused(view: View, side: Side, limits: Limits, headway: float) -> str:
+    """Say why a lane change is not acceptable; nothing if it is.
+
+    It is acceptable if, everybody keeping the speed for the horizon, the vehicle keeps a headway to whoever is then
+    ahead, and whoever is then behind keeps the gap.
+
+    Args:
+        view: What the vehicle sees.
+        side: The lane beside.
+        limits: What has to be kept.
+        headway: Time gap to whoever is then ahead [s].
+    """
+    forecast, ego = view.forecast, view.scene.ego
+    last = min(round(limits.horizon / forecast.sample), forecast.steps) + 1
+    travel = forecast.travel(ego.speed, view.scene.intent.target_speed, ((Action.IDLE,),))[:, :last]
+    times = forecast.times[:last]
+    ahead, behind = side.ahead, side.behind
+    if ahead is not None and ahead.gap is not None:
+        leader = Leader(ahead.id, ahead.gap, ahead.speed)
+        if _too_close(leader, travel, times, forecast.sample, headway, limits.gap).any():
+            return f"{ahead.id} ahead there is close"
+    if behind is not None and behind.gap is not None:
+        free = behind.gap + travel[0] - behind.speed * times
+        if float(free.min()) < limits.gap:
+            return f"{behind.id} behind there catches up"
+    return ""
 
 
 def _note(found: dict[Action, str], actions: Sequence[Action], refused: Flags, why: str) -> None:
@@ -70,12 +99,12 @@ def _note(found: dict[Action, str], actions: Sequence[Action], refused: Flags, w
             found.setdefault(action, why)
 
 
-def _too_close(leader: Leader, travel: Array, times: Array, sample: float, limits: Limits) -> Flags:
+def _too_close(leader: Leader, travel: Array, times: Array, sample: float, headway: float, gap: float) -> Flags:
     """Whether each motion comes too close to somebody ahead (actions,); who gets away is not too close."""
     free = leader.gap + leader.speed * times - travel
     pace = np.diff(travel, axis=1) / sample
-    close = (free[:, 1:] < limits.headway * pace) & (free[:, 1:] < leader.gap)
-    return np.asarray((close | (free[:, 1:] < limits.gap)).any(axis=1))
+    close = (free[:, 1:] < headway * pace) & (free[:, 1:] < leader.gap)
+    return np.asarray((close | (free[:, 1:] < gap)).any(axis=1))
 
 
 def _in_the_way(e: Encounter, travel: Array, times: Array, sample: float, limits: Limits) -> Flags:

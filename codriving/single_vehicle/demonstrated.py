@@ -5,10 +5,10 @@ from codriving.datatypes.order import Precedence
 from codriving.errors import ConfigError
 from codriving.prediction.idm import IntelligentDriver
 from codriving.prediction.rollout import Plan
-from codriving.single_vehicle.acceptance import Limits, refusals
+from codriving.single_vehicle.acceptance import Limits, change_refused, refusals
 from codriving.single_vehicle.encounters import Encounter, encounters
 from codriving.single_vehicle.expected_first import goes_first
-from codriving.single_vehicle.lane_choice import LaneChoice
+from codriving.single_vehicle.lane_choice import LaneChoice, Side
 from codriving.single_vehicle.patience import Patience
 from codriving.single_vehicle.protocol import Choice, View
 from codriving.single_vehicle.starting import lets_start
@@ -22,6 +22,7 @@ CONSTANT: tuple[Plan, ...] = tuple((action,) for action in PREFERRED)
 LIMITS = {
     "horizon": (0.5, 10.0),
     "headway": (0.0, 5.0),
+    "merging": (0.0, 5.0),
     "gap": (0.0, 20.0),
     "stop_gap": (0.0, 20.0),
     "after": (0.0, 5.0),
@@ -39,6 +40,7 @@ class Demonstrated:
     Args:
         horizon: Time over which an action is predicted, taken again and again [s].
         headway: Time gap that is kept to whoever drives ahead [s].
+        merging: The same on the other lane for a change that the route asks for [s].
         gap: Distance that is kept to whoever drives ahead, however slow [m].
         stop_gap: Distance from a zone at which the vehicle waits [m].
         after: Time between the other one's leaving a zone and the vehicle's entering it [s].
@@ -59,6 +61,7 @@ class Demonstrated:
         self,
         horizon: float,
         headway: float,
+        merging: float,
         gap: float,
         stop_gap: float,
         after: float,
@@ -74,7 +77,8 @@ class Demonstrated:
             if not low <= value <= high:
                 raise ConfigError(f"{key} must be {low:g} to {high:g}, got {value:g}")
         self.limits = Limits(horizon, headway, gap, stop_gap, after)
-        self.tie, self.firm, self.patience, self.clear, self.lanes = tie, firm, patience, clear, lanes
+        self.merging, self.tie, self.firm = merging, tie, firm
+        self.patience, self.clear, self.lanes = patience, clear, lanes
         self._idm = IntelligentDriver(gap=gap)
         self._patience = Patience()
 
@@ -91,7 +95,7 @@ class Demonstrated:
         """
         ego = view.scene.ego
         waited = self._patience.waited(ego.id, ego.speed, view.time)
-        change, refused = self.lanes.choose(view, self._idm)
+        change, refused = self.lanes.choose(view, self._idm, self.refuses)
         if change is not None:
             return Choice(change.action, change.reason, (), refused)
         met = encounters(view, float(view.forecast.reach(ego.speed, True).least[-1]), self.firm)
@@ -106,6 +110,18 @@ class Demonstrated:
             why = refused.pop(Action.SLOWER, "")
             return Choice(Action.SLOWER, f"nothing is acceptable, so SLOWER: {why}", precedences, refused, counts)
         return Choice(action, _reason(action, refused, waited if creeps else 0.0), precedences, refused, counts)
+
+    def refuses(self, view: View, side: Side, idm: IntelligentDriver) -> str:
+        """Say why a lane change is refused; nothing if it is not.
+
+        Args:
+            view: What the CAV sees.
+            side: The lane beside.
+            idm: How everybody follows.
+        """
+        must = view.scene.must_change is not None
+        headway = self.merging if must else self.limits.headway
+        return self.lanes.braked_for(view, side, idm) or change_refused(view, side, self.limits, headway)
 
     def first(
         self, view: View, met: tuple[Encounter, ...]
