@@ -54,6 +54,7 @@ class Effect:
         own_braking: Hardest mean deceleration of the CAV over one of the next decision steps [m/s2].
         forced_braking: Hardest mean deceleration of another vehicle in its way over this or the next step [m/s2].
         collision: Time until the CAV was in a collision [s]; None if it was in none within the horizon.
+        to_blame: Whether the action led to that collision.
         needless: Whether it waited although nobody used the way.
     """
 
@@ -63,6 +64,7 @@ class Effect:
     own_braking: float = 0.0
     forced_braking: float = 0.0
     collision: float | None = None
+    to_blame: bool = False
     needless: bool = False
 
 

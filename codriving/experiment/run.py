@@ -125,10 +125,23 @@ def drive(
         UserError: If the config or the run folder cannot be used.
         Interrupted: If the user stops it; finished episodes are kept.
     """
-    return _run(make_plan(points, config_dir), extend)
+    return drive_plan(make_plan(points, config_dir), extend)
 
 
-def _run(plan: Plan, extend: Callable[[Driven], Further] | None) -> Finished:
+def drive_plan(plan: Plan, extend: Callable[[Driven], Further] | None = None) -> Finished:
+    """Drive what a plan says, or what is missing of it, with a progress display and without a table.
+
+    Args:
+        plan: The plan.
+        extend: Makes what the command has beyond the tables of every run.
+
+    Returns:
+        The finished run.
+
+    Raises:
+        UserError: If the run folder cannot be used.
+        Interrupted: If the user stops it; finished episodes are kept.
+    """
     preload = [*modules_to_preload(plan.configs.values()), *(["codriving.pictures.screening"] if plan.render else [])]
     further = extend or (lambda _: Further())
 
@@ -164,7 +177,7 @@ def command(
     if name == "ablate":
         _refuse_alike(plan)
     try:
-        finished = _run(plan, extend)
+        finished = drive_plan(plan, extend)
     except Interrupted as stop:
         again = resume_command(name, overrides, config_dir, stop.folder.name)
         print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)

@@ -21,6 +21,8 @@ STANDS = 0.5
 SLOW = 3.0
 """A CAV that keeps a lower speed than this waits [m/s]."""
 
+SIDEWAYS = (Action.LANE_LEFT, Action.LANE_RIGHT)
+
 BEHIND = 2.0
 """Whoever drives up to this time behind on the same lane is in the way of whoever slows down or cuts in [s]."""
 
@@ -40,7 +42,7 @@ def effect_of(way: Way, k: int) -> Effect:
     """
     now, after = way.moments[k], _at(way, k + 1)
     collision = _collision(way, k)
-    conflict = _judged(now, None if collision is None or way.crash is None else way.crash[1])
+    conflict = _judged(now, None if collision is None or way.crash is None else way.crash.other)
     later = None if conflict is None or after is None else _same(conflict, after.conflicts)
     change = 0.0 if conflict is None or later is None else own_change(conflict, later, now.ego.speed * way.interval)
     return Effect(
@@ -50,6 +52,7 @@ def effect_of(way: Way, k: int) -> Effect:
         own_braking=round(_own_braking(way, k), 3),
         forced_braking=round(_forced_braking(way, k, conflict, change), 3),
         collision=None if collision is None else round(collision, 3),
+        to_blame=collision is not None and _is_to_blame(way, k, conflict, change),
         needless=_needless(way, k),
     )
 
@@ -95,8 +98,27 @@ def _same(conflict: Conflict, later: Sequence[Conflict]) -> Conflict | None:
 def _collision(way: Way, k: int) -> float | None:
     if way.crash is None:
         return None
-    ahead = way.crash[0] - k * way.interval
+    ahead = way.crash.time - k * way.interval
     return ahead if 0 <= ahead <= HORIZON else None
+
+
+def _is_to_blame(way: Way, k: int, conflict: Conflict | None, change: float) -> bool:
+    """Whether an action led to the collision that came soon after.
+
+    If the CAV began to change lanes before it, that did. Otherwise whatever it did but brake if their ways met, or if
+    it ran into somebody ahead; whoever is run into from behind on its lane did nothing wrong. Braking did if it brought
+    the two closer together.
+    """
+    assert way.crash is not None
+    end = min(len(way.moments), 1 + int(way.crash.time / way.interval))
+    before = way.moments[max(0, end - 1 - round(HORIZON / way.interval)) : end]
+    action = way.moments[k].action
+    if any(m.action in SIDEWAYS for m in before):
+        return action in SIDEWAYS
+    met = conflict is not None and conflict.other == way.crash.other
+    if action is Action.SLOWER:
+        return met and change < 0
+    return met or way.crash.striker
 
 
 def _deceleration(before: float, after: float, interval: float) -> float:

@@ -74,6 +74,9 @@ KINDS: tuple[tuple[str, float, tuple[str, ...]], ...] = (
 ACTIONS, ALLOWED = tuple(str(action) for action in Action), 1.0
 """What may be allowed, and the weight of that."""
 
+ABSENT = 0.2
+"""Share of its weight with which a number counts where it is not there: two empty lanes are alike, but not very."""
+
 HARMONICS = (1, 3)
 """Turns of the circles on which a number lies; the faster ones tell near values apart."""
 
@@ -125,7 +128,7 @@ class Features:
 
 def _put(places: NDArray[np.float64], number: Number, value: float | None) -> None:
     if value is None:
-        places[-1] = number.weight**0.5
+        places[-1] = (ABSENT * number.weight) ** 0.5
         return
     u = asinh(min(max(value, -number.span), number.span) / number.scale) / asinh(number.span / number.scale)
     size = (number.weight / len(HARMONICS)) ** 0.5

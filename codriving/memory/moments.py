@@ -30,15 +30,30 @@ class Moment:
 
 
 @dataclass(frozen=True, slots=True)
+class Crash:
+    """A collision, seen from one of the two.
+
+    Attributes:
+        time: When it was, counted from the first moment [s].
+        other: Id of the other one.
+        striker: Whether it ran into the other, and not the other into it.
+    """
+
+    time: float
+    other: str
+    striker: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Way:
     """The moments of one CAV, a decision step apart, until it arrived or the episode ended.
 
     Attributes:
         moments: One a decision; the last one may be the end of the episode.
         interval: Time between two of them [s].
-        crash: Time of the collision that it was in, counted from the first moment, and with whom; None if in none.
+        crash: The collision that it was in; None if in none.
     """
 
     moments: tuple[Moment, ...]
     interval: float
-    crash: tuple[float, str] | None = None
+    crash: Crash | None = None

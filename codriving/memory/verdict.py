@@ -25,8 +25,8 @@ LESSONS: Mapping[Verdict, str] = {
 def verdict_of(effect: Effect, action: Action) -> Verdict:
     """Judge an action by what came of it.
 
-    It has *intensified* the conflict if the CAV was in a collision soon after, unless the action itself clearly moved
-    it away; if it has narrowed the difference of the times to the conflict point and the danger is in a worse band; or
+    It has *intensified* the conflict if it led to a collision soon after, and did not itself clearly move the CAV away
+    from it; if it has narrowed the difference of the times to the conflict point and the danger is in a worse band; or
     if somebody then had to brake hard for it. It has *eased* it if it has widened that difference in serious or general
     danger. It was *too cautious* if the CAV waited and nobody used the way.
 
@@ -34,7 +34,7 @@ def verdict_of(effect: Effect, action: Action) -> Verdict:
         effect: What came of it.
         action: The action.
     """
-    if effect.collision is not None and effect.own_change <= CLEARLY:
+    if effect.to_blame and effect.own_change <= CLEARLY:
         return Verdict.INTENSIFIED
     if _intensified(effect, action):
         return Verdict.INTENSIFIED

@@ -12,7 +12,7 @@ from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.memory.describe import describe
 from codriving.memory.effect import effect_of
-from codriving.memory.moments import Moment, Way
+from codriving.memory.moments import Crash, Moment, Way
 from codriving.memory.verdict import LESSONS, verdict_of
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.scenes import describe_scenes
@@ -100,8 +100,9 @@ class ExperienceLog:
                 )
             )
 
-    def _crash(self, name: str, collision: Collision | None) -> tuple[float, str] | None:
+    def _crash(self, name: str, collision: Collision | None) -> Crash | None:
         if collision is None or name not in (collision.striker, collision.struck) or self._begun is None:
             return None
-        other = collision.struck if name == collision.striker else collision.striker
-        return collision.time - self._begun, other
+        strikes = name == collision.striker
+        other = collision.struck if strikes else collision.striker
+        return Crash(collision.time - self._begun, other, strikes)
