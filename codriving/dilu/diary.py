@@ -16,7 +16,7 @@ from codriving.reasoning.prompts.seen_names import seen_names
 EVERY = 5
 """Of a drive that ends well every fifth decision is kept."""
 
-LONGEST = 110
+LONGEST = 100
 """Characters of a mistake, and of a lesson: a memory is told in a few lines."""
 
 

@@ -143,7 +143,9 @@ class DiLu:
         perception = self._perception
         seen = perception.perceive(world)
         return [
-            View(scene, seen.conflicts[name], world.available[name], perception.road_map, perception.forecast, world.time)
+            View(
+                scene, seen.conflicts[name], world.available[name], perception.road_map, perception.forecast, world.time
+            )
             for name, scene in seen.scenes.items()
         ]
 

@@ -58,7 +58,12 @@ def refusals(view: View, before: Sequence[Encounter], limits: Limits, actions: S
     times = forecast.times[:last]
     found: dict[Action, str] = {}
     for leader in leaders(scene, view.road_map):
-        _note(found, actions, _too_close(leader, travel, times, forecast.sample, limits.headway, limits.gap), f"{leader.id} ahead is close")
+        _note(
+            found,
+            actions,
+            _too_close(leader, travel, times, forecast.sample, limits.headway, limits.gap),
+            f"{leader.id} ahead is close",
+        )
     for e in before:
         why = f"{e.conflict.other} may be there first"
         _note(found, actions, _in_the_way(e, travel, times, forecast.sample, limits), why)

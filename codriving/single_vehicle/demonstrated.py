@@ -100,9 +100,8 @@ class Demonstrated:
             return Choice(change.action, change.reason, (), refused)
         met = encounters(view, float(view.forecast.reach(ego.speed, True).least[-1]), self.firm)
         creeps = bool(met) and waited >= self.patience and all(lets_start(e, view, self.clear) for e in met)
-        before, precedences = (), ()
-        if not creeps:
-            before, precedences = self.first(view, met)
+        # Whoever has waited long enough lets nobody in an empty zone go first any more.
+        before, precedences = self.first(view, () if creeps else met)
         refused = {**refused, **refusals(view, before, self.limits, PREFERRED)}
         counts = {"creeps": int(creeps)}
         action = next((a for a in PREFERRED if a in view.actions and a not in refused), None)
@@ -123,9 +122,7 @@ class Demonstrated:
         headway = self.merging if must else self.limits.headway
         return self.lanes.braked_for(view, side, idm) or change_refused(view, side, self.limits, headway)
 
-    def first(
-        self, view: View, met: tuple[Encounter, ...]
-    ) -> tuple[tuple[Encounter, ...], tuple[Precedence, ...]]:
+    def first(self, view: View, met: tuple[Encounter, ...]) -> tuple[tuple[Encounter, ...], tuple[Precedence, ...]]:
         """Return the encounters in which the other one may be there first, and who goes first by that.
 
         Args:
