@@ -1,5 +1,6 @@
 """Reflect: which moments of an episode are worth remembering, and what is noted of them."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -92,16 +93,21 @@ class Diary:
 
 
 def _kept(frame: Frame) -> Experience:
-    reason = seen_names(frame.told.situation.scene).sentence(frame.decision.reason, LONGEST)
-    lesson = f"No mistake, the drive ended well. Why: {reason}"
+    reason = seen_names(frame.told.situation.scene).sentence(frame.decision.reason)
+    lesson = f"No mistake, the drive ended well. Why: {_nameless(reason)}"
     return _experience(frame.told, frame.decision, frame.step, Verdict.EASED, Effect(), lesson)
 
 
 def _corrected(mistake: Mistake, correction: Correction) -> Experience:
-    parts = (one_line(correction.mistake, LONGEST), one_line(correction.lesson, LONGEST), str(correction.action))
+    parts = (_nameless(correction.mistake), _nameless(correction.lesson), str(correction.action))
     lesson = "Mistake: {} Lesson: {} Right: {}.".format(*parts)
     effect = Effect(collision=round(mistake.later, 3))
     return _experience(mistake.told, mistake.decision, mistake.step, Verdict.INTENSIFIED, effect, lesson)
+
+
+def _nameless(text: str) -> str:
+    """Put a sentence on one line; what vehicles were called means nothing in another drive."""
+    return one_line(re.sub(r"\bV\d+\b", "another vehicle", text), LONGEST)
 
 
 def _experience(told: Told, decision: Decision, step: int, verdict: Verdict, effect: Effect, lesson: str) -> Experience:
