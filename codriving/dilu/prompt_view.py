@@ -75,9 +75,15 @@ def _seen(told: Told, n: Neighbour, names: Names) -> SeenView:
         distance=_distance(scene, n),
         speed=n.speed,
         standing=n.standing,
-        ways=tuple(dict.fromkeys(_way(c) for c in ways.values())),
+        ways=_apart([_way(c) for c in ways.values()]),
         elsewhere=sum(route not in ways for route, _ in n.routes),
     )
+
+
+def _apart(ways: list[WayView]) -> tuple[WayView, ...]:
+    """Leave out ways that would read the same."""
+    apart = {(w.relation, round(w.mine), round(w.its), round(w.dttcp, 1)): w for w in reversed(ways)}
+    return tuple(w for w in ways if w in apart.values())
 
 
 def _direction(scene: SceneDescription, n: Neighbour) -> str:

@@ -2,6 +2,7 @@
 
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,9 @@ from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
 from codriving.methods.dilu import DiLu
+
+NEARER = {"intersection": 20.0, "roundabout": 20.0}
+"""How much farther everybody is than on the other pages, since a vehicle on its own sees 50 m [m]."""
 
 
 class Book:
@@ -50,7 +54,8 @@ def questions(world: Junction, scenario: str) -> list[Question]:
     rule = build(compose(["method=dilu"])["method"]["rule"], (), "method")
     made = DiLu(Model(chat), Book(), 1.0, 3, rule)
     made.reset(world.road_map, world.model, 0)
-    moment = world.world(*WORLDS[scenario])
+    cars = [replace(one, place=one.place + NEARER.get(scenario, 0.0)) for one in WORLDS[scenario]]
+    moment = world.world(*cars)
     made.act(moment)
     made.conclude(moment, Outcome(Ending.COLLISION, 1.5, {}, Collision(1.5, "CAV1", "CAV2", "CAV-CAV")))
     return chat.questions
