@@ -25,7 +25,7 @@ NEVER_HELD = 0.1
 class Notebook:
     """A memory that recalls what it is given and notes what it is to learn."""
 
-    label = "notebook"
+    label, reflections = "notebook", 0
 
     def __init__(self, memories: Sequence[Memory] = (), learns: bool = True) -> None:
         self.memories, self.learns = tuple(memories), learns

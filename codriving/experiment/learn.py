@@ -11,7 +11,7 @@ from codriving.config.overrides import parse
 from codriving.config.sweep import Point, expand
 from codriving.errors import ConfigError, ModelError
 from codriving.experiment.further import Driven, Further
-from codriving.experiment.memory_build import FIRST_SEED
+from codriving.experiment.memory_build import FIRST_SEED, refuse_forgetful
 from codriving.experiment.plan import make_plan
 from codriving.experiment.remembering import memory_file
 from codriving.experiment.run import INTERRUPTED, drive_plan, report, resume_command
@@ -60,6 +60,7 @@ def run_learn(overrides: Sequence[str], config_dir: Path | None = None) -> int:
     again = resume_command("learn", overrides, config_dir, run)
     try:
         builds = make_plan(build_points(points, max(sizes), run), config_dir)
+        refuse_forgetful(builds)
         print(f"Learning: {builds.episodes} interactions in each of {len(builds.cells)} settings.", file=sys.stderr)
         learnt = drive_plan(builds)
         if learnt.failed:

@@ -7,7 +7,8 @@ from codriving.config.overrides import parse
 from codriving.config.sweep import Point, expand
 from codriving.errors import ConfigError
 from codriving.experiment.further import Driven, Further
-from codriving.experiment.remembering import memory_file
+from codriving.experiment.plan import Plan
+from codriving.experiment.remembering import learns, memory_file
 from codriving.experiment.run import command
 from codriving.memory.reading import read_memory
 from codriving.reports.markdown import markdown_text
@@ -39,7 +40,8 @@ def run_build(overrides: Sequence[str], config_dir: Path | None = None) -> int:
     Raises:
         UserError: If the config or the run folder cannot be used.
     """
-    return command("memory build", build_points(overrides, config_dir), overrides, config_dir, built)
+    points = build_points(overrides, config_dir)
+    return command("memory build", points, overrides, config_dir, built, refuse_forgetful)
 
 
 def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
@@ -100,22 +102,31 @@ def built(driven: Driven) -> Further:
 
     Returns:
         ``memory.md`` and what is printed.
-
-    Raises:
-        ConfigError: If the method has no memory that learns.
     """
     rows = []
     for cell in driven.cells:
         file = memory_file(driven.folder, cell.folder)
         named = (cell.resolved.get("memory") or {}).get("file")
-        if not cell.labels.memory:
-            raise ConfigError(f"method {cell.labels.method!r} has no memory to build; choose one that has")
         reading = read_memory(file if named is None else Path(named))
         labels = cell.labels
         name = f"{labels.method} {labels.variant}".strip()
         rows.append(Built(labels.scenario, name, labels.reasoner, cell.swept, reading))
     display = built_display(rows)
     return Further({"memory.md": markdown_text(display).encode()}, (display,))
+
+
+def refuse_forgetful(plan: Plan) -> None:
+    """Refuse a method that would remember nothing.
+
+    Args:
+        plan: What is to be driven.
+
+    Raises:
+        ConfigError: If the method of a cell has no memory that learns.
+    """
+    for cell in plan.cells:
+        if not learns(cell.resolved):
+            raise ConfigError(f"method {cell.labels.method!r} has no memory to build; choose one that has")
 
 
 def _is_count(token: str) -> bool:

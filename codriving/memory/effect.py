@@ -168,8 +168,8 @@ def _is_behind(way: Way, k: int, name: str) -> bool:
 def _needless(way: Way, k: int) -> bool:
     """Whether the CAV waited although it could have gone and nobody then used the way.
 
-    Those with whom it was in any danger all stood outside the zone for as long as is looked ahead, and nobody drove
-    close ahead of it.
+    Those with whom it was in conflict all stood outside the zone for as long as is looked ahead, or were in no danger
+    with it and would not have been there by then; and nobody drove close ahead of it.
     """
     now = way.moments[k]
     waits = now.action is Action.SLOWER or (now.action is Action.IDLE and now.ego.speed < SLOW)
@@ -181,9 +181,8 @@ def _needless(way: Way, k: int) -> bool:
     if len(window) <= round(HORIZON / way.interval):
         return False
     for c in now.conflicts:
-        if c.dttcp > CONCERNS and c.distances[1] > 0:
-            continue
-        if c.distances[1] <= 0 or not all(_stands(m, c.other) for m in window):
+        far = c.dttcp > CONCERNS and c.ttcp[1] > HORIZON
+        if c.distances[1] <= 0 or not (far or all(_stands(m, c.other) for m in window)):
             return False
     return True
 

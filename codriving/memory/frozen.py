@@ -32,6 +32,7 @@ class FrozenMemory:
 
     Attributes:
         learns: Whether it grows; it does not.
+        reflections: Mistakes that a model is asked about; none.
         digest: SHA-256 of what is recalled from.
         label: What tables say of it.
 
@@ -41,6 +42,7 @@ class FrozenMemory:
     """
 
     learns = False
+    reflections = 0
 
     def __init__(
         self,

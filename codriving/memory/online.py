@@ -25,7 +25,8 @@ class OnlineMemory:
         shots: Experiences that each CAV is told at most.
         least_similarity: Below this cosine an experience says nothing of a situation.
         duplicates: Similarity from which on two experiences with the same action and verdict are kept as one.
-        reflection: Who writes the lesson: ``rules`` or ``llm``.
+        reflection: Who writes the lessons: ``rules``, or ``llm`` for those of mistakes.
+        reflections: Mistakes of an episode that a model is asked about at most, the worst first.
         embedder: ``features``, ``words`` or ``litellm``.
         embedding_model: For ``litellm``: model, as LiteLLM calls it.
         embedding_api_base: For ``litellm``: address of the server; None for the provider's own.
@@ -34,6 +35,7 @@ class OnlineMemory:
 
     Attributes:
         learns: Whether it grows.
+        reflections: Mistakes of an episode that a model is asked about; 0 if the rules write all lessons.
         label: What tables say of it.
 
     Raises:
@@ -50,6 +52,7 @@ class OnlineMemory:
         least_similarity: float,
         duplicates: float,
         reflection: str,
+        reflections: int,
         embedder: str,
         embedding_model: str,
         embedding_api_base: str | None,
@@ -60,9 +63,12 @@ class OnlineMemory:
             raise ConfigError(f"duplicates must be 0.5 to 1, got {duplicates:g}")
         if reflection not in REFLECTIONS:
             raise ConfigError(f"reflection must be one of {', '.join(REFLECTIONS)}, got {reflection!r}")
+        if not 1 <= reflections <= 1000:
+            raise ConfigError(f"reflections must be 1 to 1000, got {reflections}")
         server = EmbeddingServer(embedding_model, embedding_api_base, embedding_key_env, embedding_deadline)
         self._recall, self._embedder = Recall(shots, least_similarity), make_embedder(embedder, server)
-        self.file, self.reflection, self.duplicates = file, reflection, duplicates
+        self.file, self.duplicates = file, duplicates
+        self.reflections = reflections if reflection == "llm" else 0
         self._recollection: Recollection | None = None
 
     def begin(self, seed: int) -> None:

@@ -13,10 +13,12 @@ class CaseMemory(Protocol):
     Attributes:
         label: What tables say of it.
         learns: Whether what it is given is kept.
+        reflections: Mistakes of an episode that a model is asked about at most; 0 asks none.
     """
 
     label: str
     learns: bool
+    reflections: int
 
     def begin(self, seed: int) -> None:
         """Begin an episode.

@@ -62,7 +62,8 @@ def create(path: Path, embedder: str, dimension: int) -> None:
     except (OSError, sqlite3.Error) as error:
         raise unwritable(path, error) from error
     finally:
-        partial.unlink(missing_ok=True)
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
 
 
 def open_file(path: Path, write: bool) -> sqlite3.Connection:

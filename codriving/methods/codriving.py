@@ -3,7 +3,7 @@
 from typing import Any
 
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.experience import Interaction
+from codriving.datatypes.experience import Experience, Interaction
 from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
@@ -45,6 +45,10 @@ class CoDriving:
         if not 0 <= margin <= 5:
             raise ConfigError(f"margin must be 0 to 5 s, got {margin:g}")
         check_prompts(llm)
+        if memory is not None and memory.reflections and llm.chat() is None:
+            raise ConfigError(
+                "memory.reflection=llm needs a language model; set llm= to one, or memory.reflection=rules"
+            )
         self.cda, self.llm, self.memory, self.margin = cda, llm, memory, margin
         self.variant, self.reasoner = cda.variant, llm.name
         self.remembers = memory.label if memory is not None else ""
@@ -115,9 +119,22 @@ class CoDriving:
         if self._log is None or self.memory is None:
             return {}, []
         experiences = self._log.conclude(world, outcome.collision)
+        counts, lines = self._reflect(experiences, world.time)
         interaction = Interaction(self._road_map.road.name, self._seed, self.name, self.variant, self.reasoner)
         new = self.memory.learn(interaction, experiences)
-        return {"experiences": len(experiences), "experiences_new": new}, []
+        return {**counts, "experiences": len(experiences), "experiences_new": new}, lines
+
+    def _reflect(self, experiences: list[Experience], time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:
+        """Let a language model write the lessons of mistakes, in place, if the memory wants that."""
+        chat = self.llm.chat()
+        if self.memory is None or not self.memory.reflections or chat is None or self._ledger is None:
+            return {}, []
+        from codriving.methods.reflection import Reflection
+        from codriving.reasoning.prompts.render import load_prompts
+
+        prompts = load_prompts(getattr(self.llm, "prompts", None))
+        experiences[:] = Reflection(chat, prompts, self._ledger, self.memory.reflections).reflect(experiences)
+        return self._ledger.close_step(time)
 
     def unfinished_step(self, time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:
         """Return what was asked in a step that broke off, so that its cost is not lost.

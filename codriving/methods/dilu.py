@@ -49,6 +49,10 @@ class DiLu:
         if not 1 <= shots <= 50:
             raise ConfigError(f"shots must be 1 to 50, got {shots}")
         check_prompts(llm)
+        if memory is not None and memory.reflections and llm.chat() is None:
+            raise ConfigError(
+                "memory.reflection=llm needs a language model; set llm= to one, or memory.reflection=rules"
+            )
         self.llm, self.memory, self.hold, self.shots, self.rule = llm, memory, hold, shots, rule
         # Whatever answers without a model is not DiLu, whatever it is called.
         self.name = "dilu-rule" if llm.chat() is None else "dilu"

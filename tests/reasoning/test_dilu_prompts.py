@@ -26,7 +26,7 @@ NEARER = {"intersection": 20.0, "roundabout": 20.0}
 class Book:
     """Recalls one experience, and learns nothing."""
 
-    label, learns = "book", True
+    label, learns, reflections = "book", True, 0
 
     def begin(self, seed: int) -> None:
         """Nothing depends on the seed."""

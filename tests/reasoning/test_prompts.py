@@ -10,6 +10,7 @@ import pytest
 from asked import Reasoned, reasoned, sensible
 from hypothesis import given
 from hypothesis import strategies as st
+from remembered import memory
 from shown import GOLDEN, WORLDS, WRITE
 from worlds import Car, Junction, car
 
@@ -124,7 +125,7 @@ def test_without_safety_check_nothing_is_removed(on: Callable[..., Reasoned]) ->
 
 def test_memories_are_told_before_the_actions(highway: Junction) -> None:
     situation = reasoned(highway, sensible).method.act(highway.world(*WORLDS["highway"])).situations[0]
-    remembers = replace(situation, memories=("Keep\nyour distance.",))
+    remembers = replace(situation, memories=(replace(memory(), text="Keep\nyour distance."),))
     text = Prompts().messages("decide", decision_view(remembers))[1].content
     assert "Memories:\n- Keep your distance.\nAllowed actions:" in text
 

@@ -25,7 +25,25 @@ def example(purpose: str) -> dict[str, Any]:
     """
     if purpose.startswith("dilu"):
         return seen_example(purpose)
-    return _negotiation() if purpose == "negotiate" else _decision()
+    return {"negotiate": _negotiation, "decide": _decision, "reflect": _reflection}[purpose]()
+
+
+def _reflection() -> dict[str, Any]:
+    return {
+        "scene": "Driving 8.0 m/s, target 9.0 m/s; nobody ahead on the lane.",
+        "conflict": "Crossing conflict with a human vehicle: dTTCP 3.0 s, general danger.",
+        "order": "The CAV goes second; 1 go before it.",
+        "action": "FASTER",
+        "verdict": "intensified",
+        "comment": "Your action has intensified the conflict; similar actions should be avoided.",
+        "dttcp_before": 3.0,
+        "dttcp_after": 1.2,
+        "own_change": -1.5,
+        "own_braking": 4.2,
+        "forced_braking": 4.5,
+        "collision": 2.5,
+        "needless": True,
+    }
 
 
 def _negotiation() -> dict[str, Any]:
