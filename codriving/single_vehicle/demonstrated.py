@@ -11,7 +11,7 @@ from codriving.single_vehicle.expected_first import goes_first
 from codriving.single_vehicle.lane_choice import LaneChoice, Side
 from codriving.single_vehicle.patience import Patience
 from codriving.single_vehicle.protocol import Choice, View
-from codriving.single_vehicle.starting import lets_start
+from codriving.single_vehicle.starting import may_start
 
 PREFERRED = (Action.FASTER, Action.IDLE, Action.SLOWER)
 """Actions along the lane, the most wanted first."""
@@ -99,7 +99,7 @@ class Demonstrated:
         if change is not None:
             return Choice(change.action, change.reason, (), refused)
         met = encounters(view, float(view.forecast.reach(ego.speed, True).least[-1]), self.firm)
-        creeps = bool(met) and waited >= self.patience and all(lets_start(e, view, self.clear) for e in met)
+        creeps = may_start(view, met, waited, self.patience, self.clear)
         # Whoever has waited long enough lets nobody in an empty zone go first any more.
         before, precedences = self.first(view, () if creeps else met)
         refused = {**refused, **refusals(view, before, self.limits, PREFERRED)}

@@ -12,7 +12,7 @@ from codriving.single_vehicle.lane_choice import LaneChoice
 from codriving.single_vehicle.leaders import leaders
 from codriving.single_vehicle.patience import Patience
 from codriving.single_vehicle.protocol import Choice, View
-from codriving.single_vehicle.starting import lets_start
+from codriving.single_vehicle.starting import may_start
 
 LIMITS = {
     "acceleration": (0.1, 10.0),
@@ -145,18 +145,27 @@ class ProjectedIdm:
                 continue
             if other not in precedences or precedences[other].first == scene.ego.id:
                 precedences[other] = Precedence(other, scene.ego.id, why)
-            options.append((self._behind(e, view), f"{other} goes first: {why}"))
+            options.append((self._behind(e, self._line(e, met), view), f"{other} goes first: {why}"))
         # Of several that wish the same the first one counts, so that nobody is named who is not in the way.
         wished, why = min(options, key=lambda option: option[0])
         return wished, why, tuple(precedences.values())
 
-    def _behind(self, e: Encounter, view: View) -> float:
+    def _line(self, e: Encounter, met: tuple[Encounter, ...]) -> float:
+        """How far away a vehicle waits before a zone: not inside another crossing, where it would be in the way [m]."""
+        line = e.own_way - self.stop_gap
+        # From the last crossing to the first, since stepping back from one may lead into the one before.
+        for other in sorted(met, key=lambda x: -x.own_way):
+            if other.own_way > 0 and not other.merges() and other.own_way < line < other.conflict.exits[0]:
+                line = other.own_way - self.stop_gap
+        return line
+
+    def _behind(self, e: Encounter, line: float, view: View) -> float:
         """The acceleration behind somebody who goes first: to follow its projection, or to stop before the zone.
 
         Either is safe, so the vehicle may take the one that costs it less.
         """
         speed = view.scene.ego.speed
-        waiting = inf if e.inside else self.idm.accelerate(speed, view.top, e.own_way - self.stop_gap, 0.0)
+        waiting = inf if e.inside else self.idm.accelerate(speed, view.top, line, 0.0)
         if e.other_inside and not e.merges():
             return waiting if waiting < inf else -self.idm.hardest
         along = max(cos(crossing_angle(e.conflict, e.zone, view.road_map)), 0.0)
@@ -172,4 +181,4 @@ class ProjectedIdm:
             met: Where it is open who goes first.
             waited: How long it has been standing [s].
         """
-        return bool(met) and waited >= self.patience and all(lets_start(e, view, self.clear) for e in met)
+        return may_start(view, met, waited, self.patience, self.clear)
