@@ -17,6 +17,10 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
+OPENS = 1e-6
+"""A gap that grows by less does not grow: two who drive at the same speed are not told apart by rounding [m]."""
+
+
 @dataclass(frozen=True, slots=True)
 class Limits:
     """What an acceptable action keeps to.
@@ -71,10 +75,7 @@ def refusals(view: View, before: Sequence[Encounter], limits: Limits, actions: S
 
 
 def change_refused(view: View, side: Side, limits: Limits, headway: float) -> str:
-    """Say why a lane change is not acceptable; nothing if it is.
-
-    It is acceptable if, everybody keeping the speed for the horizon, the vehicle keeps a headway to whoever is then
-    ahead, and whoever is then behind keeps the gap.
+    """Say why a lane change is not acceptable because of whoever is then ahead; nothing if it is.
 
     Args:
         view: What the vehicle sees.
@@ -82,20 +83,14 @@ def change_refused(view: View, side: Side, limits: Limits, headway: float) -> st
         limits: What has to be kept.
         headway: Time gap to whoever is then ahead [s].
     """
-    forecast, ego = view.forecast, view.scene.ego
+    forecast, ego, ahead = view.forecast, view.scene.ego, side.ahead
+    if ahead is None or ahead.gap is None:
+        return ""
     last = min(round(limits.horizon / forecast.sample), forecast.steps) + 1
     travel = forecast.travel(ego.speed, view.scene.intent.target_speed, ((Action.IDLE,),))[:, :last]
-    times = forecast.times[:last]
-    ahead, behind = side.ahead, side.behind
-    if ahead is not None and ahead.gap is not None:
-        leader = Leader(ahead.id, ahead.gap, ahead.speed)
-        if _too_close(leader, travel, times, forecast.sample, headway, limits.gap).any():
-            return f"{ahead.id} ahead there is close"
-    if behind is not None and behind.gap is not None:
-        free = behind.gap + travel[0] - behind.speed * times
-        if float(free.min()) < limits.gap:
-            return f"{behind.id} behind there catches up"
-    return ""
+    leader = Leader(ahead.id, ahead.gap, ahead.speed)
+    close = _too_close(leader, travel, forecast.times[:last], forecast.sample, headway, limits.gap)
+    return f"{ahead.id} ahead there is close" if close.any() else ""
 
 
 def _note(found: dict[Action, str], actions: Sequence[Action], refused: Flags, why: str) -> None:
@@ -108,7 +103,7 @@ def _too_close(leader: Leader, travel: Array, times: Array, sample: float, headw
     """Whether each motion comes too close to somebody ahead (actions,); who gets away is not too close."""
     free = leader.gap + leader.speed * times - travel
     pace = np.diff(travel, axis=1) / sample
-    close = (free[:, 1:] < headway * pace) & (free[:, 1:] < leader.gap)
+    close = (free[:, 1:] < headway * pace) & (free[:, 1:] < leader.gap + OPENS)
     return np.asarray((close | (free[:, 1:] < gap)).any(axis=1))
 
 
