@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from asked import Model
 from dilu_driven import NEVER_HELD, Notebook, always, modelled, rule, ruled
 from driven import drive
 from hypothesis import HealthCheck, given, settings
@@ -19,6 +20,7 @@ from codriving.datatypes.experience import Memory, Verdict
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
 from codriving.llm.offline import Offline
+from codriving.llm.scripted import ScriptedChat
 from codriving.memory.online import OnlineMemory
 from codriving.methods.dilu import DiLu
 
@@ -40,6 +42,28 @@ def test_rules_are_not_called_dilu(junction: Junction) -> None:
 def test_settings_out_of_range_are_refused(hold: float, shots: int, said: str) -> None:
     with pytest.raises(ConfigError, match=said):
         DiLu(Offline(), None, hold, shots, rule())
+
+
+def test_templates_of_a_folder_are_used_and_broken_ones_refused(junction: Junction, tmp_path: Path) -> None:
+    template = tmp_path / "dilu.user.md.j2"
+    template.write_text("You drive {{ speed|mps }}. Allowed actions: {{ allowed|join(', ') }}")
+    chat = ScriptedChat(always("IDLE"))
+    made = DiLu(Model(chat, prompts=str(tmp_path)), None, 1.0, 3, rule())
+    made.reset(junction.road_map, junction.model, 0)
+    made.act(junction.world(CARS[0]))
+    assert chat.questions[0].messages[1].content == "You drive 8.0 m/s. Allowed actions: SLOWER, IDLE, FASTER"
+    broken = tmp_path / "broken"
+    broken.mkdir()
+    (broken / template.name).write_text("{{ routes_of_others }}")
+    with pytest.raises(ConfigError, match="no variable 'routes_of_others'"):
+        DiLu(Model(chat, prompts=str(broken)), None, 1.0, 3, rule())
+
+
+def test_a_model_that_is_to_reflect_has_to_be_there() -> None:
+    book = Notebook()
+    book.reflections = 3
+    with pytest.raises(ConfigError, match=r"memory\.reflection=llm needs a language model"):
+        DiLu(Offline(), book, 1.0, 3, rule())
 
 
 def test_decision_holds_for_a_second(junction: Junction) -> None:
