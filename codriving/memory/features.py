@@ -21,47 +21,49 @@ class Number:
         weight: Share of it in the similarity, relative to the others.
         scale: Below it differences count as they are, above it by their ratio, in the unit of the number.
         span: Largest magnitude that is told apart from larger ones.
+        turns: Quarter turns over the span of each circle that it lies on; faster ones tell near values apart.
     """
 
     name: str
     weight: float
     scale: float
     span: float
+    turns: tuple[int, ...] = (1,)
 
+    @property
+    def width(self) -> int:
+        """Places in the vector: two a circle, and one that says that the number is not there."""
+        return 2 * len(self.turns) + 1
+
+
+SHARP = (1, 3)
+"""Circles of the numbers that matter most."""
 
 NUMBERS = (
-    Number("dttcp", 3.0, 2.0, 20.0),
-    Number("later", 3.0, 2.0, 20.0),
-    Number("my_ttcp", 1.5, 2.0, 30.0),
-    Number("its_ttcp", 1.5, 2.0, 30.0),
-    Number("mine", 1.5, 8.0, 80.0),
-    Number("its", 1.5, 8.0, 80.0),
-    Number("speed", 2.0, 6.0, 30.0),
+    Number("dttcp", 3.0, 2.0, 20.0, SHARP),
+    Number("later", 3.0, 2.0, 20.0, SHARP),
+    Number("my_ttcp", 1.5, 2.0, 30.0, SHARP),
+    Number("its_ttcp", 1.5, 2.0, 30.0, SHARP),
+    Number("mine", 1.5, 8.0, 80.0, SHARP),
+    Number("its", 1.5, 8.0, 80.0, SHARP),
+    Number("speed", 2.0, 6.0, 30.0, SHARP),
+    Number("lead_gap", 2.0, 8.0, 100.0, SHARP),
     Number("target", 0.5, 6.0, 30.0),
     Number("its_speed", 1.0, 6.0, 30.0),
     Number("free", 1.0, 2.0, 20.0),
-    Number("lead_gap", 2.0, 8.0, 100.0),
     Number("lead_speed", 1.0, 6.0, 30.0),
     Number("rear_gap", 0.5, 8.0, 100.0),
-    Number("rear_speed", 0.5, 6.0, 30.0),
     Number("near_ahead", 1.0, 8.0, 100.0),
     Number("near_right", 1.0, 8.0, 100.0),
     Number("near_speed", 0.5, 6.0, 30.0),
-    Number("room", 1.0, 20.0, 200.0),
-    Number("left_lane", 0.5, 1.0, 1.0),
     Number("left_ahead", 1.0, 8.0, 100.0),
-    Number("left_ahead_speed", 0.5, 6.0, 30.0),
     Number("left_behind", 1.0, 8.0, 100.0),
-    Number("left_behind_speed", 0.5, 6.0, 30.0),
-    Number("right_lane", 0.5, 1.0, 1.0),
     Number("right_ahead", 1.0, 8.0, 100.0),
-    Number("right_ahead_speed", 0.5, 6.0, 30.0),
     Number("right_behind", 1.0, 8.0, 100.0),
-    Number("right_behind_speed", 0.5, 6.0, 30.0),
+    Number("room", 1.0, 20.0, 200.0),
     Number("before", 1.0, 1.0, 6.0),
-    Number("conflicts", 0.5, 1.0, 8.0),
 )
-"""The numbers of a description, in the order of their places in the vector."""
+"""The numbers of a description that are compared, in the order of their places in the vector."""
 
 KINDS: tuple[tuple[str, float, tuple[str, ...]], ...] = (
     ("relation", 3.0, ("none", "crossing", "converging", "weaving", "diverging", "following")),
@@ -77,19 +79,14 @@ ACTIONS, ALLOWED = tuple(str(action) for action in Action), 1.0
 ABSENT = 0.2
 """Share of its weight with which a number counts where it is not there: two empty lanes are alike, but not very."""
 
-HARMONICS = (1, 3)
-"""Turns of the circles on which a number lies; the faster ones tell near values apart."""
-
-WIDTH = 2 * len(HARMONICS) + 1
-"""Places of a number in the vector; the last says that it is not there."""
-
 
 class Features:
     """Works offline, without a download, and gives the same vectors on every call.
 
-    A number x becomes cos and sin of k pi u(x) / 2, where u runs from -1 to 1 over its span, linear near zero and
-    logarithmic beyond (asinh). Two values have the cosine of their distance, so that the similarity of two situations
-    is the weighted mean of the likeness of their parts. A number that is not there lies on an axis of its own.
+    A number x becomes cos and sin of k pi u(x) / 2 for each k of its circles, where u runs from -1 to 1 over its span,
+    linear near zero and logarithmic beyond (asinh). Two values have the cosine of their distance, so that the
+    similarity of two situations is the weighted mean of the likeness of their parts. A number that is not there lies on
+    an axis of its own.
     """
 
     name = "features-1"
@@ -97,7 +94,7 @@ class Features:
     @property
     def dimension(self) -> int:
         """Length of the vectors."""
-        return WIDTH * len(NUMBERS) + sum(len(words) for _, _, words in KINDS) + len(ACTIONS)
+        return sum(number.width for number in NUMBERS) + sum(len(words) for _, _, words in KINDS) + len(ACTIONS)
 
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
         """Return one vector a description, each of length 1.
@@ -113,8 +110,8 @@ class Features:
             place = 0
             for number in NUMBERS:
                 value = description.numbers.get(number.name)
-                _put(row[place : place + WIDTH], number, value)
-                place += WIDTH
+                _put(row[place : place + number.width], number, value)
+                place += number.width
             for name, weight, words in KINDS:
                 word = description.kinds.get(name)
                 if word in words:
@@ -131,8 +128,8 @@ def _put(places: NDArray[np.float64], number: Number, value: float | None) -> No
         places[-1] = (ABSENT * number.weight) ** 0.5
         return
     u = asinh(min(max(value, -number.span), number.span) / number.scale) / asinh(number.span / number.scale)
-    size = (number.weight / len(HARMONICS)) ** 0.5
-    for k, turns in enumerate(HARMONICS):
-        # Half a turn over the whole span for the slowest, so that the two ends are opposite.
+    size = (number.weight / len(number.turns)) ** 0.5
+    for k, turns in enumerate(number.turns):
+        # One quarter turn to either side for the slowest, so that the two ends are opposite.
         angle = turns * pi / 2 * u
         places[2 * k], places[2 * k + 1] = size * cos(angle), size * sin(angle)

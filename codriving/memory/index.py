@@ -27,8 +27,9 @@ class Index:
     def __init__(self, dimension: int) -> None:
         import faiss
 
-        # One thread: the machine's cores belong to the episodes.
+        # One thread: the machine's cores belong to the episodes. One pass over the vectors for all queries of a step.
         faiss.omp_set_num_threads(1)
+        faiss.cvar.distance_compute_blas_threshold = 2
         self._flat = faiss.IndexFlatIP(dimension)
         self.dimension = dimension
         self.ids: list[int] = []

@@ -4,11 +4,12 @@ import hashlib
 import sqlite3
 from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from codriving.datatypes.experience import Experience, Memory
+from codriving.datatypes.action import Action
+from codriving.datatypes.experience import Experience, Memory, Verdict
 from codriving.errors import MemoryFileError
 from codriving.memory.describe import brief
 from codriving.memory.embedder import Embedder, Vectors
@@ -17,19 +18,41 @@ from codriving.memory.rows import COLUMNS, from_row, vectors_of
 from codriving.memory.store_file import about, open_file
 
 
-@dataclass(frozen=True, slots=True)
 class Kept:
-    """An experience of a file.
+    """An experience of a file; what is in it is read when it is first asked for.
+
+    Args:
+        id: Its number.
+        row: Its row of the file.
+        count: How often it was made.
+        step: Where it was made first: number of decisions taken before.
+        ego: By whom.
 
     Attributes:
         id: Its number.
-        experience: The experience.
         count: How often it was made.
     """
 
-    id: int
-    experience: Experience
-    count: int
+    __slots__ = ("_ego", "_experience", "_row", "_step", "count", "id")
+
+    def __init__(self, id: int, row: tuple[Any, ...], count: int, step: int, ego: str) -> None:
+        self.id, self.count = id, count
+        self._row, self._step, self._ego = row, step, ego
+        self._experience: Experience | None = None
+
+    @property
+    def experience(self) -> Experience:
+        """The experience.
+
+        Raises:
+            MemoryFileError: If it cannot be read.
+        """
+        if self._experience is None:
+            try:
+                self._experience = from_row(self._row, self._step, self._ego)
+            except ValueError as error:
+                raise damaged(Path(f"experience {self.id} of the memory"), error) from error
+        return self._experience
 
 
 class Recollection:
@@ -151,39 +174,56 @@ def load(connection: sqlite3.Connection, dimension: int, embedder: str, chosen: 
         connection: The open file.
         dimension: Length of its vectors.
         embedder: Name of its embedder.
-        chosen: Numbers of the interactions.
+        chosen: Numbers of the interactions, rising.
 
     Raises:
         ValueError: If something in it cannot be read.
         sqlite3.Error: If the file cannot be read.
     """
-    marks = set(chosen)
-    seen: dict[int, tuple[int, int, str]] = {}
     digest = hashlib.sha256(f"{embedder} {dimension}\n".encode())
-    everything = connection.execute("SELECT * FROM interactions ORDER BY id").fetchall()
-    for place, row in enumerate(row for row in everything if row[0] in marks):
-        _feed(digest, ("interaction", place, *row[1:]))
-    query = "SELECT experience, interaction, step, ego FROM sightings ORDER BY experience, interaction, step, ego"
-    for experience, interaction, step, ego in connection.execute(query):
-        if interaction in marks:
-            count, first, who = seen.get(experience, (0, step, ego))
-            seen[experience] = (count + 1, first, who)
+    wanted = set(chosen)
+    for row in connection.execute("SELECT * FROM interactions ORDER BY id"):
+        if row[0] in wanted:
+            digest.update(repr(row[1:]).encode())
+    seen = _sightings(connection, chosen)
     kept: list[Kept] = []
     blobs: list[bytes] = []
-    for number, *row in connection.execute(f"SELECT id, {', '.join(COLUMNS)} FROM experiences ORDER BY id"):
-        if number not in seen:
+    _refuse_damaged(connection)
+    for number, vector, *rest in connection.execute(f"SELECT id, {', '.join(COLUMNS)} FROM experiences ORDER BY id"):
+        found = seen.get(number)
+        if found is None:
             continue
-        count, step, ego = seen[number]
-        _feed(digest, ("experience", len(kept), count, step, ego, *row))
-        kept.append(Kept(number, from_row(tuple(row), step, ego), count))
-        blobs.append(row[0])
-    return Recollection(kept, vectors_of(blobs, dimension), digest.hexdigest(), len(marks))
+        digest.update(repr((*found, *rest)).encode())
+        digest.update(vector)
+        kept.append(Kept(number, (vector, *rest), *found))
+        blobs.append(vector)
+    return Recollection(kept, vectors_of(blobs, dimension), digest.hexdigest(), len(chosen))
 
 
-def _feed(digest: Any, values: Sequence[object]) -> None:  # noqa: ANN401 - hashlib's own class has no public name
-    """Add values so that no two different rows give the same bytes."""
-    for value in values:
-        data = value if isinstance(value, bytes) else str(value).encode()
-        digest.update(f"{len(data)}:".encode())
-        digest.update(data)
-    digest.update(b"\n")
+def _sightings(connection: sqlite3.Connection, chosen: Sequence[int]) -> dict[int, tuple[int, int, str]]:
+    """How often each experience was made in some interactions, and at which step and by whom first."""
+    connection.execute("CREATE TEMP TABLE IF NOT EXISTS chosen (id INTEGER PRIMARY KEY)")
+    connection.execute("DELETE FROM chosen")
+    connection.execute("BEGIN")
+    connection.executemany("INSERT INTO chosen VALUES (?)", ((number,) for number in chosen))
+    connection.execute("COMMIT")
+    # Of rows that share an experience, step and ego are those of the row with the smallest key.
+    rows = connection.execute(
+        "SELECT experience, count(*), step, ego, min(printf('%012d %012d %s', interaction, step, ego)) FROM sightings "
+        "WHERE interaction IN (SELECT id FROM chosen) GROUP BY experience"
+    )
+    return {experience: (count, step, ego) for experience, count, step, ego, _ in rows}
+
+
+def _refuse_damaged(connection: sqlite3.Connection) -> None:
+    """Find in one go what could not be read later."""
+    words = {name: ", ".join(f"'{member.value}'" for member in kind) for name, kind in _ENUMS.items()}
+    (broken,) = connection.execute(
+        "SELECT count(*) FROM experiences WHERE NOT (json_valid(numbers) AND json_valid(kinds) AND json_valid(effect)) "
+        f"OR action NOT IN ({words['action']}) OR verdict NOT IN ({words['verdict']})"
+    ).fetchone()
+    if broken:
+        raise ValueError(f"{broken} experiences cannot be read")
+
+
+_ENUMS: dict[str, type[StrEnum]] = {"action": Action, "verdict": Verdict}

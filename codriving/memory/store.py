@@ -28,7 +28,7 @@ class MemoryStore:
     Args:
         path: The file; made if it is missing.
         embedder: Who embeds what is added.
-        duplicates: Similarity from which on two experiences with the same action and verdict are one.
+        duplicates: Similarity from which on two experiences with the same action and verdict are one; above 1 none are.
 
     Raises:
         MemoryFileError: If the file cannot be used or written, or is of another embedder or version.
@@ -167,7 +167,8 @@ class MemoryStore:
         """Note one experience: as another sighting of one that is like it, or as a new one."""
         assert self._index is not None
         kind = (str(experience.action), str(experience.verdict))
-        (hits,) = self._index.search(vector[None], NEIGHBOURS)
+        # Above 1 nothing is a duplicate, and nobody need look.
+        (hits,) = self._index.search(vector[None], NEIGHBOURS) if self.duplicates <= 1 else ([],)
         known = next((n for n, similarity in hits if similarity >= self.duplicates and self._kinds[n] == kind), None)
         if known is None:
             marks = ", ".join("?" * len(COLUMNS))
