@@ -7,6 +7,7 @@ from codriving.reports.episodes_table import MEMORY
 from codriving.reports.model_display import model_heads, model_notes, model_texts
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.rows import Row, Value
+from codriving.reports.stand_in import stand_in_notes
 from codriving.reports.wording import episodes_text, interval_text, metrics_text, percent, reasoner_text, three
 
 NOTES = (
@@ -108,7 +109,7 @@ def display(
             lines.append(_line(columns, _theirs(row, theirs[index]), ours=False))
         if index + 1 < len(rows) and rows[index + 1]["scenario"] != row["scenario"]:
             lines[-1] = replace(lines[-1], last=True)
-    told = (*NOTES, *model_notes(rows, bool(seconds)), *notes)
+    told = (*NOTES, *stand_in_notes(rows), *model_notes(rows, bool(seconds)), *notes)
     return Display(_title(scenarios, rows, metrics), columns, words, tuple(lines), told)
 
 

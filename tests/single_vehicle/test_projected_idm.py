@@ -10,7 +10,8 @@ from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.action import Action
 from codriving.errors import ConfigError
-from codriving.single_vehicle.projected_idm import LIMITS, TURN
+from codriving.single_vehicle.projected_idm import LIMITS
+from codriving.single_vehicle.starting import TURN
 
 EGO = car("CAV1", "south-north", 70.0, 6.0)
 

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from codriving.reasoning.prompts.seen_views import seen_example
 from codriving.reasoning.prompts.views import (
     ActionView,
     ConflictView,
@@ -20,8 +21,10 @@ def example(purpose: str) -> dict[str, Any]:
     """Return variables of every kind: every list has an entry and every condition holds at least once.
 
     Args:
-        purpose: ``negotiate``, ``decide`` or ``reflect``.
+        purpose: What the template asks for.
     """
+    if purpose.startswith("dilu"):
+        return seen_example(purpose)
     return {"negotiate": _negotiation, "decide": _decision, "reflect": _reflection}[purpose]()
 
 
