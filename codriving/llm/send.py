@@ -101,7 +101,7 @@ async def _import() -> ModuleType:
     litellm.suppress_debug_info = True
     litellm.telemetry = False
     # For embeddings a 0 of the call counts as nothing said; retries have one owner.
-    litellm.DEFAULT_MAX_RETRIES = 0
+    litellm.DEFAULT_MAX_RETRIES = 0  # type: ignore[attr-defined]
     for name in ("LiteLLM", "httpx", "openai"):
         # Their lines may hold addresses with keys; what goes wrong is told by us.
         logging.getLogger(name).setLevel(logging.CRITICAL)
