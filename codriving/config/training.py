@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from codriving.config.choices import describe
 from codriving.config.locate import conf_dir
 from codriving.config.overrides import parse
 from codriving.config.schema import unknown

@@ -60,7 +60,9 @@ class Display:
         """
         self._bar.update(self._task, note=f"success {row['score']:.0%}")
         loss = "-" if row["loss"] is None else f"{row['loss']:.4f}"
-        self.note(f"{row['decisions']:>9} of {self._total} decisions, epsilon {row['epsilon']:.2f}, loss {loss}, {_said(row)}")
+        self.note(
+            f"{row['decisions']:>9} of {self._total} decisions, epsilon {row['epsilon']:.2f}, loss {loss}, {_said(row)}"
+        )
 
     def final(self, row: Mapping[str, Any]) -> None:
         """Tell what the last validation said of one state.

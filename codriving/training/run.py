@@ -78,7 +78,10 @@ def _validate(trainer: Trainer, folder: TrainingFolder) -> dict[str, Any]:
         "train_success": round(counts.arrived / counts.driven, 4) if counts.driven else None,
         **_columns(grades),
     }
-    save(folder.state(counts.decisions), Trained(trainer.network, _purpose(settings, folder, {"decisions": counts.decisions})))
+    save(
+        folder.state(counts.decisions),
+        Trained(trainer.network, _purpose(settings, folder, {"decisions": counts.decisions})),
+    )
     return row
 
 
