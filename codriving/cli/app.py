@@ -15,6 +15,7 @@ from codriving.cli.list import list_choices
 from codriving.cli.memory import memory
 from codriving.cli.replay import replay
 from codriving.cli.run import run
+from codriving.cli.train import train
 from codriving.errors import UserError
 
 USER_ERROR, INTERRUPTED = 2, 130
@@ -74,6 +75,7 @@ app.command(epilog="Example: codriving learn scenario=intersection interactions=
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
 app.add_typer(memory, name="memory")
+app.command(epilog="Example: codriving train madqn --family junction seed=1")(train)
 app.command("list", epilog="Example: codriving list scenarios")(list_choices)
 
 

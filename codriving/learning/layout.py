@@ -1,0 +1,81 @@
+"""How the features of a learned driver are laid out: which number stands where, and in which unit."""
+
+from codriving.datatypes.road import Road
+from codriving.geometry.road_map import RoadMap
+
+VERSION = 1
+"""Version of the features; weights that were trained on another one are refused."""
+
+JUNCTION, LANES = "junction", "lanes"
+FAMILIES = (JUNCTION, LANES)
+"""Kinds of roads: single lanes that meet, and lanes side by side. Each has networks of its own."""
+
+SLOTS = 4
+"""Others that there is room for; the most urgent come first."""
+
+NEAR, FAR = 4.5, 7.0
+"""Units of length, as times at the highest target speed [s]: to leaders and zones, and along the own route.
+
+Speeds are divided by the highest target speed. The speed law a = K_a (v_r - v) is linear, so in these units a vehicle
+moves alike on every grid of target speeds.
+"""
+
+EGO = ("speed", "target", "to_entry", "to_goal", "left", "straight", "right", "one")
+"""Own speed and target speed, way to the shared part of the road and to the goal, turn, and a constant."""
+
+SLOT = ("there", "is_cav", "same_path", "crossing", "own_entry", "other_entry", "other_exit", "speed", "target")
+"""A leader (both entries are the gap) or a conflict zone: ways of both to it and of the other out of it.
+
+``there`` is 1. Where CAVs share and the road has rules of precedence, it is less in a conflict with somebody on a lane
+of the same priority (0.6) or of a higher one (0.2): such human drivers will not give way.
+"""
+
+SIDE = ("gap", "relative_speed", "there")
+"""Next vehicle on the lane beside, ahead or behind: bumper to bumper gap, speed less the own."""
+
+LANE_CHANGE = ("left_allowed", "right_allowed", "left_free", "right_free", "must_side", "must_room", "offset", "rear")
+"""Which lanes can be changed to and are free beside; a change that the route asks for (-1 left, 1 right) and the way
+left for it; offset from the lane that is steered for; gap to who drives behind."""
+
+SIDES = ("left_leader", "left_follower", "right_leader", "right_follower")
+
+
+def feature_names(family: str) -> tuple[str, ...]:
+    """Return a name for every number of an observation, in order.
+
+    Args:
+        family: ``junction`` or ``lanes``.
+    """
+    names = [f"ego.{name}" for name in EGO]
+    names += [f"slot{k}.{name}" for k in range(1, SLOTS + 1) for name in SLOT]
+    if family == LANES:
+        names += [f"{side}.{name}" for side in SIDES for name in SIDE]
+        names += [f"lane.{name}" for name in LANE_CHANGE]
+    return tuple(names)
+
+
+def feature_count(family: str) -> int:
+    """Return how many numbers an observation has: 8 + 9 slots, and 12 + 8 more on lanes.
+
+    Args:
+        family: ``junction`` or ``lanes``.
+    """
+    return len(feature_names(family))
+
+
+def family_of(road_map: RoadMap) -> str:
+    """Return the family that a road belongs to: ``lanes`` as soon as two lanes run side by side.
+
+    Args:
+        road_map: The precomputed road.
+    """
+    return family_of_road(road_map.road)
+
+
+def family_of_road(road: Road) -> str:
+    """Return the family of a road that has not been precomputed.
+
+    Args:
+        road: The road.
+    """
+    return LANES if any(lane.id[2] > 0 for lane in road.lanes) else JUNCTION
