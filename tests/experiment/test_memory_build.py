@@ -12,6 +12,7 @@ from codriving.errors import ConfigError, MemoryFileError
 from codriving.experiment.memory_build import build_points, run_build
 from codriving.experiment.memory_pages import merge_page, search_page, show_page
 from codriving.experiment.remembering import growing, learns, pinned
+from codriving.experiment.run import run_experiment
 from codriving.memory.reading import read_memory
 
 
@@ -153,3 +154,28 @@ def test_merging_counts_what_is_alike_once_and_changes_neither(both: tuple[Path,
     with pytest.raises(MemoryFileError, match="there is no file of memories"):
         merge_page(both[0], Path("none.sqlite"), Path("c.sqlite"), 0.98)
     assert not Path("c.sqlite").exists()
+
+
+def test_tables_with_a_memory_are_the_same_for_any_number_of_workers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Learning is done in the order of the seeds whatever is asked for, and what is frozen depends on no order."""
+    monkeypatch.chdir(tmp_path)
+    short = ["scenario.time_limit=4", "scenario.cavs=2", "episodes=3", "seed=10000"]
+    kept = []
+    for workers in (1, 2):
+        assert run_experiment([*short, "memory=online", f"workers={workers}", f"run=learnt-{workers}"]) == 0
+        file = Path(f"outputs/run/learnt-{workers}/memory/intersection-codriving-full.sqlite")
+        recalled = [*short, "memory=frozen", f"memory.file={file}", f"workers={workers}", f"run=recalled-{workers}"]
+        assert run_experiment(recalled) == 0
+        kept.append(
+            {
+                (what, str(path.relative_to(f"outputs/run/{what}-{workers}"))): path.read_bytes()
+                for what in ("learnt", "recalled")
+                for path in sorted(Path(f"outputs/run/{what}-{workers}").rglob("*"))
+                if path.name in ("episodes.csv", "summary.csv", "record.json", "decisions.jsonl", "trajectory.csv")
+            }
+        )
+        kept[-1]["memory", "bytes"] = file.read_bytes()
+    assert len(kept[0]) == 2 * (2 + 3 * 3) + 1
+    assert kept[0] == kept[1]
