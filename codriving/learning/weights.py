@@ -10,7 +10,8 @@ from typing import Any, Self
 
 import numpy as np
 from safetensors import SafetensorError
-from safetensors.numpy import load_file, save_file
+from safetensors.numpy import load_file
+from safetensors.numpy import save as packed
 
 from codriving.errors import WeightsError
 from codriving.learning.actions import ACTIONS
@@ -158,7 +159,8 @@ def save(file: Path, trained: Trained) -> None:
     tensors = {}
     for k, (weight, bias) in enumerate(zip(trained.network.weights, trained.network.biases, strict=True)):
         tensors[f"W{k}"], tensors[f"b{k}"] = np.ascontiguousarray(weight), np.ascontiguousarray(bias)
-    save_file(tensors, file)
+    # Not by the library's own file, which only its owner may read.
+    file.write_bytes(packed(tensors))
     sidecar(file).write_text(trained.purpose.written(), encoding="utf-8", newline="\n")
 
 
