@@ -9,10 +9,10 @@ from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.prediction.forecast import Forecast
 from codriving.reasoning.conflicts import find_conflicts
-from codriving.reasoning.intent_sharing import IntentSharing
+from codriving.reasoning.intent_sharing import GuessedIntents, IntentSharing
 from codriving.reasoning.movers import Mover, movers
 from codriving.reasoning.scenes import describe_scenes, with_conflicts
-from codriving.reasoning.state_sharing import StateSharing
+from codriving.reasoning.state_sharing import StateSharing, WatchedStates
 from codriving.reasoning.tracking import Tracking
 
 
@@ -64,3 +64,17 @@ class Perception:
             conflicts = {ego: find_conflicts(scene, self.road_map) for ego, scene in scenes.items()}
             scenes = {ego: with_conflicts(scene, conflicts[ego], self.road_map) for ego, scene in scenes.items()}
         return Perceived(scenes, conflicts, {ego: movers(scene) for ego, scene in scenes.items()})
+
+
+def single_vehicle_perception(road_map: RoadMap, forecast: Forecast) -> Perception:
+    """Return what a vehicle perceives that is on its own: what its sensors tell, and what the map allows.
+
+    It knows position, speed and heading of everybody within the detection range, cannot tell a CAV from a human
+    driver, and knows the ways that each may take from the map, narrowed down as it watches. Routes, intents, actions
+    and negotiated orders of others stay hidden.
+
+    Args:
+        road_map: The precomputed road.
+        forecast: Predictions of the present step.
+    """
+    return Perception(road_map, forecast, Tracking(road_map), WatchedStates(), GuessedIntents())

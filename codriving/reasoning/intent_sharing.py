@@ -47,3 +47,17 @@ class HiddenIntents:
             world: The world.
         """
         return {}
+
+
+class GuessedIntents:
+    """Nobody tells anything; the map says where everybody may go, and conflicts are found with all of these ways."""
+
+    finds_conflicts = True
+
+    def intents(self, world: WorldState) -> Mapping[str, Intent]:
+        """Return nothing.
+
+        Args:
+            world: The world.
+        """
+        return {}

@@ -65,6 +65,29 @@ class SensedStates:
         }
 
 
+class WatchedStates:
+    """A vehicle on its own: position, speed and heading of whoever is within range, and never who drives it.
+
+    Lanes are left out, since a simulator knows on which of two lanes one above the other a vehicle is by its route.
+    """
+
+    def views(self, world: WorldState, model: DrivingModel) -> Views:
+        """Return what each CAV's own sensors tell.
+
+        Args:
+            world: The world.
+            model: Holds the detection range.
+        """
+        return {
+            cav.id: tuple(
+                Glimpse(v.id, None, v.x, v.y, v.speed, v.heading, None, None, USUAL_LENGTH)
+                for v in world.vehicles
+                if v.id != cav.id and _within(cav, v, model.detection_range)
+            )
+            for cav in world.cavs
+        }
+
+
 def _within(one: VehicleState, other: VehicleState, distance: float) -> bool:
     return hypot(one.x - other.x, one.y - other.y) <= distance
 

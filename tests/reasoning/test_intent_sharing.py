@@ -2,7 +2,7 @@
 
 from worlds import Junction, car
 
-from codriving.reasoning.intent_sharing import HiddenIntents, SharedIntents
+from codriving.reasoning.intent_sharing import GuessedIntents, HiddenIntents, SharedIntents
 
 
 def test_cavs_tell_route_and_target_and_human_drivers_nothing(junction: Junction) -> None:
@@ -17,6 +17,12 @@ def test_hidden_intents_leave_nothing_and_no_conflicts(junction: Junction) -> No
     assert dict(HiddenIntents().intents(world)) == {}
     assert not HiddenIntents.finds_conflicts
     assert SharedIntents.finds_conflicts
+
+
+def test_whoever_is_on_its_own_hears_nothing_and_still_finds_conflicts(junction: Junction) -> None:
+    world = junction.world(car("CAV1", "south-west", 40.0, 7.0), car("CAV2", "west-east", 40.0, 7.0))
+    assert dict(GuessedIntents().intents(world)) == {}
+    assert GuessedIntents.finds_conflicts
 
 
 def test_the_simulator_gives_away_no_human_intent(junction: Junction) -> None:

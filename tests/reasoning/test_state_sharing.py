@@ -4,7 +4,8 @@ from dataclasses import asdict, replace
 
 from worlds import Car, Junction, car
 
-from codriving.reasoning.state_sharing import USUAL_LENGTH, SensedStates, SharedStates
+from codriving.datatypes.vehicle import Kind
+from codriving.reasoning.state_sharing import USUAL_LENGTH, SensedStates, SharedStates, WatchedStates
 
 NOT_SENSED = {"kind", "heading", "acceleration", "lane"}
 
@@ -67,3 +68,23 @@ def test_the_length_of_a_vehicle_is_shared_but_not_sensed(junction: Junction) ->
     assert {g.length for g in SensedStates().views(longer, junction.model)["CAV2"]} == {USUAL_LENGTH}
     # As long as everybody is as long as is assumed, that changes nothing.
     assert {v.length for v in junction.environment.reset(0).vehicles} == {USUAL_LENGTH}
+
+
+def test_watched_states_are_position_speed_and_heading_within_range(junction: Junction) -> None:
+    world = junction.world(*cars())
+    views = WatchedStates().views(world, junction.model)
+    assert views["CAV1"] == ()
+    (glimpse,) = views["CAV2"]
+    state = next(v for v in world.vehicles if v.id == "HDV1")
+    told = {name for name, value in asdict(glimpse).items() if value is not None}
+    assert told == {"id", "x", "y", "speed", "heading", "length"}
+    assert (glimpse.x, glimpse.y, glimpse.speed, glimpse.heading) == (state.x, state.y, state.speed, state.heading)
+    assert glimpse.length == USUAL_LENGTH
+
+
+def test_watching_does_not_tell_who_drives(junction: Junction) -> None:
+    world = junction.world(*cars())
+    others = tuple(v if v.id == "CAV2" else replace(v, kind=Kind.HDV, acceleration=3.0) for v in world.vehicles)
+    swapped = replace(world, vehicles=others)
+    seen = [WatchedStates().views(w, junction.model)["CAV2"] for w in (world, swapped)]
+    assert seen[0] == seen[1]

@@ -1,0 +1,1 @@
+"""A vehicle on its own: drivers that see the others and know nothing of what they mean to do."""
