@@ -6,6 +6,8 @@ CodrivingError                      anything this program raises on purpose
 │   │   └── ScenarioError           a scenario whose vehicles cannot be placed or whose road is broken
 │   ├── RunFolderError              a run folder that is unwritable, of another config, or damaged
 │   ├── FilmError                   a film that cannot be written
+│   ├── WeightsError                trained weights that are missing, damaged, or meant for something else
+│   ├── TrainingError               a training that cannot begin or go on
 │   └── ModelError                  a language model that cannot be used, or must not be used any more
 │       └── SpendingLimitError      the tokens or the money that may be spent are used up
 └── EpisodeError                    an episode could not go on; it becomes a record and the batch continues
@@ -35,6 +37,14 @@ class RunFolderError(UserError):
 
 class FilmError(UserError):
     """Raised when a film cannot be written."""
+
+
+class WeightsError(UserError):
+    """Raised when trained weights are missing, damaged, or were trained for something else."""
+
+
+class TrainingError(UserError):
+    """Raised when a training cannot begin or go on, for instance without PyTorch."""
 
 
 class EpisodeError(CodrivingError):

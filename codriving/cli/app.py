@@ -13,6 +13,7 @@ from codriving.cli.compare import compare
 from codriving.cli.list import list_choices
 from codriving.cli.replay import replay
 from codriving.cli.run import run
+from codriving.cli.train import train
 from codriving.errors import UserError
 
 USER_ERROR, INTERRUPTED = 2, 130
@@ -70,6 +71,7 @@ app.command(epilog="Example: codriving ablate scenario=intersection episodes=20"
 app.command(epilog="Example: codriving compare baselines scenario=intersection episodes=20")(compare)
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
+app.command(epilog="Example: codriving train madqn --family junction seed=1")(train)
 app.command("list", epilog="Example: codriving list scenarios")(list_choices)
 
 

@@ -1,5 +1,6 @@
 """How the features of a learned driver are laid out: which number stands where, and in which unit."""
 
+from codriving.datatypes.road import Road
 from codriving.geometry.road_map import RoadMap
 
 VERSION = 1
@@ -64,4 +65,13 @@ def family_of(road_map: RoadMap) -> str:
     Args:
         road_map: The precomputed road.
     """
-    return LANES if any(lane[2] > 0 for lane in road_map.lanes) else JUNCTION
+    return family_of_road(road_map.road)
+
+
+def family_of_road(road: Road) -> str:
+    """Return the family of a road that has not been precomputed.
+
+    Args:
+        road: The road.
+    """
+    return LANES if any(lane.id[2] > 0 for lane in road.lanes) else JUNCTION

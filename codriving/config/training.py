@@ -1,0 +1,94 @@
+"""The configs of trainings: one YAML in conf/train each, changed by ``key=value`` as everywhere."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from codriving.config.choices import describe
+from codriving.config.locate import conf_dir
+from codriving.config.overrides import parse
+from codriving.config.schema import unknown
+from codriving.config.secrets import shown
+from codriving.errors import ConfigError
+
+TRAININGS = "train"
+"""The folder of these configs; it is no group, since a run has no training."""
+
+SMOKE = "smoke"
+"""The key that holds what ``--smoke`` changes."""
+
+
+def trainings(config_dir: Path | None = None) -> dict[str, Path]:
+    """List the trainings.
+
+    Args:
+        config_dir: The user's own configs, if any.
+
+    Returns:
+        The YAML file of each, by name.
+    """
+    folders = [root / TRAININGS for root in (conf_dir(), config_dir) if root is not None]
+    return {file.stem: file for folder in folders for file in sorted(folder.glob("*.yaml"))}
+
+
+def compose_training(
+    name: str, overrides: Sequence[str], smoke: bool, config_dir: Path | None = None
+) -> dict[str, Any]:
+    """Compose the config of a training.
+
+    Args:
+        name: Name of its YAML.
+        overrides: ``key=value`` tokens; a part of a list is named by its number, as in ``traffic.0.weight=2``.
+        smoke: Whether to change what makes it a short test of the machinery, before the overrides.
+        config_dir: A folder of the user's own configs.
+
+    Returns:
+        The config, made of dicts, lists, texts, numbers, booleans and None.
+
+    Raises:
+        ConfigError: If there is no such training, or an override cannot be used.
+    """
+    from omegaconf import OmegaConf
+    from omegaconf.errors import OmegaConfBaseException
+    from yaml import YAMLError
+
+    known = trainings(config_dir)
+    if name not in known:
+        raise ConfigError(f"there is no training {name!r}; trainings: {', '.join(known)}")
+    try:
+        config: dict[str, Any] = OmegaConf.to_container(OmegaConf.load(known[name]), resolve=True)  # type: ignore[assignment]
+    except (OmegaConfBaseException, YAMLError) as err:
+        raise ConfigError(f"cannot read {known[name]} ({' '.join(str(err).split())})") from err
+    small = config.pop(SMOKE, {})
+    if smoke:
+        for key, value in small.items():
+            _set(config, key, value)
+    for token in overrides:
+        override = parse(token)
+        if override.is_delete() or override.is_sweep_override():
+            raise ConfigError(f"{shown(token)}: a training takes one value for each key")
+        _set(config, override.key_or_group, override.value())
+    return config
+
+
+def _set(config: dict[str, Any], key: str, value: object) -> None:
+    """Set a key that is there already; whatever its class does not know is refused when it is built."""
+    node: Any = config
+    *path, last = key.split(".")
+    for depth, part in enumerate((*path, last)):
+        if isinstance(node, list) and part.isdigit() and int(part) < len(node):
+            where: Any = int(part)
+        elif isinstance(node, Mapping) and part in node:
+            where = part
+        elif isinstance(node, Mapping) and depth == len(path) and path and path[-1] in ("settings", "reward"):
+            # What these hold is checked by whoever reads it.
+            where = part
+        else:
+            names = [str(k) for k in range(len(node))] if isinstance(node, list) else list(node or ())
+            raise unknown(key, names, ".".join(path[:depth]) or "the training")
+        if depth == len(path):
+            node[where] = value
+        else:
+            node = node[where]
+            if not isinstance(node, list | dict):
+                raise unknown(key, [], ".".join(path[: depth + 1]))

@@ -1,0 +1,100 @@
+"""The face of a training for the command line: from its config to weights, with what the user has to know."""
+
+import importlib.util
+import shlex
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from codriving.config.build import build
+from codriving.config.training import compose_training, trainings
+from codriving.errors import ConfigError, TrainingError
+from codriving.learning.layout import FAMILIES
+
+INTERRUPTED = 130
+"""Exit code of a process that the user stopped (128 + SIGINT)."""
+
+LEARNERS = ("madqn",)
+"""What can be trained; each has a YAML in conf/train for every family, called after both."""
+
+OWN = ("run", "output")
+"""Settings of the folder, which do not change what is trained."""
+
+
+def run_training(
+    learner: str, family: str, overrides: Sequence[str], smoke: bool = False, config_dir: Path | None = None
+) -> int:
+    """Train a learner, or go on with a training that was stopped: ``codriving train``.
+
+    Args:
+        learner: Its name.
+        family: Family of roads that it is trained for.
+        overrides: ``key=value`` tokens; ``run`` and ``output`` name the folder.
+        smoke: Whether it is only a short test of the machinery.
+        config_dir: A folder of the user's own configs.
+
+    Returns:
+        Exit code: 0, or 130 if the user stopped it.
+
+    Raises:
+        UserError: If PyTorch is missing, or the config or the folder cannot be used.
+    """
+    name = named(learner, family, config_dir)
+    own, others = _split(overrides)
+    config = compose_training(name, others, smoke, config_dir)
+    settings = build(config, key="train")
+    if importlib.util.find_spec("torch") is None:
+        raise TrainingError(
+            "training needs PyTorch, which is not installed: pip install 'codriving[train]', or make train in a "
+            "checkout; driving with the trained weights that are shipped needs none"
+        )
+    from codriving.training.display import Display
+    from codriving.training.folder import Stop, open_folder
+    from codriving.training.run import train
+
+    run = own.get("run", f"{name}_smoke" if smoke else name)
+    path = Path(own.get("output", "outputs"), "train", run)
+    words = ["codriving", "train", learner, "--family", family, *(["--smoke"] if smoke else []), *others]
+    command = shlex.join(words)
+    again = shlex.join([*words, *(f"{key}={value}" for key, value in own.items())])
+    with open_folder(path, name, command, config) as folder:
+        if folder.best.exists():
+            print(f"Nothing to do: this training is finished, its weights are {folder.best}")
+            return 0
+        stop = Stop()
+        try:
+            with stop.listening(), Display(f"training {name}", settings.decisions) as display:
+                best = train(settings, folder, display, stop)
+        except KeyboardInterrupt:
+            print(f"\nStopped; the training is kept in {path}.\nGo on with: {again}", file=sys.stderr)
+            return INTERRUPTED
+    print(f"Trained weights: {best}")
+    print(f"Drive with them: codriving run method={learner} method.weights={best}")
+    return 0
+
+
+def named(learner: str, family: str, config_dir: Path | None = None) -> str:
+    """Return the name of the config of a training.
+
+    Args:
+        learner: What is trained.
+        family: Family of roads.
+        config_dir: A folder of the user's own configs.
+
+    Raises:
+        ConfigError: If there is no such learner or family.
+    """
+    if learner not in LEARNERS:
+        raise ConfigError(f"unknown learner {learner!r}; learners: {', '.join(LEARNERS)}")
+    if family not in FAMILIES:
+        raise ConfigError(f"unknown family {family!r}; families: {', '.join(FAMILIES)}")
+    name = f"{learner}_{family}"
+    if name not in trainings(config_dir):
+        raise ConfigError(f"there is no training {name}; trainings: {', '.join(trainings(config_dir))}")
+    return name
+
+
+def _split(overrides: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+    """Return what names the folder, and the other overrides."""
+    own = {key: value for token in overrides for key, _, value in [token.partition("=")] if key in OWN}
+    return own, [token for token in overrides if token.partition("=")[0] not in OWN]

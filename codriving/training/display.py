@@ -1,0 +1,76 @@
+"""How far a training is: a bar with the last validation on a terminal, a line a validation in a pipe."""
+
+import sys
+from collections.abc import Mapping
+from types import TracebackType
+from typing import Any, Self, TextIO
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from codriving.training.curve import SUCCESS
+
+
+class Display:
+    """Tells how far a training is.
+
+    Args:
+        name: What is trained.
+        total: Decisions of the whole training.
+        stream: Where to; standard error if None.
+    """
+
+    def __init__(self, name: str, total: int, stream: TextIO | None = None) -> None:
+        self._console = Console(file=stream or sys.stderr, highlight=False, soft_wrap=True)
+        self._total, self._done = total, 0
+        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+        self._bar = Progress(*columns, TextColumn("{task.fields[note]}"), console=self._console)
+        self._task = self._bar.add_task(name, total=total, note="")
+
+    def __enter__(self) -> Self:
+        if self._console.is_terminal:
+            self._bar.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, at: TracebackType | None) -> None:
+        self._bar.stop()
+
+    def advance(self, decisions: int) -> None:
+        """Tell how many decisions have been driven.
+
+        Args:
+            decisions: Decisions in all.
+        """
+        self._done = decisions
+        self._bar.update(self._task, completed=min(decisions, self._total))
+
+    def note(self, text: str) -> None:
+        """Say something in a line of its own.
+
+        Args:
+            text: What.
+        """
+        self._console.print(text, markup=False)
+
+    def validated(self, row: Mapping[str, Any]) -> None:
+        """Tell what a validation said.
+
+        Args:
+            row: Its row of the curve.
+        """
+        self._bar.update(self._task, note=f"success {row['score']:.0%}")
+        loss = "-" if row["loss"] is None else f"{row['loss']:.4f}"
+        self.note(f"{row['decisions']:>9} of {self._total} decisions, epsilon {row['epsilon']:.2f}, loss {loss}, {_said(row)}")
+
+    def final(self, row: Mapping[str, Any]) -> None:
+        """Tell what the last validation said of one state.
+
+        Args:
+            row: Its row.
+        """
+        self.note(f"state after {row['decisions']} decisions, on further seeds: {_said(row)}")
+
+
+def _said(row: Mapping[str, Any]) -> str:
+    exams = {name.removesuffix(f".{SUCCESS}"): value for name, value in row.items() if name.endswith(f".{SUCCESS}")}
+    return f"success {row['score']:.1%} (" + ", ".join(f"{name} {value:.0%}" for name, value in exams.items()) + ")"

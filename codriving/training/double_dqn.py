@@ -1,0 +1,99 @@
+"""Double DQN (van Hasselt, Guez and Silver, 2016) with one network for all agents (Egorov, 2016)."""
+
+import copy
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import torch
+from torch import nn
+
+from codriving.learning.network import Network
+from codriving.training.replay import Batch
+
+
+class DoubleDqn:
+    """A network that judges actions, and its slow average, which judges what comes later and is what is kept.
+
+    Args:
+        sizes: Number of inputs, of units in each hidden layer, and of outputs.
+        average: Share of the network in its average at each update, 0 to 1.
+        clip: Largest norm of the gradient.
+        seed: Seed of the first weights.
+    """
+
+    def __init__(self, sizes: Sequence[int], average: float, clip: float, seed: int) -> None:
+        torch.set_num_threads(1)
+        torch.use_deterministic_algorithms(True)
+        torch.manual_seed(seed)
+        layers: list[nn.Module] = []
+        for inputs, outputs in zip(sizes[:-1], sizes[1:], strict=True):
+            layers += [nn.Linear(inputs, outputs), nn.ReLU()]
+        self.online = nn.Sequential(*layers[:-1])
+        self.target = copy.deepcopy(self.online)
+        self._average, self._clip = average, clip
+        self._optimizer = torch.optim.Adam(self.online.parameters(), lr=1e-3)
+
+    def update(self, batch: Batch, rate: float) -> float:
+        """Learn from a batch.
+
+        The network chooses the later action, its average judges it; Huber loss; the norm of the gradient is clipped.
+
+        Args:
+            batch: Transitions.
+            rate: Learning rate.
+
+        Returns:
+            The loss.
+        """
+        observations, later = torch.from_numpy(batch.observations), torch.from_numpy(batch.later)
+        with torch.no_grad():
+            chosen = self.online(later).masked_fill(~torch.from_numpy(batch.masks), -torch.inf).argmax(1, keepdim=True)
+            value = self.target(later).gather(1, chosen).squeeze(1)
+            goal = torch.from_numpy(batch.gains) + torch.from_numpy(batch.discounts) * value
+        judged = self.online(observations).gather(1, torch.from_numpy(batch.actions)[:, None]).squeeze(1)
+        loss = nn.functional.smooth_l1_loss(judged, goal)
+        for group in self._optimizer.param_groups:
+            group["lr"] = rate
+        self._optimizer.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(self.online.parameters(), self._clip)
+        self._optimizer.step()
+        with torch.no_grad():
+            for slow, fast in zip(self.target.parameters(), self.online.parameters(), strict=True):
+                slow.lerp_(fast, self._average)
+        return float(loss.detach())
+
+    def state(self) -> dict[str, Any]:
+        """Return everything that learning goes on from."""
+        return {
+            "online": self.online.state_dict(),
+            "target": self.target.state_dict(),
+            "optimizer": self._optimizer.state_dict(),
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on with the state of another one.
+
+        Args:
+            state: Its state.
+        """
+        self.online.load_state_dict(state["online"])
+        self.target.load_state_dict(state["target"])
+        self._optimizer.load_state_dict(state["optimizer"])
+
+
+def as_numpy(module: nn.Sequential, live: bool) -> Network:
+    """Return a network as numpy computes it.
+
+    Args:
+        module: Linear layers with rectifiers between them.
+        live: Whether the result shares its memory with the module, and so learns with it.
+    """
+    layers = [layer for layer in module if isinstance(layer, nn.Linear)]
+    weights = [layer.weight.detach().numpy().T for layer in layers]
+    biases = [layer.bias.detach().numpy() for layer in layers]
+    if not live:
+        weights, biases = [np.ascontiguousarray(w) for w in weights], [b.copy() for b in biases]
+        weights = [w.copy() for w in weights]
+    return Network(weights, biases)

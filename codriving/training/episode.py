@@ -1,0 +1,99 @@
+"""One episode of the environment for agents, driven by a learner: what each of them goes through."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.world import WorldState
+from codriving.envs.actions import ACTIONS as NUMBERS
+from codriving.learning.actions import ACTIONS, allowed
+from codriving.learning.features import Features
+from codriving.learning.network import FloatArray
+
+if TYPE_CHECKING:
+    from codriving.envs.parallel import ParallelDriving
+
+Masks = NDArray[np.bool_]
+Policy = Callable[[FloatArray, Masks], list[int]]
+"""Observations (n, features) and allowed actions (n, actions) to numbers of actions."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """One decision step of all agents on the road, and what it brought them; a row an agent.
+
+    Attributes:
+        agents: Their ids.
+        observations: What they observed (n, features).
+        masks: What they were allowed (n, actions).
+        actions: What they did.
+        rewards: Rewards.
+        arrived: Ids of those who arrived.
+        failed: Ids of those who took part in a collision or left the road.
+        ending: How the episode ended with this step; None if it goes on.
+        later: What those who are still on the road observe now, by id.
+        allowed: What they are allowed now, by id.
+    """
+
+    agents: list[str]
+    observations: FloatArray
+    masks: Masks
+    actions: list[int]
+    rewards: list[float]
+    arrived: frozenset[str]
+    failed: frozenset[str]
+    ending: Ending | None
+    later: dict[str, FloatArray] = field(repr=False)
+    allowed: dict[str, Masks] = field(repr=False)
+
+
+def drive(env: "ParallelDriving", seed: int, features: Features, family: str, policy: Policy) -> Iterator[Moment]:
+    """Drive one episode.
+
+    Args:
+        env: The environment.
+        seed: Seed of the episode.
+        features: What is observed; for the road of the environment.
+        family: Family of the road, for the meaning of actions.
+        policy: Who decides.
+
+    Yields:
+        Step after step.
+    """
+    numbers = [NUMBERS.index(action) for action in ACTIONS[family]]
+    env.reset(seed=seed)
+    features.reset()
+    seen, masks = _look(env.world, features, family)
+    while env.agents:
+        agents = env.agents
+        observations = np.stack([seen[name] for name in agents])
+        rows = np.stack([masks[name] for name in agents])
+        actions = policy(observations, rows)
+        chosen = {name: numbers[k] for name, k in zip(agents, actions, strict=True)}
+        _, rewards, *_ = env.step(chosen)
+        outcome = env.environment.outcome
+        seen, masks = _look(env.world, features, family)
+        failed: frozenset[str] = frozenset()
+        if outcome is not None:
+            crash = outcome.collision
+            failed = frozenset(outcome.off_road if crash is None else (crash.striker, crash.struck))
+        yield Moment(
+            agents,
+            observations,
+            rows,
+            actions,
+            [rewards[name] for name in agents],
+            frozenset(name for name in agents if name not in seen),
+            failed,
+            None if outcome is None else outcome.ending,
+            seen,
+            masks,
+        )
+
+
+def _look(world: WorldState, features: Features, family: str) -> tuple[dict[str, FloatArray], dict[str, Masks]]:
+    return features.observe(world), {name: allowed(family, actions) for name, actions in world.available.items()}

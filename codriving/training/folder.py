@@ -1,0 +1,110 @@
+"""The folder of a training: its config, its checkpoint, its curve and the weights it has come to."""
+
+import hashlib
+import json
+import signal
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+from codriving.config.show import show
+from codriving.errors import RunFolderError
+from codriving.storage.atomic import write_text
+from codriving.storage.lock import FolderLock
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingFolder:
+    """Where a training is kept.
+
+    Attributes:
+        path: The folder.
+        command: The command that makes the same training from nothing.
+        fingerprint: What tells its config from all others.
+        best: File of the chosen weights; there once the training is finished.
+    """
+
+    path: Path
+    command: str
+    fingerprint: str
+    best: Path
+
+    @property
+    def checkpoint(self) -> Path:
+        """Folder of what the training goes on from."""
+        return self.path / "checkpoint"
+
+    def state(self, decisions: int) -> Path:
+        """Return the file of the weights as they were validated after some decisions.
+
+        Args:
+            decisions: Decisions of single agents.
+        """
+        return self.path / "states" / f"{decisions:09d}.safetensors"
+
+
+def fingerprint(config: Mapping[str, Any]) -> str:
+    """Reduce the config of a training to a short text that differs with every setting.
+
+    Args:
+        config: The config of plain values.
+    """
+    return hashlib.sha256(json.dumps(config, sort_keys=True).encode()).hexdigest()[:16]
+
+
+@contextmanager
+def open_folder(path: Path, name: str, command: str, config: Mapping[str, Any]) -> Iterator[TrainingFolder]:
+    """Make the folder of a training, or open it again.
+
+    Args:
+        path: The folder.
+        name: Name of the weights that come out of it.
+        command: The command that makes the same training.
+        config: Its config of plain values.
+
+    Yields:
+        The folder, which nobody else writes meanwhile.
+
+    Raises:
+        RunFolderError: If it cannot be written, or is of another training.
+    """
+    text, file = show(config), path / "config.yaml"
+    try:
+        (path / "states").mkdir(parents=True, exist_ok=True)
+        with FolderLock(path):
+            if not file.exists():
+                write_text(file, text)
+            elif file.read_text(encoding="utf-8") != text:
+                raise RunFolderError(f"{path} is a training with other settings; choose another run=<name>, or delete it")
+            yield TrainingFolder(path, command, fingerprint(config), path / f"{name}.safetensors")
+    except OSError as err:
+        raise RunFolderError(f"cannot write {err.filename or path}: {err.strerror or err}") from err
+
+
+class Stop:
+    """Whether the user wants a training to stop; the first Ctrl-C asks for it, the second one insists.
+
+    Attributes:
+        wanted: Whether it is wanted.
+    """
+
+    def __init__(self) -> None:
+        self.wanted = False
+
+    @contextmanager
+    def listening(self) -> Iterator[None]:
+        """Listen for Ctrl-C; a training stops between two episodes, so that its checkpoint is exact."""
+
+        def note(signum: int, frame: FrameType | None) -> None:
+            if self.wanted:
+                raise KeyboardInterrupt
+            self.wanted = True
+
+        before = signal.signal(signal.SIGINT, note)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGINT, before)

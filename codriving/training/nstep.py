@@ -1,0 +1,106 @@
+"""Transitions over several steps, one agent at a time: who has arrived stops, and nobody is blamed for others."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.learning.features import Observation
+
+
+class Transition(NamedTuple):
+    """What the learning rule learns from.
+
+    Attributes:
+        observation: What was observed.
+        action: Number of the action that was taken.
+        gain: Discounted sum of the rewards of up to n steps.
+        discount: What the value of the last observation counts; 0 if the episode ended there for this agent.
+        later: Observation after these steps.
+        mask: Actions that are allowed then.
+    """
+
+    observation: Observation
+    action: int
+    gain: float
+    discount: float
+    later: Observation
+    mask: NDArray[np.bool_]
+
+
+@dataclass(slots=True)
+class _Step:
+    observation: Observation
+    mask: NDArray[np.bool_]
+    action: int
+    reward: float
+
+
+class Trail:
+    """What one agent has gone through in the present episode.
+
+    Args:
+        steps: n, number of steps that a transition spans at most.
+        discount: Discount of one decision.
+    """
+
+    def __init__(self, steps: int, discount: float) -> None:
+        self._n, self._discount = steps, discount
+        self._steps: list[_Step] = []
+
+    def add(self, observation: Observation, mask: NDArray[np.bool_], action: int, reward: float) -> None:
+        """Note one decision and what it brought.
+
+        Args:
+            observation: What was observed.
+            mask: Actions that were allowed.
+            action: Number of the one that was taken.
+            reward: Reward.
+        """
+        self._steps.append(_Step(observation, mask, action, reward))
+
+    def full(self, later: Observation, mask: NDArray[np.bool_]) -> list[Transition]:
+        """Return the transition that spans n steps up to now, if there are so many.
+
+        Args:
+            later: What is observed now.
+            mask: Actions that are allowed now.
+        """
+        if len(self._steps) < self._n:
+            return []
+        found = self._sum(0, later, mask, ended=False)
+        del self._steps[0]
+        return [found]
+
+    def ended(self) -> list[Transition]:
+        """Return what is left of an agent that has arrived or crashed: nothing comes after it."""
+        found = [self._sum(k, s.observation, s.mask, ended=True) for k, s in enumerate(self._steps)]
+        self._steps = []
+        return found
+
+    def cut(self, later: Observation, mask: NDArray[np.bool_]) -> list[Transition]:
+        """Return what is left of an agent whose episode was cut off by the time limit: it would have gone on.
+
+        Args:
+            later: What is observed now.
+            mask: Actions that are allowed now.
+        """
+        found = [self._sum(k, later, mask, ended=False) for k in range(len(self._steps))]
+        self._steps = []
+        return found
+
+    def dropped(self) -> list[Transition]:
+        """Return what is left of an agent whose episode was broken off by others: all but its last step."""
+        if not self._steps:
+            return []
+        last = self._steps.pop()
+        return self.cut(last.observation, last.mask)
+
+    def _sum(self, first: int, later: Observation, mask: NDArray[np.bool_], ended: bool) -> Transition:
+        steps = self._steps[first : first + self._n]
+        gain, weight = 0.0, 1.0
+        for step in steps:
+            gain += weight * step.reward
+            weight *= self._discount
+        return Transition(steps[0].observation, steps[0].action, gain, 0.0 if ended else weight, later, mask)

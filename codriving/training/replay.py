@@ -1,0 +1,91 @@
+"""The last transitions, from which batches are drawn."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.learning.network import FloatArray
+from codriving.training.nstep import Transition
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Some transitions, one a row.
+
+    Attributes:
+        observations: What was observed (n, features).
+        actions: Numbers of the actions (n,).
+        gains: Discounted sums of rewards (n,).
+        discounts: What the value of the last observation counts (n,).
+        later: Last observations (n, features).
+        masks: Actions that are allowed then (n, actions).
+    """
+
+    observations: FloatArray
+    actions: NDArray[np.int64]
+    gains: FloatArray
+    discounts: FloatArray
+    later: FloatArray
+    masks: NDArray[np.bool_]
+
+
+class Replay:
+    """A ring of transitions; the oldest is overwritten first.
+
+    Args:
+        capacity: Number of transitions that it holds.
+        features: Numbers in an observation.
+        actions: Number of actions.
+    """
+
+    def __init__(self, capacity: int, features: int, actions: int) -> None:
+        self.capacity = capacity
+        self.added = 0
+        self._columns: dict[str, NDArray[np.generic]] = {
+            "observations": np.zeros((capacity, features), np.float32),
+            "actions": np.zeros(capacity, np.int64),
+            "gains": np.zeros(capacity, np.float32),
+            "discounts": np.zeros(capacity, np.float32),
+            "later": np.zeros((capacity, features), np.float32),
+            "masks": np.zeros((capacity, actions), np.bool_),
+        }
+
+    def __len__(self) -> int:
+        return min(self.added, self.capacity)
+
+    def add(self, transition: Transition) -> None:
+        """Take one in.
+
+        Args:
+            transition: The transition.
+        """
+        k = self.added % self.capacity
+        for column, value in zip(self._columns.values(), transition, strict=True):
+            column[k] = value
+        self.added += 1
+
+    def draw(self, size: int, rng: np.random.Generator) -> Batch:
+        """Draw a batch; a transition may be in it twice.
+
+        Args:
+            size: Number of transitions.
+            rng: Generator.
+        """
+        chosen = rng.integers(len(self), size=size)
+        return Batch(**{name: column[chosen] for name, column in self._columns.items()})  # type: ignore[arg-type]
+
+    def state(self) -> dict[str, NDArray[np.generic]]:
+        """Return everything that it holds, by name."""
+        filled = {name: column[: len(self)] for name, column in self._columns.items()}
+        return {**filled, "added": np.array(self.added)}
+
+    def restore(self, state: dict[str, NDArray[np.generic]]) -> None:
+        """Go on with what another one held.
+
+        Args:
+            state: Its state.
+        """
+        self.added = int(state["added"])
+        for name, column in self._columns.items():
+            column[: len(self)] = state[name]

@@ -1,0 +1,150 @@
+"""One training of MADQN in its folder, from its beginning or from where it was stopped."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from codriving.errors import TrainingError
+from codriving.learning.actions import ACTIONS
+from codriving.learning.layout import FAR, NEAR, VERSION
+from codriving.learning.network import Network
+from codriving.learning.weights import Purpose, Trained, load, save
+from codriving.storage.atomic import whole_file, write_text
+from codriving.training.checkpoint import recall, store
+from codriving.training.curve import COLLISION, DURATION, SUCCESS, Row, curve_csv, curve_png
+from codriving.training.display import Display
+from codriving.training.folder import Stop, TrainingFolder
+from codriving.training.settings import MadqnSettings
+from codriving.training.trainer import Trainer
+from codriving.training.validation import Grade, examine, overall
+
+EXAM_SEEDS = 1000
+"""Seeds that each exam has for itself."""
+
+FINAL_SEEDS = 100_000
+"""How far the seeds of the last validation lie beyond those of the others."""
+
+METHOD = "madqn"
+
+
+def train(settings: MadqnSettings, folder: TrainingFolder, display: Display, stop: Stop) -> Path:
+    """Train, validate and choose.
+
+    Args:
+        settings: How.
+        folder: Where to.
+        display: Who is told how far it is.
+        stop: Asked between episodes whether the user wants to stop.
+
+    Returns:
+        The file of the chosen weights.
+
+    Raises:
+        TrainingError: If a checkpoint is damaged.
+        KeyboardInterrupt: If it was stopped; the checkpoint is written.
+    """
+    trainer = Trainer(settings)
+    rows: list[dict[str, Any]] = []
+    if folder.checkpoint.exists():
+        rows = recall(folder.checkpoint, trainer)["rows"]
+        display.note(f"going on after {trainer.counts.decisions} decisions")
+    target = len(rows) + 1
+    while trainer.counts.decisions < settings.decisions:
+        trainer.episode()
+        display.advance(trainer.counts.decisions)
+        if trainer.counts.decisions >= min(target * settings.exam_every, settings.decisions):
+            rows.append(_validate(trainer, folder))
+            target = len(rows) + 1
+            trainer.counts.begin_section()
+            store(folder.checkpoint, trainer, {"rows": rows})
+            _write_curve(rows, settings, folder)
+            display.validated(rows[-1])
+        if stop.wanted:
+            store(folder.checkpoint, trainer, {"rows": rows})
+            raise KeyboardInterrupt
+    return _choose(settings, rows, folder, display, trainer)
+
+
+def _validate(trainer: Trainer, folder: TrainingFolder) -> dict[str, Any]:
+    """Validate the network as it is, keep it, and return a row of the curve."""
+    settings, counts = trainer.settings, trainer.counts
+    grades = _exams(settings, trainer.network, settings.exam_seed, None)
+    row: dict[str, Any] = {
+        "decisions": counts.decisions,
+        "episodes": counts.episodes,
+        "updates": counts.updates,
+        "epsilon": round(settings.exploration.at(counts.decisions), 4),
+        "loss": round(counts.losses / counts.learned, 5) if counts.learned else None,
+        "train_success": round(counts.arrived / counts.driven, 4) if counts.driven else None,
+        **_columns(grades),
+    }
+    save(folder.state(counts.decisions), Trained(trainer.network, _purpose(settings, folder, {"decisions": counts.decisions})))
+    return row
+
+
+def _exams(settings: MadqnSettings, network: Network, first: int, episodes: int | None) -> dict[str, Grade]:
+    return {
+        exam.name: examine(exam, network, settings.family, first + k * EXAM_SEEDS, episodes or exam.episodes)
+        for k, exam in enumerate(settings.exams)
+    }
+
+
+def _columns(grades: Mapping[str, Grade]) -> dict[str, float | None]:
+    found: dict[str, float | None] = {"score": round(overall(list(grades.values())), 4)}
+    for name, grade in grades.items():
+        found[f"{name}.{SUCCESS}"] = round(grade.success, 4)
+        found[f"{name}.{COLLISION}"] = round(grade.collision, 4)
+        found[f"{name}.{DURATION}"] = None if grade.duration is None else round(grade.duration, 2)
+    return found
+
+
+def _choose(
+    settings: MadqnSettings, rows: list[dict[str, Any]], folder: TrainingFolder, display: Display, trainer: Trainer
+) -> Path:
+    """Validate the best states once more on further seeds, and keep the best of them."""
+    best = sorted(rows, key=lambda row: (-row["score"], row["decisions"]))[: settings.finalists]
+    finals: list[dict[str, Any]] = []
+    for row in sorted(best, key=lambda row: int(row["decisions"])):
+        network = load(folder.state(row["decisions"])).network
+        first = settings.exam_seed + FINAL_SEEDS
+        grades = _exams(settings, network, first, settings.final_episodes)
+        finals.append({"decisions": row["decisions"], **_columns(grades)})
+        display.final(finals[-1])
+    write_text(folder.path / "finalists.csv", curve_csv(finals))
+    winner = max(finals, key=lambda row: (row["score"], -row["decisions"]))
+    said = {
+        "decisions": winner["decisions"],
+        "validation": {
+            "first_seed": settings.exam_seed + FINAL_SEEDS,
+            "episodes_per_exam": settings.final_episodes,
+            **{name: value for name, value in winner.items() if name != "decisions"},
+        },
+    }
+    network = load(folder.state(winner["decisions"])).network
+    save(folder.best, Trained(network, _purpose(settings, folder, said)))
+    return folder.best
+
+
+def _purpose(settings: MadqnSettings, folder: TrainingFolder, said: Mapping[str, Any]) -> Purpose:
+    models = [exam.environment.environment.driving_model for exam in settings.exams]
+    intervals = {model.decision_interval for model in models}
+    if len(intervals) > 1:
+        raise TrainingError(f"all exams must decide alike often, got intervals of {sorted(intervals)} s")
+    return Purpose(
+        method=METHOD,
+        family=settings.family,
+        features=VERSION,
+        near=NEAR,
+        far=FAR,
+        decision_interval=intervals.pop(),
+        target_speeds=tuple(sorted({model.target_speeds for model in models})),
+        actions=tuple(map(str, ACTIONS[settings.family])),
+        hidden=settings.hidden,
+        training={"command": folder.command, "config": folder.fingerprint, "seed": settings.seed, **said},
+    )
+
+
+def _write_curve(rows: list[Row] | list[dict[str, Any]], settings: MadqnSettings, folder: TrainingFolder) -> None:
+    write_text(folder.path / "curve.csv", curve_csv(rows))
+    with whole_file(folder.path / "curve.png") as file:
+        file.write_bytes(curve_png(rows, f"MADQN, {settings.family}, seed {settings.seed}"))

@@ -1,0 +1,108 @@
+"""Every number of a training of MADQN; the configs in conf/train are calls of this."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from codriving.envs.reward import RewardWeights, reward_weights
+from codriving.errors import ConfigError
+from codriving.learning.layout import FAMILIES
+from codriving.training.schedule import Linear
+from codriving.training.traffic import Traffic
+from codriving.training.validation import Exam
+
+LEAST_SEED = 10_000
+"""Seeds below this are for tables alone."""
+
+
+@dataclass(frozen=True)
+class MadqnSettings:
+    """How a network is trained.
+
+    Attributes:
+        family: ``junction`` or ``lanes``.
+        seed: Seed of weights, exploration and episodes.
+        decisions: Decisions of single agents after which the training ends.
+        hidden: Units of each hidden layer.
+        steps: Steps that a transition spans at most.
+        discount: Discount of one decision, 0 to 1.
+        capacity: Transitions that are kept.
+        warm_up: Transitions before the first update.
+        batch: Transitions an update.
+        every: Transitions between two updates.
+        average: Share of the network that enters its slow average at each update.
+        clip: Largest norm of the gradient.
+        rate: Learning rate.
+        exploration: Share of decisions that are drawn.
+        faster: How much more often an exploring agent draws FASTER than each other action.
+        reward: Weights of the reward.
+        traffic: What is driven.
+        exams: What is validated.
+        exam_every: Decisions between two validations.
+        exam_seed: First seed of a validation; each exam has its own range from it on.
+        finalists: Best states that are validated once more, on further seeds.
+        final_episodes: Episodes of each exam then.
+
+    Raises:
+        ConfigError: If a value is out of range.
+    """
+
+    family: str
+    seed: int
+    decisions: int
+    hidden: tuple[int, ...]
+    steps: int
+    discount: float
+    capacity: int
+    warm_up: int
+    batch: int
+    every: int
+    average: float
+    clip: float
+    rate: Linear
+    exploration: Linear
+    faster: float
+    reward: Mapping[str, float]
+    traffic: tuple[Traffic, ...]
+    exams: tuple[Exam, ...]
+    exam_every: int
+    exam_seed: int
+    finalists: int
+    final_episodes: int
+
+    def __post_init__(self) -> None:
+        if self.family not in FAMILIES:
+            raise ConfigError(f"family must be one of {', '.join(FAMILIES)}, got {self.family!r}")
+        for name, low in (
+            ("seed", 0),
+            ("decisions", 1),
+            ("steps", 1),
+            ("capacity", 1),
+            ("warm_up", 1),
+            ("batch", 1),
+            ("every", 1),
+            ("exam_every", 1),
+            ("exam_seed", LEAST_SEED),
+            ("finalists", 1),
+            ("final_episodes", 1),
+        ):
+            if getattr(self, name) < low:
+                raise ConfigError(f"{name} must be {low} or more, got {getattr(self, name)}")
+        if not self.hidden or min(self.hidden) < 1:
+            raise ConfigError(f"hidden must name the units of at least one layer, got {list(self.hidden)}")
+        if not 0 <= self.discount < 1:
+            raise ConfigError(f"discount must be at least 0 and below 1, got {self.discount:g}")
+        if not 0 < self.average <= 1:
+            raise ConfigError(f"average must be above 0 and at most 1, got {self.average:g}")
+        if self.clip <= 0 or self.faster <= 0:
+            raise ConfigError(f"clip and faster must be positive, got {self.clip:g} and {self.faster:g}")
+        for name in ("start", "end"):
+            if not 0 <= getattr(self.exploration, name) <= 1:
+                raise ConfigError(f"exploration.{name} must be 0 to 1, got {getattr(self.exploration, name):g}")
+        if not self.exams or not any(kind.weight > 0 and kind.since == 0 for kind in self.traffic):
+            raise ConfigError("traffic must hold a kind that is driven from the beginning, and exams at least one")
+        reward_weights(self.reward)
+
+    @property
+    def weights(self) -> RewardWeights:
+        """What is rewarded."""
+        return reward_weights(self.reward)

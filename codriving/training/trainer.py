@@ -1,0 +1,171 @@
+"""The training of MADQN: drive, remember, learn, and validate now and then."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.outcome import Ending
+from codriving.envs.seeding import draw_seed
+from codriving.learning.actions import ACTIONS
+from codriving.learning.layout import feature_count
+from codriving.learning.network import FloatArray, Network, greedy
+from codriving.training.double_dqn import DoubleDqn, as_numpy
+from codriving.training.episode import Masks, Moment, drive
+from codriving.training.nstep import Trail, Transition
+from codriving.training.replay import Replay
+from codriving.training.settings import MadqnSettings
+from codriving.training.traffic import shares
+from codriving.training.validation import features_of
+
+
+@dataclass(slots=True)
+class Counts:
+    """How far a training is.
+
+    Attributes:
+        decisions: Decisions of single agents.
+        episodes: Episodes.
+        updates: Updates of the network.
+        waiting: Transitions since the last update.
+        losses: Sum of the losses since the last validation.
+        learned: Updates since then.
+        driven: Episodes since then.
+        arrived: Successful ones among them.
+    """
+
+    decisions: int = 0
+    episodes: int = 0
+    updates: int = 0
+    waiting: int = 0
+    losses: float = 0.0
+    learned: int = 0
+    driven: int = 0
+    arrived: int = 0
+
+    def begin_section(self) -> None:
+        """Forget what is counted since the last validation."""
+        self.losses, self.learned, self.driven, self.arrived = 0.0, 0, 0, 0
+
+
+class Trainer:
+    """Trains a network; all that it draws comes from one seeded generator.
+
+    Args:
+        settings: How.
+
+    Attributes:
+        settings: How.
+        counts: How far it is.
+        learner: The network.
+        replay: The last transitions.
+        rng: The generator.
+    """
+
+    def __init__(self, settings: MadqnSettings) -> None:
+        self.settings, self.counts = settings, Counts()
+        self._actions = ACTIONS[settings.family]
+        inputs = feature_count(settings.family)
+        self.rng = np.random.default_rng(settings.seed)
+        self.learner = DoubleDqn(
+            (inputs, *settings.hidden, len(self._actions)), settings.average, settings.clip, settings.seed
+        )
+        self.replay = Replay(settings.capacity, inputs, len(self._actions))
+        self._pull = np.array([settings.faster if a is Action.FASTER else 1.0 for a in self._actions])
+        self._roads = [
+            [(env, features_of(env, settings.family)) for env in kind.environments(settings.weights)]
+            for kind in settings.traffic
+        ]
+
+    @property
+    def network(self) -> Network:
+        """The slow average as it is now, which is what is validated and kept."""
+        return as_numpy(self.learner.target, live=False)
+
+    def episode(self) -> None:
+        """Drive one episode and learn on the way."""
+        settings, counts = self.settings, self.counts
+        share = shares(settings.traffic, counts.decisions / settings.decisions)
+        kind = self._roads[int(self.rng.choice(len(share), p=share))]
+        env, features = kind[int(self.rng.integers(len(kind)))]
+        seed = draw_seed(self.rng)
+        trails: dict[str, Trail] = {}
+        live = as_numpy(self.learner.online, live=True)
+        ending: Ending | None = None
+        for moment in drive(env, seed, features, settings.family, self._explore(live)):
+            for transition in remember(moment, trails, settings.steps, settings.discount):
+                self.replay.add(transition)
+                counts.waiting += 1
+            counts.decisions += len(moment.agents)
+            while counts.waiting >= settings.every:
+                counts.waiting -= settings.every
+                if len(self.replay) >= settings.warm_up:
+                    self._learn()
+            ending = moment.ending
+        counts.episodes += 1
+        counts.driven += 1
+        counts.arrived += ending is Ending.SUCCESS
+
+    def _learn(self) -> None:
+        batch = self.replay.draw(self.settings.batch, self.rng)
+        self.counts.losses += self.learner.update(batch, self.settings.rate.at(self.counts.decisions))
+        self.counts.learned += 1
+        self.counts.updates += 1
+
+    def _explore(self, network: Network) -> Callable[[FloatArray, Masks], list[int]]:
+        """The best action of the network as it is, or one drawn, each agent for itself."""
+
+        def decide(observations: FloatArray, masks: Masks) -> list[int]:
+            chosen = greedy(network(observations), masks)
+            share = self.settings.exploration.at(self.counts.decisions)
+            for k, explores in enumerate(self.rng.random(len(chosen)) < share):
+                if explores:
+                    pull = self._pull * masks[k]
+                    chosen[k] = int(self.rng.choice(len(pull), p=pull / pull.sum()))
+            return chosen
+
+        return decide
+
+    def state(self) -> dict[str, Any]:
+        """Return what a training goes on from, besides the network and the replay."""
+        counts = {name: getattr(self.counts, name) for name in self.counts.__slots__}
+        return {"counts": counts, "rng": self.rng.bit_generator.state}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on from the state of another one.
+
+        Args:
+            state: Its state.
+        """
+        self.counts = Counts(**state["counts"])
+        self.rng.bit_generator.state = state["rng"]
+
+
+def remember(moment: Moment, trails: dict[str, Trail], steps: int, discount: float) -> Iterator[Transition]:
+    """Turn one step of all agents into transitions.
+
+    Who has arrived or crashed has nothing to come. At the time limit everybody else would have gone on. When others
+    crash, the last step of who had no part in it is dropped.
+
+    Args:
+        moment: The step.
+        trails: What each agent has gone through, by id.
+        steps: Steps that a transition spans at most.
+        discount: Discount of one decision.
+
+    Yields:
+        Transitions.
+    """
+    for k, name in enumerate(moment.agents):
+        trail = trails.setdefault(name, Trail(steps, discount))
+        trail.add(moment.observations[k], moment.masks[k], moment.actions[k], moment.rewards[k])
+        if name in moment.arrived or name in moment.failed:
+            yield from trail.ended()
+        elif moment.ending is Ending.TIMEOUT:
+            yield from trail.cut(moment.later[name], moment.allowed[name])
+        elif moment.ending is not None:
+            yield from trail.dropped()
+        else:
+            yield from trail.full(moment.later[name], moment.allowed[name])

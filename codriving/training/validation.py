@@ -1,0 +1,116 @@
+"""How well a network drives without exploring, on seeds that it was not trained on."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from codriving.datatypes.outcome import Ending
+from codriving.errors import ConfigError
+from codriving.learning.features import Features
+from codriving.learning.network import Network, greedy
+from codriving.training.episode import drive
+
+if TYPE_CHECKING:
+    from codriving.envs.parallel import ParallelDriving
+
+
+@dataclass(frozen=True)
+class Exam:
+    """One kind of traffic that is validated.
+
+    Attributes:
+        name: Its column in the curve.
+        scenario: Name of the scenario.
+        cavs: Number of CAVs.
+        hdvs: Smallest and largest number of human drivers.
+        episodes: Episodes a validation.
+        settings: Further keys of the scenario.
+
+    Raises:
+        ConfigError: If the number of episodes is not positive.
+    """
+
+    name: str
+    scenario: str
+    cavs: int
+    hdvs: tuple[int, int]
+    episodes: int
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.episodes < 1:
+            raise ConfigError(f"episodes must be 1 or more, got {self.episodes}")
+
+    @cached_property
+    def environment(self) -> "ParallelDriving":
+        """Its environment.
+
+        Raises:
+            ConfigError: If the scenario refuses a setting.
+        """
+        from codriving.envs.parallel import ParallelDriving
+
+        return ParallelDriving(self.scenario, cavs=self.cavs, hdvs=list(self.hdvs), **self.settings)
+
+
+@dataclass(frozen=True, slots=True)
+class Grade:
+    """The result of an exam.
+
+    Attributes:
+        success: Share of episodes in which all CAVs arrived.
+        collision: Share that ended in a collision.
+        duration: Mean duration of the successful ones [s]; None without any.
+    """
+
+    success: float
+    collision: float
+    duration: float | None
+
+
+def examine(exam: Exam, network: Network, family: str, first_seed: int, episodes: int) -> Grade:
+    """Drive an exam greedily.
+
+    Args:
+        exam: What is driven.
+        network: Who decides.
+        family: Family of the road.
+        first_seed: Seed of the first episode; the others follow it one by one.
+        episodes: Number of episodes.
+    """
+    env = exam.environment
+    features = features_of(env, family)
+    endings, durations = [], []
+    for seed in range(first_seed, first_seed + episodes):
+        for _ in drive(env, seed, features, family, lambda seen, masks: greedy(network(seen), masks)):
+            pass
+        outcome = env.environment.outcome
+        assert outcome is not None
+        endings.append(outcome.ending)
+        if outcome.ending is Ending.SUCCESS:
+            durations.append(outcome.time)
+    return Grade(
+        len(durations) / episodes,
+        endings.count(Ending.COLLISION) / episodes,
+        sum(durations) / len(durations) if durations else None,
+    )
+
+
+def features_of(env: "ParallelDriving", family: str) -> Features:
+    """Return what cooperating agents observe of an environment.
+
+    Args:
+        env: The environment.
+        family: Family of its road.
+    """
+    return Features(env.environment.road_map, env.environment.driving_model, family, shared=True)
+
+
+def overall(grades: Sequence[Grade]) -> float:
+    """Return the mean success of all exams, each counting the same.
+
+    Args:
+        grades: Their results.
+    """
+    return sum(grade.success for grade in grades) / len(grades)
