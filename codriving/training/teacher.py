@@ -1,0 +1,116 @@
+"""Who teaches TeLL: a language model, or the rule that stands in for it offline."""
+
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.world import WorldState
+from codriving.errors import ConfigError
+from codriving.methods.alone import Alone
+from codriving.methods.ports import Reasoner
+from codriving.single_vehicle.protocol import Driver
+from codriving.training.schedule import Linear
+
+if TYPE_CHECKING:
+    from codriving.environment.environment import Environment
+    from codriving.reasoning.decision.model_decider import ModelDecider
+
+
+class Teacher(Protocol):
+    """Says what it would do."""
+
+    def advise(self, world: WorldState) -> Mapping[str, Action]:
+        """Return what CAVs should do, by id; nothing where it is not asked.
+
+        Args:
+            world: The world, of which each CAV sees its own part; call once a decision, from the beginning of an
+                episode.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Guidance:
+    """How a student is guided (TeLL, Xu et al., 2025).
+
+    Attributes:
+        llm: Who teaches: a language model, or ``offline`` for the driver below.
+        driver: The rule that judges every action; it decides where no model is asked, and tells a model what it found.
+        every: A teacher is asked at every so many decisions of an episode.
+        pull: Weight of the divergence from the teacher in the loss, by decisions.
+
+    Raises:
+        ConfigError: If a value is out of range.
+    """
+
+    llm: Reasoner
+    driver: Driver
+    every: int
+    pull: Linear
+
+    def __post_init__(self) -> None:
+        if self.every < 1:
+            raise ConfigError(f"every must be 1 or more, got {self.every}")
+        if min(self.pull.start, self.pull.end) < 0:
+            raise ConfigError(f"pull must be 0 or more, got {self.pull.start:g} to {self.pull.end:g}")
+
+    def teacher(self, environment: "Environment") -> "Advisor":
+        """Return a teacher for an environment.
+
+        Args:
+            environment: What is driven.
+        """
+        return Advisor(self, environment)
+
+
+class Advisor:
+    """Decides for a CAV as a driver who is on its own would: by a rule, or by what a model says.
+
+    Args:
+        guidance: Who is asked, and how often.
+        environment: What is driven.
+
+    Attributes:
+        asks: Whether advice is still wanted; nobody is asked once it has no weight.
+    """
+
+    def __init__(self, guidance: Guidance, environment: "Environment") -> None:
+        # Drivers remember their CAVs by name, which is the same in all environments.
+        self._alone = Alone(deepcopy(guidance.driver))
+        self._every, self._environment = guidance.every, environment
+        self._decider = _decider(guidance.llm)
+        self.asks = True
+
+    def advise(self, world: WorldState) -> Mapping[str, Action]:
+        """Return what CAVs should do, by id.
+
+        Args:
+            world: The world; call once a decision, from the beginning of an episode.
+
+        Raises:
+            ModelUnavailableError: If a model is asked and does not answer.
+            SpendingLimitError: If the tokens or the money that may be spent are used up.
+        """
+        if world.step == 0:
+            # Nothing is drawn by those who drive alone, so that any seed will do.
+            self._alone.reset(self._environment.road_map, self._environment.driving_model, 0)
+        if not self.asks or world.step % self._every:
+            return {}
+        deliberation = self._alone.act(world)
+        if self._decider is None:
+            return deliberation.actions
+        return {d.ego: d.action for d in self._decider.decide(deliberation.situations)}
+
+
+def _decider(llm: Reasoner) -> "ModelDecider | None":
+    chat = llm.chat()
+    if chat is None:
+        return None
+    from codriving.llm.ledger import Ledger
+    from codriving.reasoning.decision.model_decider import ModelDecider
+    from codriving.reasoning.prompts.render import load_prompts
+
+    ask_plain = bool(getattr(llm, "ask_plain", False))
+    return ModelDecider(chat, load_prompts(getattr(llm, "prompts", None)), Ledger(), ask_plain, sees_conflicts=True)
