@@ -134,4 +134,4 @@ class Careful:
         model, scene = view.forecast.model, view.scene
         steps = round(self.look / model.step)
         travelled, speeds = rollout(model, [scene.ego.speed], [scene.intent.target_speed], ((action,),), steps)
-        return _Motion(np.arange(steps + 1) * model.step, travelled[0, 0], speeds[0, 0])
+        return _Motion(np.arange(steps + 1, dtype=np.float64) * model.step, travelled[0, 0], speeds[0, 0])

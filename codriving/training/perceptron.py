@@ -1,6 +1,7 @@
 """Linear layers with rectifiers between them, in PyTorch."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from torch import nn
 
@@ -12,6 +13,6 @@ def perceptron(sizes: Sequence[int]) -> nn.Sequential:
         sizes: Number of inputs, of units in each hidden layer, and of outputs.
     """
     layers: list[nn.Module] = []
-    for inputs, outputs in zip(sizes[:-1], sizes[1:], strict=True):
+    for inputs, outputs in pairwise(sizes):
         layers += [nn.Linear(inputs, outputs), nn.ReLU()]
     return nn.Sequential(*layers[:-1])

@@ -1,6 +1,6 @@
 """The policy of a single learner: an actor that keeps to what is allowed, a critic, and a pull towards a teacher."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import torch
@@ -68,8 +68,8 @@ class DriverPolicy(ActorCriticPolicy):
         actions = logs.argmax(1) if deterministic else torch.multinomial(logs.exp(), 1).squeeze(1)
         return actions, self.predict_values(obs), logs.gather(1, actions[:, None]).squeeze(1)
 
-    def evaluate_actions(
-        self, obs: torch.Tensor, actions: torch.Tensor  # type: ignore[override]
+    def evaluate_actions(  # type: ignore[override]
+        self, obs: torch.Tensor, actions: torch.Tensor
     ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
         """Return values, logarithms of the actions' probabilities, and entropy less the pull towards the teacher.
 

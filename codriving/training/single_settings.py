@@ -48,9 +48,7 @@ class SingleTraffic:
         if self.copies < 1:
             raise ConfigError(f"copies must be 1 or more, got {self.copies}")
 
-    def environment(
-        self, eyes: "Callable[[Environment], Eyes]", family: str, reward: RewardWeights
-    ) -> "SingleDriving":
+    def environment(self, eyes: "Callable[[Environment], Eyes]", family: str, reward: RewardWeights) -> "SingleDriving":
         """Return an environment of this kind.
 
         Args:

@@ -97,7 +97,8 @@ class SingleTrainer:
         self._policy.pull = pull / settings.entropy
         for advisor in self._advisors:
             advisor.asks = pull > 0
-        self._ppo._last_obs = None  # noqa: SLF001 - which is how Stable-Baselines3 is told to begin new episodes
+        # Which is how Stable-Baselines3 is told to begin new episodes.
+        self._ppo._last_obs = None
         self._ppo.learn(settings.rollout * self._count, callback=self._endings, reset_num_timesteps=False)
         self.decisions += settings.rollout * self._count
         self.rollouts += 1

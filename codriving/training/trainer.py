@@ -22,7 +22,6 @@ from codriving.training.settings import MadqnSettings
 from codriving.training.traffic import shares
 from codriving.training.validation import features_of
 
-
 NETWORK, REPLAY = "network.pt", "replay.npz"
 
 

@@ -70,9 +70,7 @@ class Grade:
     duration: float | None
 
 
-def examine(
-    exam: Exam, network: AnyNetwork, family: str, shared: bool, first_seed: int, episodes: int
-) -> Grade:
+def examine(exam: Exam, network: AnyNetwork, family: str, shared: bool, first_seed: int, episodes: int) -> Grade:
     """Drive an exam greedily.
 
     Args:
