@@ -73,6 +73,7 @@ def make_cell(resolved: Mapping[str, Any], point: Point | None = None) -> Cell:
     plugins = resolved["plugins"]
     scenario = build(resolved["scenario"], plugins, "scenario")
     method = build(resolved["method"], plugins, "method")
+    _check_road(method, scenario)
     labels = Labels(
         scenario=_label(scenario, "name", "scenario"),
         method=_label(method, "name", "method"),
@@ -81,6 +82,14 @@ def make_cell(resolved: Mapping[str, Any], point: Point | None = None) -> Cell:
     )
     metrics = _label(build(resolved["metrics"], plugins, "metrics"), "name", "metrics")
     return Cell(folder_name(labels), labels, resolved, metrics, swept_values(point.swept, resolved) if point else {})
+
+
+def _check_road(method: object, scenario: Any) -> None:  # noqa: ANN401 - any scenario
+    """Let a method refuse a scenario before anything is driven, as one with trained weights has to."""
+    check = getattr(method, "check_road", None)
+    if check is not None:
+        pace = scenario.pace
+        check(scenario.road, pace.target_speeds, 1 / pace.decision_frequency)
 
 
 def _label(made: object, attribute: str, key: str) -> str:

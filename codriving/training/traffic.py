@@ -55,7 +55,7 @@ class Traffic:
 
         settings = {"hdvs": list(self.hdvs), **self.settings}
         numbers = range(self.cavs[0], self.cavs[1] + 1)
-        return tuple(ParallelDriving(self.scenario, reward=reward, cavs=n, **settings) for n in numbers)
+        return tuple(ParallelDriving(self.scenario, rows=1, reward=reward, cavs=n, **settings) for n in numbers)
 
 
 def shares(kinds: tuple[Traffic, ...], progress: float) -> list[float]:

@@ -52,7 +52,7 @@ class Exam:
         """
         from codriving.envs.parallel import ParallelDriving
 
-        return ParallelDriving(self.scenario, cavs=self.cavs, hdvs=list(self.hdvs), **self.settings)
+        return ParallelDriving(self.scenario, rows=1, cavs=self.cavs, hdvs=list(self.hdvs), **self.settings)
 
 
 @dataclass(frozen=True, slots=True)

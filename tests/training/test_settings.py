@@ -1,0 +1,88 @@
+"""The configs of trainings: every shipped one builds, and mistakes are refused with their key."""
+
+import inspect
+import re
+
+import pytest
+
+from codriving.config.build import build
+from codriving.config.training import compose_training, trainings
+from codriving.errors import ConfigError
+from codriving.training.settings import MadqnSettings
+from codriving.training.traffic import shares
+
+MADQN = [name for name in trainings() if name.startswith("madqn")]
+
+
+def made(*overrides: str, name: str = "madqn_junction", smoke: bool = False) -> MadqnSettings:
+    settings = build(compose_training(name, overrides, smoke), key="train")
+    assert isinstance(settings, MadqnSettings)
+    return settings
+
+
+@pytest.mark.parametrize("name", MADQN)
+@pytest.mark.parametrize("smoke", [False, True])
+def test_every_training_builds_and_shows_all_of_its_settings(name: str, smoke: bool) -> None:
+    config = compose_training(name, (), smoke)
+    settings = made(name=name, smoke=smoke)
+    assert set(inspect.signature(MadqnSettings).parameters) == set(config) - {"_target_"}
+    assert name == f"madqn_{settings.family}"
+    assert len(settings.exams) * 1000 < 100_000
+    assert all(exam.episodes <= 1000 for exam in settings.exams)
+
+
+def test_smoke_changes_what_it_says_and_nothing_else() -> None:
+    assert made(smoke=True).decisions == 20_000
+    assert made(smoke=True).exploration.over == 8_000
+    assert made(smoke=True).hidden == made().hidden
+
+
+def test_overrides_reach_into_lists() -> None:
+    settings = made("traffic.0.weight=7", "exams.1.episodes=3", "rate.start=0.01", "traffic.0.settings.leg_length=80")
+    assert settings.traffic[0].weight == 7
+    assert settings.exams[1].episodes == 3
+    assert settings.rate.start == 0.01
+    assert settings.traffic[0].settings["leg_length"] == 80
+
+
+@pytest.mark.parametrize(
+    ("token", "words"),
+    [
+        ("sed=2", "unknown key sed; did you mean seed?"),
+        ("traffic.9.weight=1", "unknown key traffic.9.weight"),
+        ("rate.strat=1", "unknown key rate.strat"),
+        ("seed.low=1", "unknown key seed.low"),
+        ("seed=1,2", "one value"),
+        ("~seed", "one value"),
+        ("decisions=many", "train.decisions must be a whole number"),
+        ("decisions=0", "train.decisions must be 1 or more"),
+        ("exam_seed=5", "train.exam_seed must be 10000 or more"),
+        ("discount=1", "train.discount must be"),
+        ("average=0", "train.average must be"),
+        ("clip=0", "clip and faster must be positive"),
+        ("hidden=[]", "train.hidden must name"),
+        ("family=rivers", "train.family must be one of"),
+        ("exploration.end=2", "exploration.end must be 0 to 1"),
+        ("rate.over=0", "over must be 1 or more"),
+        ("traffic.0.cavs=[4,2]", "cavs must be smallest and largest"),
+        ("traffic.0.since=2", "since must be 0 to 1"),
+        ("traffic.0.weight=-1", "weight must be 0 or more"),
+        ("exams=[]", "exams at least one"),
+        ("exams.0.episodes=0", "episodes must be 1 or more"),
+        ("reward.arival=1", "unknown weight reward.arival"),
+    ],
+)
+def test_mistakes_are_refused(token: str, words: str) -> None:
+    with pytest.raises(ConfigError, match=re.escape(words)):
+        made(token)
+
+
+def test_an_unknown_training_is_refused() -> None:
+    with pytest.raises(ConfigError, match="there is no training 'nobody'"):
+        compose_training("nobody", (), False)
+
+
+def test_traffic_comes_in_when_its_time_has_come() -> None:
+    kinds = made("traffic.0.weight=1", "traffic.1.weight=1", "traffic.2.weight=2", "traffic.3.weight=4").traffic
+    assert shares(kinds, 0.0) == [0.25, 0.25, 0.5, 0.0]
+    assert shares(kinds, 0.5) == [0.125, 0.125, 0.25, 0.5]
