@@ -1,7 +1,7 @@
 """One CAV that learns among human drivers: our environment as a Gymnasium `Env` of a single vehicle."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import gymnasium
 import numpy as np
@@ -16,6 +16,9 @@ from codriving.envs.layout import FloatArray
 from codriving.envs.one_cav import OneCav
 from codriving.envs.reward import RewardWeights, reward_weights
 from codriving.envs.seeding import check_seed, draw_seed
+
+EyesOf: TypeAlias = Callable[[Environment], Eyes]
+"""Gives eyes to whoever drives in an environment."""
 
 
 class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
@@ -39,7 +42,7 @@ class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
     def __init__(
         self,
         name: str,
-        eyes: Callable[[Environment], Eyes],
+        eyes: EyesOf,
         actions: Sequence[Action],
         overrides: Sequence[str] = (),
         reward: RewardWeights | Mapping[str, float] | None = None,

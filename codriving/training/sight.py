@@ -1,19 +1,16 @@
 """What a CAV that learns on its own is handed: its features, what it may do, and what a teacher would do."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.world import WorldState
+from codriving.geometry.road_map import RoadMap
 from codriving.learning.actions import ACTIONS, allowed
 from codriving.learning.features import Features
 from codriving.learning.layout import feature_count
 from codriving.learning.network import FloatArray
 from codriving.training.teacher import Teacher
-
-if TYPE_CHECKING:
-    from codriving.environment.environment import Environment
 
 
 class Sight:
@@ -23,13 +20,14 @@ class Sight:
     of a step.
 
     Args:
-        environment: What is driven.
+        road_map: The precomputed road.
+        model: How CAVs answer to actions.
         family: ``junction`` or ``lanes``.
         teacher: Who gives advice; None for nobody.
     """
 
-    def __init__(self, environment: "Environment", family: str, teacher: Teacher | None) -> None:
-        self._features = Features(environment.road_map, environment.driving_model, family, shared=False)
+    def __init__(self, road_map: RoadMap, model: DrivingModel, family: str, teacher: Teacher | None) -> None:
+        self._features = Features(road_map, model, family, shared=False)
         self._family, self._teacher = family, teacher
         self._nothing = np.zeros(feature_count(family) + 2 * len(ACTIONS[family]), dtype=np.float32)
 

@@ -1,6 +1,6 @@
 """Every number of a training of a vehicle on its own; the configs of PPO and TeLL are calls of this."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,9 +15,7 @@ from codriving.training.teacher import Guidance
 from codriving.training.validation import Exam
 
 if TYPE_CHECKING:
-    from codriving.environment.environment import Environment
-    from codriving.envs.drive import Eyes
-    from codriving.envs.single import SingleDriving
+    from codriving.envs.single import EyesOf, SingleDriving
     from codriving.training.single_trainer import SingleTrainer
 
 LEARNERS = ("ppo", "tell")
@@ -48,7 +46,7 @@ class SingleTraffic:
         if self.copies < 1:
             raise ConfigError(f"copies must be 1 or more, got {self.copies}")
 
-    def environment(self, eyes: "Callable[[Environment], Eyes]", family: str, reward: RewardWeights) -> "SingleDriving":
+    def environment(self, eyes: "EyesOf", family: str, reward: RewardWeights) -> "SingleDriving":
         """Return an environment of this kind.
 
         Args:

@@ -73,11 +73,11 @@ class SingleTrainer:
         self._policy = policy
 
     def _eyes(self, environment: Any) -> Sight:  # noqa: ANN401 - the environment's room is not for this one
-        guidance = self.settings.guidance
+        road, guidance = (environment.road_map, environment.driving_model), self.settings.guidance
         if guidance is None:
-            return Sight(environment, self.settings.family, None)
-        self._advisors.append(guidance.teacher(environment))
-        return Sight(environment, self.settings.family, self._advisors[-1])
+            return Sight(*road, self.settings.family, None)
+        self._advisors.append(guidance.teacher(*road))
+        return Sight(*road, self.settings.family, self._advisors[-1])
 
     @property
     def network(self) -> AnyNetwork:

@@ -6,15 +6,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
+from codriving.geometry.road_map import RoadMap
 from codriving.methods.alone import Alone
 from codriving.methods.ports import Reasoner
 from codriving.single_vehicle.protocol import Driver
 from codriving.training.schedule import Linear
 
 if TYPE_CHECKING:
-    from codriving.environment.environment import Environment
     from codriving.reasoning.decision.model_decider import ModelDecider
 
 
@@ -56,13 +57,14 @@ class Guidance:
         if min(self.pull.start, self.pull.end) < 0:
             raise ConfigError(f"pull must be 0 or more, got {self.pull.start:g} to {self.pull.end:g}")
 
-    def teacher(self, environment: "Environment") -> "Advisor":
-        """Return a teacher for an environment.
+    def teacher(self, road_map: RoadMap, model: DrivingModel) -> "Advisor":
+        """Return a teacher for one of the environments.
 
         Args:
-            environment: What is driven.
+            road_map: Its road, precomputed.
+            model: How CAVs answer to actions.
         """
-        return Advisor(self, environment)
+        return Advisor(self, road_map, model)
 
 
 class Advisor:
@@ -70,16 +72,17 @@ class Advisor:
 
     Args:
         guidance: Who is asked, and how often.
-        environment: What is driven.
+        road_map: The precomputed road.
+        model: How CAVs answer to actions.
 
     Attributes:
         asks: Whether advice is still wanted; nobody is asked once it has no weight.
     """
 
-    def __init__(self, guidance: Guidance, environment: "Environment") -> None:
+    def __init__(self, guidance: Guidance, road_map: RoadMap, model: DrivingModel) -> None:
         # Drivers remember their CAVs by name, which is the same in all environments.
         self._alone = Alone(deepcopy(guidance.driver))
-        self._every, self._environment = guidance.every, environment
+        self._every, self._road = guidance.every, (road_map, model)
         self._decider = _decider(guidance.llm)
         self.asks = True
 
@@ -95,7 +98,7 @@ class Advisor:
         """
         if world.step == 0:
             # Nothing is drawn by those who drive alone, so that any seed will do.
-            self._alone.reset(self._environment.road_map, self._environment.driving_model, 0)
+            self._alone.reset(*self._road, 0)
         if not self.asks or world.step % self._every:
             return {}
         deliberation = self._alone.act(world)
