@@ -23,6 +23,9 @@ PREFERRED = (Action.FASTER, Action.IDLE, Action.SLOWER)
 LIMITS = {"look": (0.5, 10.0), "headway": (0.0, 5.0), "standstill": (0.0, 20.0), "margin": (0.0, 5.0)}
 """Least and largest value of each setting."""
 
+SLOW = 0.1
+"""Whoever is slower is taken to be so fast, so that times stay finite [m/s]."""
+
 FIRM = 4.0
 """Braking beyond which nobody is expected to wait any more [m/s2]."""
 
@@ -116,19 +119,29 @@ class Careful:
         order: dict[str, Precedence] = {}
         for e in encounters(view, float(view.forecast.reach(view.scene.ego.speed, True).least[-1]), FIRM):
             own = motion.until(e.own_way), motion.until(e.conflict.exits[0])
-            first = self._before(e, own)
+            entry = e.its_way / max(e.other.speed, SLOW)
+            first = own[0] <= entry
             names = (view.scene.ego.id, e.conflict.other) if first else (e.conflict.other, view.scene.ego.id)
             order.setdefault(e.conflict.other, Precedence(*names, "if both go on like this"))
-            its = e.its_way / max(e.other.speed, 0.1), e.conflict.exits[1] / max(e.other.speed, 0.1)
-            meets = own[0] < its[1] + self.margin and its[0] < own[1] + self.margin
             # Whoever is not there within the look can decide anew.
-            if meets and max(own[0], 0.0) <= self.look:
-                dangers.append((max(own[0], its[0], 0.0), f"it meets {e.conflict.other} where the ways cross"))
+            if own[0] <= self.look and self._meets(e, own):
+                dangers.append((max(own[0], entry), f"it meets {e.conflict.other} where the ways cross"))
         at, why = min(dangers, default=(float("inf"), ""))
         return at, why, tuple(order.values())
 
-    def _before(self, e: Encounter, own: tuple[float, float]) -> bool:
-        return own[0] <= e.its_way / max(e.other.speed, 0.1)
+    def _meets(self, e: Encounter, own: tuple[float, float]) -> bool:
+        """Whether both are in a zone at once, or too soon one after the other, if the other one keeps its speed."""
+        if e.inside:
+            # Whoever is in the zone can only get out of it; who is ahead there does so first.
+            ahead = e.zone.point_i - e.conflict.places[0] <= e.zone.point_j - e.conflict.places[1]
+            return e.other_inside and not ahead and not e.merges()
+        its = e.its_way / max(e.other.speed, SLOW), e.conflict.exits[1] / max(e.other.speed, SLOW)
+        if e.merges():
+            # Both go on together, so that being ahead is enough; who stands there waits, or is met as a leader.
+            if e.other_inside and e.other.standing > 0:
+                return False
+            return abs(own[0] - max(its[0], 0.0)) < self.headway
+        return own[0] < its[1] + self.margin and its[0] < own[1] + self.margin
 
     def _motion(self, view: View, action: Action) -> _Motion:
         model, scene = view.forecast.model, view.scene
