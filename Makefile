@@ -6,6 +6,7 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3 || echo python3)
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
+TORCH := $(VENV)/.torch
 ARGS ?=
 
 help: ## list the targets
@@ -26,6 +27,16 @@ run: $(READY) ## drive 20 episodes at the intersection and print the table
 
 test: $(READY) ## run the tests
 	$(BIN)/python -m pytest $(ARGS)
+
+# A stamp of its own: only training needs PyTorch.
+$(TORCH): $(READY) requirements-train.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement requirements-train.lock
+	@touch $(TORCH)
+
+torch: $(TORCH) ## add PyTorch to .venv; make test then runs the tests of training, too
+
+train: $(TORCH) ## train MADQN for junctions; ARGS="--family lanes" for lanes
+	$(BIN)/codriving train madqn $(ARGS)
 
 ablate: $(READY) ## each reasoning sub-module removed in turn
 	$(BIN)/codriving ablate $(ARGS)
@@ -68,4 +79,4 @@ clean: ## remove .venv and what the tools left behind; outputs/ stays
 	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test ablate compare bench pictures lint types format lock clean
+.PHONY: help install run test torch train ablate compare bench pictures lint types format lock clean

@@ -15,7 +15,7 @@ from codriving.errors import WeightsError
 from codriving.geometry.road_map import RoadMap
 from codriving.learning.actions import ACTIONS, allowed
 from codriving.learning.features import Features, Observation
-from codriving.learning.layout import feature_names, family_of, family_of_road
+from codriving.learning.layout import family_of, family_of_road, feature_names
 from codriving.learning.network import FloatArray, greedy, shares
 from codriving.learning.weights import Trained, load, shipped
 

@@ -54,6 +54,7 @@ def recall(folder: Path, trainer: Resumable) -> dict[str, Any]:
         more: dict[str, Any] = state["more"]
     except (OSError, ValueError, KeyError, TypeError, RuntimeError) as err:
         raise TrainingError(
-            f"the checkpoint in {folder} cannot be used ({type(err).__name__}: {err}); delete the run folder to begin anew"
+            f"the checkpoint in {folder} cannot be used ({type(err).__name__}: {err}); "
+            "delete the run folder to begin anew"
         ) from err
     return more

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from codriving.config.build import build
+from codriving.config.schema import ROOT
 from codriving.config.training import compose_training, trainings
 from codriving.errors import ConfigError, TrainingError
 from codriving.learning.layout import FAMILIES
@@ -97,4 +98,7 @@ def named(learner: str, family: str, config_dir: Path | None = None) -> str:
 def _split(overrides: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     """Return what names the folder, and the other overrides."""
     own = {key: value for token in overrides for key, _, value in [token.partition("=")] if key in OWN}
+    for key, value in own.items():
+        if not value or not ROOT[key].allows(value):
+            raise ConfigError(f"{key} must be {ROOT[key].rule}, got {value!r}")
     return own, [token for token in overrides if token.partition("=")[0] not in OWN]

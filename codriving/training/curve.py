@@ -3,6 +3,7 @@
 import csv
 import io
 from collections.abc import Mapping, Sequence
+from math import nan
 
 Row = Mapping[str, float | int | None]
 """One validation: how far the training was, and what each exam said."""
@@ -38,16 +39,21 @@ def curve_png(rows: Sequence[Row], title: str) -> bytes:
         matplotlib.rcdefaults()
         figure = Figure(figsize=(8.0, 4.5), dpi=100, layout="constrained")
         axes = figure.subplots()
-        decisions = [row["decisions"] for row in rows]
+        decisions = _column(rows, "decisions")
         names = [name for name in rows[0] if name.endswith(f".{SUCCESS}")]
         for name, mark in zip(names, "osD^vP*X" * len(names), strict=False):
-            axes.plot(decisions, [row[name] for row in rows], marker=mark, markersize=4, label=name.partition(".")[0])
+            axes.plot(decisions, _column(rows, name), marker=mark, markersize=4, label=name.partition(".")[0])
         if "train_success" in rows[0]:
-            explored = [row["train_success"] for row in rows]
-            axes.plot(decisions, explored, color="#888888", linestyle=":", label="training, exploring")
+            axes.plot(
+                decisions, _column(rows, "train_success"), color="#888888", linestyle=":", label="training, exploring"
+            )
         axes.set(xlabel="decisions of single CAVs", ylabel="successful episodes", ylim=(-0.02, 1.02), title=title)
         axes.grid(color="#dddddd", linewidth=0.6)
         axes.legend(loc="lower right", frameon=False)
         content = io.BytesIO()
         figure.savefig(content, format="png", metadata={"Software": None})
         return content.getvalue()
+
+
+def _column(rows: Sequence[Row], name: str) -> list[float]:
+    return [nan if value is None else float(value) for value in (row[name] for row in rows)]

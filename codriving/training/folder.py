@@ -78,7 +78,9 @@ def open_folder(path: Path, name: str, command: str, config: Mapping[str, Any]) 
             if not file.exists():
                 write_text(file, text)
             elif file.read_text(encoding="utf-8") != text:
-                raise RunFolderError(f"{path} is a training with other settings; choose another run=<name>, or delete it")
+                raise RunFolderError(
+                    f"{path} is a training with other settings; choose another run=<name>, or delete it"
+                )
             yield TrainingFolder(path, command, fingerprint(config), path / f"{name}.safetensors")
     except OSError as err:
         raise RunFolderError(f"cannot write {err.filename or path}: {err.strerror or err}") from err

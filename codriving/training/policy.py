@@ -38,7 +38,7 @@ class DriverPolicy(ActorCriticPolicy):
 
     def _build(self, lr_schedule: Callable[[float], float]) -> None:
         """Make the networks; called by the class above."""
-        self._outputs = int(self.action_space.n)  # type: ignore[attr-defined]
+        self._outputs = int(self.action_space.n)
         self.actor: nn.Module = (
             AttentionActor(self._features, self._hidden, self._outputs)
             if self._attends
@@ -68,7 +68,7 @@ class DriverPolicy(ActorCriticPolicy):
         actions = logs.argmax(1) if deterministic else torch.multinomial(logs.exp(), 1).squeeze(1)
         return actions, self.predict_values(obs), logs.gather(1, actions[:, None]).squeeze(1)
 
-    def evaluate_actions(  # type: ignore[override]
+    def evaluate_actions(
         self, obs: torch.Tensor, actions: torch.Tensor
     ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
         """Return values, logarithms of the actions' probabilities, and entropy less the pull towards the teacher.
@@ -99,7 +99,7 @@ class DriverPolicy(ActorCriticPolicy):
         terms = torch.where(teacher > 0, teacher * (teacher.clamp(min=1e-9).log() - logs), 0.0)
         return torch.where(known, terms, 0.0).sum(1)
 
-    def predict_values(self, obs: torch.Tensor) -> torch.Tensor:  # type: ignore[override]
+    def predict_values(self, obs: torch.Tensor) -> torch.Tensor:
         """Return what the critic expects (n, 1).
 
         Args:

@@ -1,6 +1,7 @@
 """The last transitions, from which batches are drawn."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,7 +62,8 @@ class Replay:
             transition: The transition.
         """
         k = self.added % self.capacity
-        for column, value in zip(self._columns.values(), transition, strict=True):
+        values: tuple[Any, ...] = transition
+        for column, value in zip(self._columns.values(), values, strict=True):
             column[k] = value
         self.added += 1
 

@@ -135,7 +135,13 @@ def _purpose(settings: Settings, folder: TrainingFolder, said: Mapping[str, Any]
         target_speeds=tuple(sorted({model.target_speeds for model in models})),
         actions=tuple(map(str, ACTIONS[settings.family])),
         hidden=settings.hidden,
-        training={"command": folder.command, "config": folder.fingerprint, "seed": settings.seed, **_taught(settings), **said},
+        training={
+            "command": folder.command,
+            "config": folder.fingerprint,
+            "seed": settings.seed,
+            **_taught(settings),
+            **said,
+        },
         form=settings.form,
     )
 

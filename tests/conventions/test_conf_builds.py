@@ -11,6 +11,7 @@ from codriving.config.choices import EXPERIMENTS, LISTED, choices, describe
 from codriving.config.compose import compose
 from codriving.config.locate import conf_dir, experiments_dir
 from codriving.config.schema import GROUPS, OPTIONAL
+from codriving.config.training import TRAININGS
 from codriving.config.validate import validate
 
 CHOICES = [(group, name) for group in GROUPS for name in choices(group)]
@@ -37,7 +38,7 @@ def test_default_config_is_valid() -> None:
 
 
 def test_every_group_has_a_choice_and_every_folder_is_a_group() -> None:
-    assert {path.name for path in conf_dir().iterdir() if path.is_dir()} == set(GROUPS)
+    assert {path.name for path in conf_dir().iterdir() if path.is_dir()} == {*GROUPS, TRAININGS}
     assert all(choices(group) for group in LISTED)
 
 

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,7 @@ PURPOSE = Purpose(
 def trained(seed: int = 0) -> Trained:
     rng = np.random.default_rng(seed)
     sizes = (feature_count(JUNCTION), 5, 3)
-    weights = [rng.normal(size=pair).astype(np.float32) for pair in zip(sizes[:-1], sizes[1:], strict=True)]
+    weights = [rng.normal(size=pair).astype(np.float32) for pair in pairwise(sizes)]
     return Trained(Network(weights, [rng.normal(size=n).astype(np.float32) for n in sizes[1:]]), PURPOSE)
 
 

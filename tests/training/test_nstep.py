@@ -55,7 +55,9 @@ def test_the_last_step_of_a_bystander_is_dropped() -> None:
     assert made.dropped() == []
 
 
-def moment(ending: Ending | None, arrived: str = "", failed: str = "", rewards: tuple[float, ...] = (0.0,) * 3) -> Moment:
+def moment(
+    ending: Ending | None, arrived: str = "", failed: str = "", rewards: tuple[float, ...] = (0.0,) * 3
+) -> Moment:
     names = ["A", "B", "C"]
     later = {name: seen(k + 100) for k, name in enumerate(names) if name not in arrived}
     return Moment(

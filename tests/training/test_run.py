@@ -62,7 +62,7 @@ def test_it_leaves_weights_a_curve_and_a_picture(finished: Path) -> None:
     assert trained.purpose.training["seed"] == 1
     rows = (finished / "curve.csv").read_text().splitlines()
     assert rows[0].startswith("decisions,episodes,updates,epsilon,loss,train_success,score,intersection_4.success")
-    assert len(rows) == 1 + 3, "at 60, 120 and at the end"
+    assert len(rows) >= 1 + 2, "once in the middle, and at the end"
     assert int(rows[-1].split(",")[0]) >= 160
     assert (finished / "curve.png").read_bytes().startswith(b"\x89PNG")
     assert len((finished / "finalists.csv").read_text().splitlines()) == 3

@@ -24,7 +24,7 @@ def tiny_config(*overrides: str) -> dict[str, Any]:
     """The config of junctions with one kind of traffic, short episodes and one exam of one episode."""
     config = compose_training("madqn_junction", (*TINY, *overrides), smoke=False)
     config["traffic"] = [
-        {**config["traffic"][0], "cavs": [2, 3], "hdvs": [0, 1], "settings": {"time_limit": 12.0, "start": [50.0, 75.0]}}
+        {**config["traffic"][0], "cavs": [2, 3], "hdvs": [0, 1], "settings": {"time_limit": 5.0, "start": [50.0, 75.0]}}
     ]
     config["exams"] = [{**config["exams"][0], "cavs": 2, "episodes": 1, "settings": {"time_limit": 4.0}}]
     return config
