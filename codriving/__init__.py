@@ -40,7 +40,7 @@ def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -
     """Drive every method of the paper on the same seeds, as ``codriving compare`` does, and return the tables.
 
     Args:
-        table: ``"baselines"`` or ``"load"``.
+        table: ``"baselines"``, ``"single-vehicle"``, ``"all"`` or ``"load"``.
         *overrides: ``key=value`` tokens; ``"method=mine"`` adds a method of your own.
         config_dir: A folder with YAML files of your own, in the same groups.
 

@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 import codriving
+from codriving.config.choices import TAKING_PART
 from codriving.experiment import run_comparison
+from codriving.experiment.comparison import EXPERIMENT
 
 PACKAGE = "toy_methods"
 SOURCE = '''"""Methods for tests."""
@@ -51,8 +53,9 @@ BOTH = ("launcher=serial", "scenario.time_limit=4", "run=x")
 @pytest.fixture
 def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A config folder with a method of the paper's, as far as this test goes, and one of a user's."""
-    for module in ("comparison", "compared"):
-        monkeypatch.setattr(f"codriving.experiment.{module}.COMPARED", ("fcfs_toy", "madqn_toy", "codriving"))
+    for table in ("baselines", "load"):
+        monkeypatch.setitem(TAKING_PART, table, ("fcfs_toy", "madqn_toy", "codriving"))
+    monkeypatch.setitem(TAKING_PART, "single-vehicle", ("ppo_toy", "fcfs_toy", "codriving"))
     folder = tmp_path / "conf" / "method"
     folder.mkdir(parents=True)
     (tmp_path / f"{PACKAGE}.py").write_text(SOURCE)
@@ -66,7 +69,7 @@ def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 def compare(own: Path, table: str, *tokens: str) -> Path:
     assert run_comparison(table, [*BOTH, f"output={own.parent}", *tokens], own) == 0
-    return own.parent / ("compare" if table == "baselines" else "load") / "x"
+    return own.parent / EXPERIMENT[table] / "x"
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -135,3 +138,13 @@ def test_python_gets_the_comparison_as_a_frame(own: Path) -> None:
     assert list(results.table["status"]) == ["driven", "not there yet", "driven"]
     assert len(results.episodes) == len(results.summary) == 2
     assert results.folder == own.parent / "compare" / "x"
+
+
+def test_the_single_vehicle_table_has_methods_and_a_folder_of_its_own(own: Path) -> None:
+    table = rows(compare(own, "single-vehicle", "episodes=1") / "comparison.csv")
+    assert [(row["method"], row["status"]) for row in table] == [
+        ("ppo_toy", "not there yet"),
+        ("fcfs_toy", "driven"),
+        ("codriving", "driven"),
+    ]
+    assert not (own.parent / "compare").exists()

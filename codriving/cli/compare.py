@@ -11,7 +11,9 @@ from codriving.cli.completion import complete_table
 def compare(
     table: Annotated[
         str | None,
-        typer.Argument(metavar="TABLE", help="Which table: baselines or load.", autocompletion=complete_table),
+        typer.Argument(
+            metavar="TABLE", help="Which table: baselines, single-vehicle, all or load.", autocompletion=complete_table
+        ),
     ] = None,
     overrides: Overrides = None,
     config_dir: ConfigDir = None,
@@ -19,7 +21,8 @@ def compare(
 ) -> None:
     """Drive every method of the paper on the same seeds, into one table beside the paper's.
 
-    baselines: each method against codriving. load: with 4, 6, 8 and 12 CAVs. method=NAME adds a method of your own.
+    baselines: each method against codriving. single-vehicle: those by which each CAV is on its own. all: both.
+    load: baselines with 4, 6, 8 and 12 CAVs. method=NAME adds a method of your own.
     """
     if cfg:
         from codriving.cli.config_page import print_configs

@@ -22,15 +22,28 @@ ALL = "all"
 COMPARED = ("fcfs", "idfst", "mcts", "coop_game", "madqn", "dilu", "codriving")
 """The methods of the paper's comparison, in its order; some may have no YAML yet."""
 
+SINGLE_VEHICLE = ("pidm", "noncoop_game", "ppo", "tell", "dilu", "codriving")
+"""The methods by which each CAV is on its own, in the order of the authors' extra comparison, against codriving."""
+
+TAKING_PART = {
+    "baselines": COMPARED,
+    "single-vehicle": SINGLE_VEHICLE,
+    "all": (*dict.fromkeys((*COMPARED[:-1], *SINGLE_VEHICLE)),),
+    "load": COMPARED,
+}
+"""The methods of each table, in its order: those of the paper, then those for a single vehicle, then codriving."""
+
 TABLES = {
     "baselines": "The methods of the paper's comparison, each against codriving.",
-    "load": "The same methods with 4, 6, 8 and 12 CAVs.",
+    "single-vehicle": "The methods for a single vehicle, each against codriving.",
+    "all": "The methods of both tables, each against codriving.",
+    "load": "The methods of the first table with 4, 6, 8 and 12 CAVs.",
 }
 """What `codriving compare` makes."""
 
 FIRST = {
     "scenario": ("intersection", "roundabout", "highway", "merge"),
-    "method": COMPARED,
+    "method": TAKING_PART["all"],
     "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
     "llm": ("offline",),
     "memory": ("off",),

@@ -34,7 +34,7 @@ def run_comparison(table: str | None, overrides: Sequence[str], config_dir: Path
     """Drive all methods on the same seeds and print how they compare: ``codriving compare``.
 
     Args:
-        table: ``baselines`` or ``load``.
+        table: ``baselines``, ``single-vehicle``, ``all`` or ``load``.
         overrides: ``key=value`` tokens that hold for every cell; ``method=`` adds methods.
         config_dir: A folder of the user's own configs.
 
@@ -52,7 +52,7 @@ def compare_frames(table: str, *overrides: str, config_dir: Path | None = None) 
     """Drive all methods on the same seeds and give the tables as data frames; prints no table.
 
     Args:
-        table: ``baselines`` or ``load``.
+        table: ``baselines``, ``single-vehicle``, ``all`` or ``load``.
         *overrides: ``key=value`` tokens.
         config_dir: A folder of the user's own configs.
 

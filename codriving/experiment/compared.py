@@ -1,11 +1,12 @@
 """Episodes to the tables of a comparison: ``comparison.*``, ``load.*`` and the figure."""
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 
-from codriving.config.choices import COMPARED
+from codriving.config.choices import TAKING_PART
 from codriving.config.locate import experiments_dir
 from codriving.experiment.cells import Cell
-from codriving.experiment.comparison import BASELINES, CAVS, LOAD, setting
+from codriving.experiment.comparison import ALL, BASELINES, CAVS, LOAD, SINGLE_VEHICLE, setting
 from codriving.experiment.further import Driven, Further
 from codriving.reports.comparison import METHOD_CHOICE, TEXT, Entry, comparison_columns, comparison_rows, swept_keys
 from codriving.reports.comparison_display import measured_display
@@ -20,10 +21,11 @@ from codriving.reports.run_tables import Table
 from codriving.reports.timing_table import cpu_per_decision
 
 
-def baselines(driven: Driven) -> Further:
-    """Make the comparison of methods.
+def methods(table: str, driven: Driven) -> Further:
+    """Make a comparison of methods.
 
     Args:
+        table: Name of the table.
         driven: All episodes of the run.
 
     Returns:
@@ -33,15 +35,15 @@ def baselines(driven: Driven) -> Further:
     blocks: dict[str, list[Entry]] = {}
     for cell, entry in _entries(driven):
         blocks.setdefault(setting(cell.resolved), []).append(entry)
-    rows = [row for block in blocks.values() for row in comparison_rows(block, COMPARED, paper)]
+    rows = [row for block in blocks.values() for row in comparison_rows(block, TAKING_PART[table], paper)]
     swept = swept_keys(entry for block in blocks.values() for entry in block)
     model = any(FALLBACK_RATE in row.row for row in rows)
-    table = Table(comparison_columns(swept, model), tuple(row.row for row in rows), swept, TEXT)
+    whole = Table(comparison_columns(swept, model), tuple(row.row for row in rows), swept, TEXT)
     kept, printed = (measured_display(rows, paper, metrics, swept, cpu) for cpu in (False, True))
     against = paired_display(rows, metrics, swept)
     page = markdown_text(kept) + (f"\n{markdown_text(against, level=2)}" if against else "")
-    files = {"comparison.csv": table.csv().encode(), "comparison.md": page.encode()}
-    return Further(files, (printed, against) if against else (printed,), (table,))
+    files = {"comparison.csv": whole.csv().encode(), "comparison.md": page.encode()}
+    return Further(files, (printed, against) if against else (printed,), (whole,))
 
 
 def load(driven: Driven) -> Further:
@@ -55,7 +57,7 @@ def load(driven: Driven) -> Further:
     """
     cells = [(int(cell.resolved["scenario"]["cavs"]), entry) for cell, entry in _entries(driven, without=CAVS)]
     loads = list(dict.fromkeys(cavs for cavs, _ in cells))
-    rows = load_rows(cells, COMPARED)
+    rows = load_rows(cells, TAKING_PART[LOAD])
     swept = swept_keys(entry for _, entry in cells)
     model = any(row.model for row in rows)
     table = Table(load_columns(loads, swept, model), tuple(row.row() for row in rows), swept, TEXT)
@@ -65,7 +67,10 @@ def load(driven: Driven) -> Further:
     return Further({**files, **figures}, (printed,), (table,))
 
 
-FURTHER: Mapping[str, Callable[[Driven], Further]] = {BASELINES: baselines, LOAD: load}
+FURTHER: Mapping[str, Callable[[Driven], Further]] = {
+    **{table: partial(methods, table) for table in (BASELINES, SINGLE_VEHICLE, ALL)},
+    LOAD: load,
+}
 """What makes each table of ``codriving compare``."""
 
 

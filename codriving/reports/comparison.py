@@ -13,8 +13,14 @@ from codriving.reports.summary import summary_row
 REFERENCE = "codriving"
 """The method that all others are compared with."""
 
-DRIVEN, MISSING = "driven", "not there yet"
-"""Whether a method could be driven."""
+DRIVEN, MISSING, QUOTED_ALONE = "driven", "not there yet", "only in the paper"
+"""Whether a method could be driven; the last for one that goes by a language model, where rules stood in for it."""
+
+STANDS_IN = {"dilu-rule": "dilu"}
+"""What a method calls itself if built-in rules stand in for its language model, and what it would be with one."""
+
+GUIDED = ("dilu", "tell")
+"""Methods that go by a language model; with rules in its place they are not set beside the paper's numbers."""
 
 MEASURED = (
     "episodes",
@@ -105,9 +111,21 @@ def comparison_rows(block: Sequence[Entry], methods: Sequence[str], paper: Paper
     reference = next((entry for entry in block if entry.method == REFERENCE), None)
     rows: list[Compared] = []
     for method in methods:
-        found = [entry for entry in block if entry.method == method]
-        rows += [_row(entry, reference, paper) for entry in found] or [_missing(block[0], method, paper)]
-    return rows + [_row(entry, reference, paper) for entry in block if entry.method not in methods]
+        found = [_row(entry, reference, paper) for entry in block if takes_place_of(entry.method) == method]
+        rows += found or [_without(block[0], method, paper, MISSING)]
+        quoted = any(f"paper_{QUOTED[0]}" in compared.row for compared in found)
+        if found and not quoted and method in GUIDED and _quoted(paper, block[0].records[0].scenario, method, ""):
+            rows.append(_without(block[0], method, paper, QUOTED_ALONE))
+    return rows + [_row(entry, reference, paper) for entry in block if takes_place_of(entry.method) not in methods]
+
+
+def takes_place_of(name: str) -> str:
+    """Return the method whose place in a table something takes, by what it calls itself.
+
+    Args:
+        name: What it calls itself.
+    """
+    return STANDS_IN.get(name, name)
 
 
 def _row(entry: Entry, reference: Entry | None, paper: Paper) -> Compared:
@@ -127,9 +145,9 @@ def _row(entry: Entry, reference: Entry | None, paper: Paper) -> Compared:
     return Compared(row, entry.cpu)
 
 
-def _missing(beside: Entry, method: str, paper: Paper) -> Compared:
+def _without(beside: Entry, method: str, paper: Paper, status: str) -> Compared:
     scenario = beside.records[0].scenario
-    row = {"scenario": scenario, "method": method, "status": MISSING, **beside.setting}
+    row = {"scenario": scenario, "method": method, "status": status, **beside.setting}
     return Compared({**row, **_quoted(paper, scenario, method, "")})
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from codriving.reports.comparison import METHOD_CHOICE, MISSING, Compared
+from codriving.reports.comparison import DRIVEN, METHOD_CHOICE, MISSING, QUOTED_ALONE, STANDS_IN, Compared
 from codriving.reports.display import NOTES, Display, Line
 from codriving.reports.model_columns import FALLBACK_RATE
 from codriving.reports.model_display import FALLBACK_NOTE, FALLBACKS
@@ -64,7 +64,7 @@ def measured_display(
             theirs = {
                 "scenario": found.scenario,
                 "method": f"paper: {found.label}",
-                "episodes": "20",
+                "episodes": found.episodes_text,
                 "success": percent(found.numbers.get("success_rate")),
                 "PET mean / max / min [s]": three(found.numbers, "pet"),
                 "velocity mean / max / min [m/s]": three(found.numbers, "velocity"),
@@ -87,14 +87,29 @@ def further_notes(rows: Sequence[Row], cpu: bool) -> list[str]:
         *([FALLBACK_NOTE] if any(FALLBACK_RATE in row for row in rows) else []),
         *([ALGORITHM] if any(row.get("reasoner") == "none" for row in rows) else []),
         *([f"{MISSING.capitalize()}: {', '.join(missing)}; to come in a later release."] if missing else []),
+        *_stand_in_notes(rows),
         *([CPU_NOTE] if cpu else []),
     ]
 
 
+def _stand_in_notes(rows: Sequence[Row]) -> list[str]:
+    """Say where built-in rules stand in for a language model, which the paper's numbers are not about."""
+    names = dict.fromkeys(str(row["method"]) for row in rows if row["method"] in STANDS_IN)
+    notes = [
+        f"{name}: built-in rules in the place of {STANDS_IN[name]}'s language model; it is not that method."
+        for name in names
+    ]
+    alone = dict.fromkeys(str(row["method"]) for row in rows if row["status"] == QUOTED_ALONE)
+    if alone:
+        told = "the paper's go by a language model, the rows above by rules."
+        notes.append(f"{QUOTED_ALONE.capitalize()}: {', '.join(alone)}; {told}")
+    return notes
+
+
 def _measured(compared: Compared) -> dict[str, str]:
     row = compared.row
-    if row["status"] == MISSING:
-        return {"reasoner": MISSING}
+    if row["status"] != DRIVEN:
+        return {"reasoner": str(row["status"])}
     return {
         "reasoner": reasoner_text(str(row["reasoner"])),
         "episodes": episodes_text(row),
@@ -140,5 +155,5 @@ def scenarios(rows: Sequence[Compared]) -> str:
 
 
 def _title(rows: Sequence[Compared], metrics: str) -> str:
-    names = dict.fromkeys(reasoner_text(str(c.row["reasoner"])) for c in rows if c.row["status"] != MISSING)
+    names = dict.fromkeys(reasoner_text(str(c.row["reasoner"])) for c in rows if c.row["status"] == DRIVEN)
     return f"comparison of methods - {scenarios(rows)} - reasoner: {', '.join(names)}{metrics_text(metrics)}"

@@ -152,7 +152,7 @@ def _theirs(row: Row, paper: PaperRow) -> dict[str, str]:
     return {
         "scenario": str(row["scenario"]),
         "method": f"paper: {paper.label}",
-        "episodes": "20",
+        "episodes": paper.episodes_text,
         "success": percent(numbers.get("success_rate")),
         "PET mean / max / min [s]": three(numbers, "pet"),
         "velocity mean / max / min [m/s]": three(numbers, "velocity"),

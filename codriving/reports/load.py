@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from codriving.reports.comparison import DRIVEN, METHOD_CHOICE, MISSING, Entry
+from codriving.reports.comparison import DRIVEN, METHOD_CHOICE, MISSING, Entry, takes_place_of
 from codriving.reports.model_columns import FALLBACK_RATE
 from codriving.reports.rows import Row, Value
 from codriving.reports.summary import summary_row
@@ -88,6 +88,6 @@ def _in_order(rows: Sequence[Loaded], methods: Sequence[str]) -> list[Loaded]:
     kept = {name: value for name, value in rows[0].labels.items() if name not in ("variant", "reasoner", METHOD_CHOICE)}
     ordered: list[Loaded] = []
     for method in methods:
-        found = [row for row in rows if row.labels["method"] == method]
+        found = [row for row in rows if takes_place_of(str(row.labels["method"])) == method]
         ordered += found or [Loaded({**kept, "method": method, "status": MISSING})]
-    return [*ordered, *(row for row in rows if row.labels["method"] not in methods)]
+    return [*ordered, *(row for row in rows if takes_place_of(str(row.labels["method"])) not in methods)]

@@ -1,30 +1,41 @@
 """The paper's own numbers, read from ``experiments/*.csv``, to stand beside ours."""
 
 import csv
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 COMPARISON = "paper_comparison.csv"
+SINGLE_VEHICLE = "paper_single_vehicle.csv"
 ABLATION = "paper_ablation.csv"
+SEEDS = 20
+"""Seeds of each row of the paper's comparison."""
+
 WHOLE = frozenset({"", "full"})
 """Variants of which nothing has been removed."""
 
 
 @dataclass(frozen=True, slots=True)
 class PaperRow:
-    """One row of the paper's comparison (20 seeds).
+    """One row of the paper's comparison, or of the authors' extra comparison of single-vehicle methods.
 
     Attributes:
         scenario: Name of the scenario; the paper compares methods at the intersection alone.
         method: Our name of the method.
         label: Its name in the paper.
         numbers: What the paper prints, by the names of our summary's columns; what it leaves out is missing.
+        episodes: How many seeds it drove; None where that is not told.
     """
 
     scenario: str
     method: str
     label: str
     numbers: dict[str, float]
+    episodes: int | None = SEEDS
+
+    @property
+    def episodes_text(self) -> str:
+        """How many seeds it drove, for tables."""
+        return "-" if self.episodes is None else str(self.episodes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +60,12 @@ class Paper:
     Attributes:
         comparison: Rows of the comparison of methods.
         ablation: Statements on the ablations.
+        single_vehicle: Rows of the extra comparison.
     """
 
     comparison: tuple[PaperRow, ...] = ()
     ablation: tuple[PaperStatement, ...] = ()
+    single_vehicle: tuple[PaperRow, ...] = ()
 
     def row(self, scenario: str, method: str, variant: str) -> PaperRow | None:
         """Find the paper's row for one of ours.
@@ -67,7 +80,8 @@ class Paper:
         """
         if variant not in WHOLE:
             return None
-        return next((row for row in self.comparison if (row.scenario, row.method) == (scenario, method)), None)
+        rows = (*self.comparison, *self.single_vehicle)
+        return next((row for row in rows if (row.scenario, row.method) == (scenario, method)), None)
 
     def statement(self, scenario: str, variant: str) -> str:
         """Find what the paper says of an ablation.
@@ -99,7 +113,8 @@ def read_paper(folder: Path) -> Paper:
     ablation = tuple(
         PaperStatement(row["scenario"], row["variant"], row["statement"]) for row in _read(folder / ABLATION)
     )
-    return Paper(comparison, ablation)
+    single = tuple(replace(_row(row), episodes=None) for row in _read(folder / SINGLE_VEHICLE))
+    return Paper(comparison, ablation, single)
 
 
 def _read(path: Path) -> list[dict[str, str]]:

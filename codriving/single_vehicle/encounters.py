@@ -5,12 +5,17 @@ from math import cos, pi, sin
 
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.scene_description import Neighbour
+from codriving.geometry.box import Footprint
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
 from codriving.single_vehicle.protocol import View
 
 FRONT = 2.5
 """Distance from the centre of a vehicle to its front [m]."""
+
+
+CLOSE = Footprint(5.6, 2.4)
+"""Size of vehicles that pass by somebody who stands, at a walking pace and with a small margin [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,3 +112,14 @@ def comes_from_the_right(c: Conflict, road_map: RoadMap) -> bool | None:
     if abs(across) < 0.5 or cos(its - own) > 0.9:
         return None
     return across < 0
+
+
+def passes_by(e: Encounter, road_map: RoadMap) -> bool:
+    """Whether a vehicle passes by the other one where that one stands.
+
+    Args:
+        e: The two.
+        road_map: The precomputed road.
+    """
+    place, there = e.conflict.places
+    return all(float(zone.front(there)) < place for zone in road_map.zones(*e.conflict.routes, CLOSE))

@@ -6,7 +6,7 @@ from codriving.datatypes.order import Precedence
 from codriving.errors import ConfigError
 from codriving.prediction.idm import IntelligentDriver
 from codriving.single_vehicle.action_mapping import closest_action, mean_accelerations
-from codriving.single_vehicle.encounters import FRONT, Encounter, crossing_angle, encounters
+from codriving.single_vehicle.encounters import FRONT, Encounter, crossing_angle, encounters, passes_by
 from codriving.single_vehicle.expected_first import goes_first
 from codriving.single_vehicle.lane_choice import LaneChoice
 from codriving.single_vehicle.leaders import leaders
@@ -29,6 +29,12 @@ LIMITS = {
     "brake_at": (0.0, 10.0),
 }
 """Least and largest value of each setting."""
+
+TURN = 1.0
+"""Time by which those who wait start one after another [s]."""
+
+SAME = 0.25
+"""Difference of the times for which two have been standing that does not count [s]."""
 
 
 class ProjectedIdm:
@@ -129,7 +135,7 @@ class ProjectedIdm:
         """
         scene = view.scene
         speed, top = scene.ego.speed, view.top
-        options = [(self.idm.accelerate(speed, top), "nobody is in the way")]
+        options = [(self.idm.accelerate(speed, top), "nobody holds it up")]
         for ahead in leaders(scene, view.road_map):
             options.append((self.idm.accelerate(speed, top, ahead.gap, ahead.speed), f"{ahead.id} is ahead"))
         creeps = self.may_start(view, met, waited)
@@ -144,17 +150,27 @@ class ProjectedIdm:
                 continue
             if other not in precedences or precedences[other].first == scene.ego.id:
                 precedences[other] = Precedence(other, scene.ego.id, why)
-            options.append((self._behind(e, view), f"{other} goes first: {why}"))
-        wished, why = min(options)
+            options.append((self._behind(e, self._line(e, met), view), f"{other} goes first: {why}"))
+        # Of several that wish the same the first one counts, so that nobody is named who is not in the way.
+        wished, why = min(options, key=lambda option: option[0])
         return wished, why, tuple(precedences.values())
 
-    def _behind(self, e: Encounter, view: View) -> float:
+    def _line(self, e: Encounter, met: tuple[Encounter, ...]) -> float:
+        """How far away a vehicle waits before a zone: not inside another crossing, where it would be in the way [m]."""
+        line = e.own_way - self.stop_gap
+        # From the last crossing to the first, since stepping back from one may lead into the one before.
+        for other in sorted(met, key=lambda x: -x.own_way):
+            if other.own_way > 0 and not other.merges() and other.own_way < line < other.conflict.exits[0]:
+                line = other.own_way - self.stop_gap
+        return line
+
+    def _behind(self, e: Encounter, line: float, view: View) -> float:
         """The acceleration behind somebody who goes first: to follow its projection, or to stop before the zone.
 
         Either is safe, so the vehicle may take the one that costs it less.
         """
         speed = view.scene.ego.speed
-        waiting = inf if e.inside else self.idm.accelerate(speed, view.top, e.own_way - self.stop_gap, 0.0)
+        waiting = inf if e.inside else self.idm.accelerate(speed, view.top, line, 0.0)
         if e.other_inside and not e.merges():
             return waiting if waiting < inf else -self.idm.hardest
         along = max(cos(crossing_angle(e.conflict, e.zone, view.road_map)), 0.0)
@@ -170,13 +186,25 @@ class ProjectedIdm:
             met: Where it is open who goes first.
             waited: How long it has been standing [s].
         """
-        return bool(met) and waited >= self.patience and all(self._lets_start(e, view) for e in met)
+        if not met or waited < self.patience or not all(self._lets_start(e, view) for e in met):
+            return False
+        # Of those who stand, whoever has waited longest starts first; its start is seen before the next one's turn.
+        name = view.scene.ego.id
+        before = {e.other.id for e in met if _stood_longer(e.other.standing, e.other.id, waited, name)}
+        return waited >= self.patience + TURN * len(before)
 
     def _lets_start(self, e: Encounter, view: View) -> bool:
+        if e.other.standing > 0:
+            return passes_by(e, view.road_map)
         if e.other_inside:
             return False
-        if e.other.standing > 0:
-            return True
         go = view.forecast.reach(view.scene.ego.speed, True).most
         through = view.forecast.time_to(e.conflict.exits[0], go)
         return e.conflict.ttcp[1] > through + self.clear
+
+
+def _stood_longer(standing: float, other: str, waited: float, name: str) -> bool:
+    """Whether somebody who stands is to start before a vehicle that has waited for some time as well."""
+    if standing <= 0:
+        return False
+    return standing > waited + SAME or (standing >= waited - SAME and other < name)

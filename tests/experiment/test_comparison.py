@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from codriving.config.build import build
-from codriving.config.choices import COMPARED, TABLES, choices
+from codriving.config.choices import COMPARED, SINGLE_VEHICLE, TABLES, TAKING_PART, choices
 from codriving.config.compose import compose
 from codriving.config.locate import experiments_dir
 from codriving.datatypes.vehicle import Kind
@@ -32,15 +32,36 @@ def methods(table: str, *tokens: str, config_dir: Path | None = None) -> list[st
     return [point.overrides[-1] for point in comparison(table, tokens, config_dir)]
 
 
-THERE = [f"method={name}" for name in COMPARED if name in choices("method")]
+def there(names: tuple[str, ...]) -> list[str]:
+    return [f"method={name}" for name in names if name in choices("method")]
 
 
-def test_the_order_is_that_of_the_papers_table() -> None:
-    assert tuple(row.method for row in read_paper(experiments_dir()).comparison) == COMPARED
+THERE = there(COMPARED)
 
 
-def test_every_table_can_be_made_and_has_a_folder() -> None:
-    assert set(TABLES) == set(FURTHER) == set(EXPERIMENT)
+def test_the_order_is_that_of_the_papers_tables() -> None:
+    paper = read_paper(experiments_dir())
+    assert tuple(row.method for row in paper.comparison) == COMPARED
+    single = tuple(row.method for row in paper.single_vehicle)
+    assert (*single, "dilu", "codriving") == SINGLE_VEHICLE
+
+
+def test_every_table_can_be_made_and_has_a_folder_of_its_own() -> None:
+    assert set(TABLES) == set(FURTHER) == set(EXPERIMENT) == set(TAKING_PART)
+    assert len(set(EXPERIMENT.values())) == len(EXPERIMENT)
+
+
+def test_all_are_the_methods_of_the_paper_then_those_for_a_single_vehicle_then_codriving() -> None:
+    named = TAKING_PART["all"]
+    assert named[:6] == COMPARED[:-1]
+    assert named[6:] == ("pidm", "noncoop_game", "ppo", "tell", "codriving")
+    assert methods("all") == there(named)
+
+
+def test_single_vehicle_methods_are_those_that_exist() -> None:
+    assert methods("single-vehicle") == there(SINGLE_VEHICLE)
+    assert methods("single-vehicle")[:2] == ["method=pidm", "method=noncoop_game"]
+    assert methods("single-vehicle")[-1] == "method=codriving"
 
 
 def test_the_methods_are_those_that_exist() -> None:
@@ -58,7 +79,7 @@ def test_a_method_of_ones_own_is_added_once_and_takes_no_ones_place(own: Path) -
 
 
 def test_a_papers_method_of_ones_own_takes_part_without_being_asked(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("codriving.experiment.comparison.COMPARED", ("other", "codriving"))
+    monkeypatch.setitem(TAKING_PART, "baselines", ("other", "codriving"))
     assert methods("baselines", config_dir=own) == ["method=other", "method=codriving"]
 
 
@@ -83,11 +104,12 @@ def test_the_experiment_is_the_users_if_named() -> None:
 @pytest.mark.parametrize(
     ("table", "tokens", "said"),
     [
-        ("baseline", [], "unknown table 'baseline'; .* tables: baselines, load"),
+        ("baseline", [], "unknown table 'baseline'; .* tables: baselines, single-vehicle, all, load"),
         ("scenario=merge", [], "unknown table 'scenario=merge'; write codriving compare TABLE"),
-        (None, [], "compare needs the name of a table; .* tables: baselines, load"),
-        ("single-vehicle", [], "compare single-vehicle comes in a later release; tables so far: baselines, load"),
-        ("all", [], "compare all comes in a later release"),
+        (None, [], "compare needs the name of a table; .* tables: baselines, single-vehicle, all, load"),
+        ("single", [], "unknown table 'single'"),
+        ("single-vehicle", ["method=typo"], "unknown method 'typo'; choices: "),
+        ("all", ["episodes=3,4"], "episodes takes one value"),
         ("baselines", ["method=typo"], "unknown method 'typo'; choices: "),
         ("baselines", ["method=codriving,typo"], "unknown method 'typo'; choices: "),
         ("baselines", ["episodes=3,4"], "episodes takes one value"),

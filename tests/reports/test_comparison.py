@@ -150,3 +150,49 @@ def test_blocks_of_a_sweep_have_their_own_missing_rows_and_end_with_a_line(make:
     assert [line.cells[1] for line in ours] == ["4", "4", "8", "8"]
     assert [line.last for line in table.lines] == [False, False, False, True, False, False, False, False]
     assert table.title.endswith("metrics: authors")
+
+
+def by_rules(make: Make) -> list[Entry]:
+    """DiLu and TeLL as they are without a language model, and codriving."""
+    dilu = [make(seed, method="dilu-rule", variant="") for seed in range(2)]
+    tell = [make(seed, method="tell", variant="rules") for seed in range(2)]
+    return [Entry(dilu), Entry(tell), Entry([make(seed) for seed in range(2)])]
+
+
+def test_rules_in_the_place_of_a_language_model_take_the_methods_place_without_its_numbers(
+    make: Make, paper: Paper
+) -> None:
+    rows = [c.row for c in comparison_rows(by_rules(make), ("tell", "dilu", "codriving"), paper)]
+    assert [(row["method"], row.get("variant", ""), row["status"]) for row in rows] == [
+        ("tell", "rules", "driven"),
+        ("tell", "", "only in the paper"),
+        ("dilu-rule", "", "driven"),
+        ("dilu", "", "only in the paper"),
+        ("codriving", "full", "driven"),
+    ]
+    assert [row.get("paper_success_rate") for row in rows] == [None, 0.52, None, 0.38, 0.90]
+
+
+def test_rules_in_the_place_of_a_language_model_are_said_to_be_that(make: Make, paper: Paper) -> None:
+    rows = comparison_rows(by_rules(make), ("tell", "dilu", "codriving"), paper)
+    table = measured_display(rows, paper, "standard")
+    names = cells(table, "method")
+    assert names[:6] == ["tell rules", "tell", "paper: TeLL", "dilu-rule", "dilu", "paper: DiLu"]
+    assert "dilu-rule: built-in rules in the place of dilu's language model; it is not that method." in table.notes
+    assert any(note.startswith("Only in the paper: tell, dilu; ") for note in table.notes)
+    assert cells(table, "reasoner")[1] == "only in the paper"
+    assert paired_display(rows, "standard") is not None
+
+
+def test_with_a_language_model_the_papers_numbers_stand_below(make: Make, paper: Paper) -> None:
+    block = [Entry([make(0, method="dilu", variant="", reasoner="some-model")])]
+    (row,) = [c.row for c in comparison_rows(block, ("dilu",), paper)]
+    assert (row["status"], row["paper_success_rate"]) == ("driven", 0.38)
+
+
+def test_the_papers_number_of_seeds_is_given_where_it_is_known(make: Make, paper: Paper) -> None:
+    block = [Entry([make(0, method=name, variant="", reasoner="none")]) for name in ("pidm", "fcfs")]
+    table = measured_display(comparison_rows(block, ("pidm", "fcfs"), paper), paper, "standard")
+    assert cells(table, "method") == ["pidm", "paper: PIDM", "fcfs", "paper: FCFS"]
+    assert cells(table, "episodes")[1::2] == ["-", "20"]
+    assert cells(table, "success")[1::2] == ["25 %", "90 %"]

@@ -104,3 +104,11 @@ def test_a_figure_of_failures_and_of_one_load_can_be_drawn(make: Make) -> None:
 def test_every_method_looks_different_without_colour() -> None:
     looks = {(marker, stroke) for _, marker, stroke in STYLES.values()}
     assert len(looks) == len({colour for colour, _, _ in STYLES.values()}) == len(STYLES)
+
+
+def test_rules_in_the_place_of_a_language_model_take_the_methods_place(make: Make) -> None:
+    cells = [(4, Entry([make(0, method=name, variant="")])) for name in ("codriving", "dilu-rule")]
+    rows = load_rows(cells, ("dilu", "codriving"))
+    assert [row.labels["method"] for row in rows] == ["dilu-rule", "codriving"]
+    notes = load_display(rows, [4], "standard").notes
+    assert "dilu-rule: built-in rules in the place of dilu's language model; it is not that method." in notes
