@@ -2,16 +2,21 @@
 
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.alone import Alone
 from codriving.methods.ports import Reasoner
+from codriving.prediction.forecast import HORIZON
+from codriving.prediction.rollout import rollout
 from codriving.single_vehicle.protocol import Driver
 from codriving.training.schedule import Linear
 
@@ -104,7 +109,22 @@ class Advisor:
         deliberation = self._alone.act(world)
         if self._decider is None:
             return deliberation.actions
-        return {d.ego: d.action for d in self._decider.decide(deliberation.situations)}
+        weighed = [_weighed(situation, self._road[1]) for situation in deliberation.situations]
+        return {d.ego: d.action for d in self._decider.decide(weighed)}
+
+
+def _weighed(situation: Situation, model: DrivingModel) -> Situation:
+    """Say of each action how far it gets a CAV, and when to its conflicts, as a model is told of actions elsewhere."""
+    ego, target = situation.scene.ego, situation.scene.intent.target_speed
+    plans = tuple((a.action, Action.FASTER) for a in situation.assessments)
+    steps = round(HORIZON / model.step)
+    travelled = rollout(model, [ego.speed], [target], plans, steps)[0][0]
+    weighed = []
+    for assessment, places in zip(situation.assessments, travelled, strict=True):
+        after = [int(np.searchsorted(places, c.distances[0])) for c in situation.conflicts]
+        arrivals = tuple(k * model.step if k <= steps else float("inf") for k in after)
+        weighed.append(replace(assessment, arrivals=arrivals, progress=float(places[-1])))
+    return replace(situation, assessments=tuple(weighed))
 
 
 def _decider(llm: Reasoner) -> "ModelDecider | None":

@@ -52,6 +52,7 @@ MAY_IMPORT = {
         "storage",
         "methods",
         "single_vehicle",
+        "prediction",
         "llm",
     },
     "cli": {"config", "experiment", "reports", "storage", "training"},
