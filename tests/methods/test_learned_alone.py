@@ -15,6 +15,7 @@ from worlds import Junction, car
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.config.sweep import expand
+from codriving.config.training import compose_training
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
 from codriving.environment.environment import Environment
@@ -26,6 +27,7 @@ from codriving.methods.learned import Learned
 from codriving.methods.ppo import Ppo
 from codriving.methods.tell import Tell
 from codriving.pictures.deliberated import deliberated
+from codriving.training.folder import fingerprint
 
 Make = Callable[..., Environment]
 SCENARIOS = ("intersection", "roundabout", "highway", "merge")
@@ -153,6 +155,8 @@ def test_shipped_weights_say_how_they_were_trained(name: str, family: str) -> No
     purpose = load(file).purpose
     assert (purpose.method, purpose.family) == (name, family)
     assert purpose.training["command"] == f"codriving train {name} --family {family}"
+    config = compose_training(f"{name}_{family}", (), smoke=False)
+    assert purpose.training["config"] == fingerprint(config), "the config that is shipped is the one that they come from"
     assert purpose.training["validation"]["first_seed"] >= 10_000
     curve = file.with_suffix(".csv").read_text().splitlines()
     assert curve[0].startswith("decisions,")
