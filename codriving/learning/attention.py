@@ -47,7 +47,7 @@ class Attention:
         own = np.concatenate([observations[:, :first], observations[:, last:]], axis=1)
         ego = np.maximum(self._layer(OWN, own), 0.0)
         everyone = np.concatenate([ego[:, None], np.maximum(self._layer("other", slots), 0.0)], axis=1)
-        there = np.concatenate([np.ones_like(slots[:, :1, 0]), slots[:, :, 0]], axis=1) > 0.5
+        there = np.concatenate([np.ones_like(slots[:, :1, 0]), slots[:, :, 0]], axis=1) > 0.0
         shape = (-1, SLOTS + 1, HEADS, WIDTH // HEADS)
         key, value = (self._layer(name, everyone).reshape(shape) for name in ("key", "value"))
         query = self._layer("query", ego).reshape(-1, 1, HEADS, WIDTH // HEADS)

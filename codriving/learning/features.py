@@ -71,7 +71,8 @@ class Features:
         numbers.append(1.0)
         slots: list[Slot] = []
         if self._meets:
-            slots += conflict_slots(ego, route.id, place, others, self._road_map, top)
+            rank = self._knowledge.priority(ego)
+            slots += conflict_slots(ego, route.id, place, others, self._road_map, top, rank)
         beside: list[float] = []
         if self._beside is None:
             ahead = leader_ahead(ego, route.id, place, others, self._road_map)

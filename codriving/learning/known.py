@@ -30,6 +30,7 @@ class Other:
         target: Speed that it is bound for [m/s]; 0 where nothing is known of it.
         length: Length [m].
         places: Each route that it may be on, with its arc length there [m].
+        priority: Rank of its lane by the rules of the road; None where these do not count.
     """
 
     id: str
@@ -41,6 +42,7 @@ class Other:
     target: float
     length: float
     places: Places
+    priority: int | None = None
 
 
 class Knowledge:
@@ -85,6 +87,17 @@ class Knowledge:
         ]
         return {cav.id: tuple(other for other in known if other.id != cav.id) for cav in cavs}
 
+    def priority(self, v: VehicleState) -> int | None:
+        """Return the rank of a vehicle by the rules of the road, which those who share agree to mind.
+
+        Args:
+            v: The vehicle.
+
+        Returns:
+            Priority of its lane; None on roads without such rules, and for those who drive on their own.
+        """
+        return self._road_map.lanes[v.lane].priority if self._shared and self._road_map.road.regulated else None
+
     def _partner(self, v: VehicleState, world: WorldState) -> Other:
         """A CAV that has told its route and its target speed."""
         intent = world.intents[v.id]
@@ -93,12 +106,13 @@ class Knowledge:
             s, _ = self._road_map.project(intent.route, v.x, v.y)
             lane = self._road_map.lane_at(intent.route, s)
             places = ((intent.route, s), *self._road_map.changes.covered(intent.route, lane, v.x, v.y))
-        return Other(v.id, True, v.x, v.y, v.speed, v.heading, intent.target_speed, v.length, places)
+        return Other(v.id, True, v.x, v.y, v.speed, v.heading, intent.target_speed, v.length, places, self.priority(v))
 
     def _human(self, v: VehicleState) -> Other:
         """A human driver whom all CAVs watch together."""
         target = max(v.speed + FORESIGHT * v.acceleration, 0.0)
-        return Other(v.id, False, v.x, v.y, v.speed, v.heading, target, v.length, self._watched(EVERYBODY, v))
+        places = self._watched(EVERYBODY, v)
+        return Other(v.id, False, v.x, v.y, v.speed, v.heading, target, v.length, places, self.priority(v))
 
     def _stranger(self, ego: str, v: VehicleState) -> Other:
         return Other(v.id, False, v.x, v.y, v.speed, v.heading, 0.0, v.length, self._watched(ego, v))

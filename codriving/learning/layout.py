@@ -24,7 +24,11 @@ EGO = ("speed", "target", "to_entry", "to_goal", "left", "straight", "right", "o
 """Own speed and target speed, way to the shared part of the road and to the goal, turn, and a constant."""
 
 SLOT = ("there", "is_cav", "same_path", "crossing", "own_entry", "other_entry", "other_exit", "speed", "target")
-"""A leader (both entries are the gap) or a conflict zone: ways of both to it and of the other out of it."""
+"""A leader (both entries are the gap) or a conflict zone: ways of both to it and of the other out of it.
+
+``there`` is 1. Where CAVs share and the road has rules of precedence, it is less in a conflict with somebody on a lane
+of the same priority (0.6) or of a higher one (0.2): such human drivers will not give way.
+"""
 
 SIDE = ("gap", "relative_speed", "there")
 """Next vehicle on the lane beside, ahead or behind: bumper to bumper gap, speed less the own."""

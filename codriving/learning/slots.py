@@ -15,6 +15,9 @@ from codriving.reasoning.severity import ttcp
 LEADER_URGENCY = 10.0
 """Gap to a leader that counts as one unit of urgency [m]."""
 
+GOES_FIRST, EQUAL, GIVES_WAY = 1.0, 0.6, 0.2
+"""The first number of a slot: whether the CAV goes first by the rules of the road; 1 where there are none."""
+
 Slot = tuple[float, tuple[float, ...]]
 """Urgency, the smaller the more urgent, and the numbers."""
 
@@ -55,8 +58,26 @@ def leader_slot(other: Other, gap: float, top: float) -> Slot:
     return gap / LEADER_URGENCY, (1.0, float(other.is_cav), 1.0, 0.0, x, x, 0.0, other.speed / top, other.target / top)
 
 
+def precedence(own: int | None, other: int | None) -> float:
+    """Say whether a CAV goes before another vehicle by the rules of the road; human drivers keep to them.
+
+    Args:
+        own: Priority of its lane.
+        other: Priority of the other's lane.
+    """
+    if own is None or other is None or own > other:
+        return GOES_FIRST
+    return EQUAL if own == other else GIVES_WAY
+
+
 def conflict_slots(
-    ego: VehicleState, route: str, place: float, others: Iterable[Other], road_map: RoadMap, top: float
+    ego: VehicleState,
+    route: str,
+    place: float,
+    others: Iterable[Other],
+    road_map: RoadMap,
+    top: float,
+    priority: int | None = None,
 ) -> Iterator[Slot]:
     """Yield the most urgent open conflict with each of the others, as a slot.
 
@@ -69,6 +90,7 @@ def conflict_slots(
         others: Whom it knows of.
         road_map: The precomputed road.
         top: Highest target speed [m/s].
+        priority: Rank of its lane by the rules of the road; None where these do not count.
     """
     near, far = NEAR * top, FAR * top
     for other in others:
@@ -85,10 +107,9 @@ def conflict_slots(
                 if best is None or urgency < best[0]:
                     crossing = float(zone.relation is Relation.CROSSING)
                     ways = (own / near, away / near, (zone.exit_j - at) / near)
-                    best = (
-                        urgency,
-                        (1.0, float(other.is_cav), 0.0, crossing, *ways, other.speed / top, other.target / top),
-                    )
+                    rank = precedence(priority, other.priority)
+                    speeds = other.speed / top, other.target / top
+                    best = urgency, (rank, float(other.is_cav), 0.0, crossing, *ways, *speeds)
         if best is not None:
             yield best
 

@@ -38,7 +38,7 @@ class AttentionActor(nn.Module):
         ego = torch.relu(self.ego(own))
         # The ego vehicle is a token as well, so that there is somebody to attend to on an empty road.
         everyone = torch.cat([ego[:, None], torch.relu(self.other(slots))], 1)
-        there = torch.cat([torch.ones_like(slots[:, :1, 0]), slots[:, :, 0]], 1) > 0.5
+        there = torch.cat([torch.ones_like(slots[:, :1, 0]), slots[:, :, 0]], 1) > 0.0
         shape = (-1, SLOTS + 1, HEADS, WIDTH // HEADS)
         key, value = self.key(everyone).reshape(shape), self.value(everyone).reshape(shape)
         query = self.query(ego).reshape(-1, 1, HEADS, WIDTH // HEADS)
