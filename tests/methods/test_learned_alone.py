@@ -1,4 +1,4 @@
-"""PPO and TeLL: policies of a single vehicle drive on every road, see nothing that is hidden, and say how sure they are."""
+"""PPO and TeLL: policies of a single vehicle drive on every road, see nothing hidden, and say how sure they are."""
 
 import json
 import re
@@ -156,7 +156,7 @@ def test_shipped_weights_say_how_they_were_trained(name: str, family: str) -> No
     assert (purpose.method, purpose.family) == (name, family)
     assert purpose.training["command"] == f"codriving train {name} --family {family}"
     config = compose_training(f"{name}_{family}", (), smoke=False)
-    assert purpose.training["config"] == fingerprint(config), "the config that is shipped is the one that they come from"
+    assert purpose.training["config"] == fingerprint(config), "trained with the shipped config"
     assert purpose.training["validation"]["first_seed"] >= 10_000
     curve = file.with_suffix(".csv").read_text().splitlines()
     assert curve[0].startswith("decisions,")
