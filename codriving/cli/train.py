@@ -8,7 +8,7 @@ from codriving.cli.arguments import ConfigDir
 
 
 def train(
-    learner: Annotated[str, typer.Argument(metavar="LEARNER", help="What is trained: madqn.")],
+    learner: Annotated[str, typer.Argument(metavar="LEARNER", help="What is trained: madqn, ppo or tell.")],
     overrides: Annotated[
         list[str] | None,
         typer.Argument(metavar="[KEY=VALUE]...", help="Settings, for instance seed=2, decisions=300000 or run=second."),

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from codriving.config.compose import compose
 from codriving.config.locate import conf_dir
 from codriving.config.overrides import parse
 from codriving.config.schema import unknown
@@ -12,6 +13,12 @@ from codriving.errors import ConfigError
 
 TRAININGS = "train"
 """The folder of these configs; it is no group, since a run has no training."""
+
+LLM = "llm"
+"""The group of language models, of which one can teach."""
+
+GUIDANCE = "guidance"
+"""The key that holds who teaches, where a student is guided."""
 
 SMOKE = "smoke"
 """The key that holds what ``--smoke`` changes."""
@@ -62,12 +69,22 @@ def compose_training(
     if smoke:
         for key, value in small.items():
             _set(config, key, value)
-    for token in overrides:
+    asked = [token for token in overrides if token.partition("=")[0].partition(".")[0] == LLM]
+    if asked:
+        _teach(config, asked, config_dir)
+    for token in (token for token in overrides if token not in asked):
         override = parse(token)
         if override.is_delete() or override.is_sweep_override():
             raise ConfigError(f"{shown(token)}: a training takes one value for each key")
         _set(config, override.key_or_group, override.value())
     return config
+
+
+def _teach(config: dict[str, Any], overrides: Sequence[str], config_dir: Path | None) -> None:
+    """Put the language model that ``llm=`` chooses, with its settings, in the place of the teacher."""
+    if not config.get(GUIDANCE):
+        raise ConfigError(f"{shown(overrides[0])}: nobody teaches in this training; it has no guidance.llm")
+    config[GUIDANCE][LLM] = compose(overrides, config_dir)[LLM]
 
 
 def _set(config: dict[str, Any], key: str, value: object) -> None:

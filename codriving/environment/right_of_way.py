@@ -42,7 +42,19 @@ def will_meet(road_map: RoadMap, one: OnWay, other: OnWay) -> bool:
         one: A vehicle.
         other: Another vehicle.
     """
-    ones, others = motions(one), motions(other)
+    return meet(road_map, one, other, motions(one), motions(other))
+
+
+def meet(road_map: RoadMap, one: OnWay, other: OnWay, ones: Array, others: Array) -> bool:
+    """Whether two vehicles would be in a conflict zone together, by where each may be soon.
+
+    Args:
+        road_map: The precomputed road.
+        one: A vehicle.
+        other: Another vehicle.
+        ones: The first one's ``motions``, handed over because they are the same against everybody.
+        others: Those of the other.
+    """
     reach_one, reach_other = ones[-1, -1] + GRID, others[-1, -1] + GRID
     for zone in road_map.zones(one.way.route.id, other.way.route.id):
         if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):

@@ -16,7 +16,7 @@ from codriving.environment.connected_lanes import connected
 from codriving.environment.corrections import Corrections
 from codriving.environment.human_driver import HumanDriver
 from codriving.environment.on_way import OnWay
-from codriving.environment.right_of_way import can_wait, occupied_ahead, will_meet
+from codriving.environment.right_of_way import can_wait, meet, motions, occupied_ahead, will_meet
 from codriving.geometry.road_map import RoadMap
 
 ATTENTION = 5
@@ -73,10 +73,15 @@ class Traffic(RegulatedRoad):
                 if vehicle.waits_at is not None:
                     vehicle.target_speed = vehicle.lane.speed_limit
                 vehicle.waits_at = None
+        # Where everybody may be soon is worked out once, since nothing below changes it.
+        soon = {vehicle: motions(vehicle) for vehicle in self.vehicles} if self.corrections.route_prediction else {}
         for one, other in combinations(self.vehicles, 2):
             if not (isinstance(one, HumanDriver) or isinstance(other, HumanDriver)):
                 continue
-            if not self.is_conflict_possible(one, other):
+            if soon:
+                if not meet(self.road_map, one, other, soon[one], soon[other]):
+                    continue
+            elif not self.is_conflict_possible(one, other):
                 continue
             yielding = self.respect_priorities(one, other)
             # Whoever is in the junction cannot give way any more; then the other one does.

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
@@ -11,7 +11,6 @@ from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
 from codriving.envs.actions import action_mask, action_of
 from codriving.envs.layout import FloatArray
-from codriving.envs.observation import Observer
 from codriving.envs.reward import Driven, RewardWeights, rewards
 from codriving.errors import EpisodeError, ScenarioError
 
@@ -31,6 +30,22 @@ class Turn:
     truncated: dict[str, bool]
 
 
+class Eyes(Protocol):
+    """What CAVs observe."""
+
+    def observe(self, world: WorldState) -> dict[str, FloatArray]:
+        """Return what each CAV on the road observes, by id.
+
+        Args:
+            world: The world; once a step.
+        """
+        ...
+
+    def nothing(self) -> FloatArray:
+        """Return what is observed by a CAV that has left the road."""
+        ...
+
+
 class Drive:
     """An environment with eyes and rewards.
 
@@ -47,7 +62,7 @@ class Drive:
         seed: Seed of the episode.
     """
 
-    def __init__(self, environment: Environment, observer: Observer, weights: RewardWeights) -> None:
+    def __init__(self, environment: Environment, observer: Eyes, weights: RewardWeights) -> None:
         self.environment, self.observer, self.weights = environment, observer, weights
         self.cavs = [start.id for start in environment.scenario.scene(0).starts if start.kind is Kind.CAV]
         self.driving: list[str] = []

@@ -47,3 +47,17 @@ def greedy(values: FloatArray, masks: NDArray[np.bool_]) -> list[int]:
         masks: Whether it is allowed (n, actions); at least one in each row is.
     """
     return [int(k) for k in np.where(masks, values, -np.inf).argmax(axis=1)]
+
+
+def shares(logits: FloatArray, masks: NDArray[np.bool_]) -> FloatArray:
+    """Return the probabilities of a policy (n, actions); what is not allowed has none.
+
+    Args:
+        logits: What the network makes of each action (n, actions).
+        masks: Whether it is allowed (n, actions); at least one in each row is.
+    """
+    if not len(logits):
+        return logits
+    allowed = np.where(masks, logits, -np.inf)
+    weights = np.exp(allowed - allowed.max(axis=1, keepdims=True))
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True), dtype=np.float32)

@@ -15,8 +15,8 @@ from safetensors.numpy import save as packed
 
 from codriving.errors import WeightsError
 from codriving.learning.actions import ACTIONS
+from codriving.learning.forms import FORMS, PERCEPTRON, AnyNetwork, network_of, shapes, tensors
 from codriving.learning.layout import FAMILIES, FAR, NEAR, VERSION, feature_count
-from codriving.learning.network import Network
 
 CLOSE = 1e-6
 """Numbers of a road and of the weights that differ by less are the same."""
@@ -37,6 +37,7 @@ class Purpose:
         actions: What the outputs mean, in their order.
         hidden: Units of each hidden layer.
         training: How they were trained: command, fingerprint of the config, seed, and what the validation said.
+        form: Kind of the network, ``perceptron`` or ``attention``.
     """
 
     method: str
@@ -49,6 +50,7 @@ class Purpose:
     actions: tuple[str, ...]
     hidden: tuple[int, ...]
     training: Mapping[str, Any]
+    form: str = PERCEPTRON
 
     @classmethod
     def read(cls, text: str, where: str) -> Self:
@@ -63,12 +65,15 @@ class Purpose:
         """
         try:
             found = json.loads(text)
-            values = {field.name: found[field.name] for field in fields(cls)}
+            values = {field.name: found[field.name] for field in fields(cls) if field.name != "form"}
+            values["form"] = found.get("form", PERCEPTRON)
             values["target_speeds"] = tuple(tuple(map(float, grid)) for grid in values["target_speeds"])
             values["actions"], values["hidden"] = tuple(values["actions"]), tuple(map(int, values["hidden"]))
             made = cls(**values)
         except (ValueError, TypeError, KeyError) as err:
             raise WeightsError(f"{where} does not describe trained weights ({type(err).__name__}: {err})") from err
+        if made.form not in FORMS:
+            raise WeightsError(f"{where} is for a network of the kind {made.form!r}; known: {', '.join(FORMS)}")
         if made.family not in FAMILIES:
             raise WeightsError(f"{where} is for roads of the family {made.family!r}; known: {', '.join(FAMILIES)}")
         if (made.features, made.near, made.far) != (VERSION, NEAR, FAR):
@@ -126,7 +131,7 @@ class Trained:
         purpose: What it was trained for.
     """
 
-    network: Network
+    network: AnyNetwork
     purpose: Purpose
 
 
@@ -156,11 +161,9 @@ def save(file: Path, trained: Trained) -> None:
         file: File of the weights; its folder must exist.
         trained: What is written.
     """
-    tensors = {}
-    for k, (weight, bias) in enumerate(zip(trained.network.weights, trained.network.biases, strict=True)):
-        tensors[f"W{k}"], tensors[f"b{k}"] = np.ascontiguousarray(weight), np.ascontiguousarray(bias)
+    arrays = {name: np.ascontiguousarray(tensor) for name, tensor in tensors(trained.network).items()}
     # Not by the library's own file, which only its owner may read.
-    file.write_bytes(packed(tensors))
+    file.write_bytes(packed(arrays))
     sidecar(file).write_text(trained.purpose.written(), encoding="utf-8", newline="\n")
 
 
@@ -175,21 +178,19 @@ def load(file: Path) -> Trained:
     """
     try:
         purpose = Purpose.read(sidecar(file).read_text(encoding="utf-8"), str(sidecar(file)))
-        tensors = load_file(file)
+        held = load_file(file)
     except OSError as err:
         raise WeightsError(f"cannot read {err.filename or file}: {err.strerror or err}") from err
     except (SafetensorError, UnicodeDecodeError) as err:
         raise WeightsError(f"{file} or the JSON beside it is damaged ({err})") from err
-    sizes = (feature_count(purpose.family), *purpose.hidden, len(purpose.actions))
-    layers = range(len(sizes) - 1)
-    wanted = {f"W{k}": (sizes[k], sizes[k + 1]) for k in layers} | {f"b{k}": (sizes[k + 1],) for k in layers}
-    found = {name: tensor.shape for name, tensor in tensors.items()}
+    wanted = shapes(purpose.form, feature_count(purpose.family), purpose.hidden, len(purpose.actions))
+    found = {name: tensor.shape for name, tensor in held.items()}
     if found != wanted:
         wrong = sorted(name for name in {*found, *wanted} if found.get(name) != wanted.get(name))
         raise WeightsError(
             f"{file} does not hold the layers that its JSON describes: "
             + ", ".join(f"{name} is {found.get(name)} and should be {wanted.get(name)}" for name in wrong)
         )
-    if any(t.dtype != np.float32 or not np.isfinite(t).all() for t in tensors.values()):
+    if any(t.dtype != np.float32 or not np.isfinite(t).all() for t in held.values()):
         raise WeightsError(f"{file} must hold finite numbers of 32 bits; it is damaged or of another program")
-    return Trained(Network([tensors[f"W{k}"] for k in layers], [tensors[f"b{k}"] for k in layers]), purpose)
+    return Trained(network_of(purpose.form, held), purpose)

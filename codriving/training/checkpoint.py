@@ -2,33 +2,40 @@
 
 import json
 from pathlib import Path
-from typing import Any
-
-import numpy as np
-import torch
+from typing import Any, Protocol
 
 from codriving.errors import TrainingError
 from codriving.storage.atomic import whole_folder, write_text
-from codriving.training.trainer import Trainer
 
-NETWORK, REPLAY, STATE = "network.pt", "replay.npz", "state.json"
+STATE = "state.json"
 
 
-def store(folder: Path, trainer: Trainer, more: dict[str, Any]) -> None:
+class Resumable(Protocol):
+    """A training that can go on from what it has written."""
+
+    def write(self, folder: Path) -> dict[str, Any]:
+        """Write what is large into a folder, and return the rest, JSON-ready."""
+        ...
+
+    def read(self, folder: Path, state: dict[str, Any]) -> None:
+        """Go on from the folder, and from what was returned."""
+        ...
+
+
+def store(folder: Path, trainer: Resumable, more: dict[str, Any]) -> None:
     """Write a checkpoint.
 
     Args:
         folder: Its folder; the one before is replaced.
-        trainer: The training, between two episodes.
+        trainer: The training, where it can be stopped.
         more: What else is to be remembered, JSON-ready.
     """
     with whole_folder(folder) as partial:
-        torch.save(trainer.learner.state(), partial / NETWORK)
-        np.savez(partial / REPLAY, **trainer.replay.state())  # type: ignore[arg-type]
-        write_text(partial / STATE, json.dumps({"trainer": trainer.state(), "more": more}))
+        state = trainer.write(partial)
+        write_text(partial / STATE, json.dumps({"trainer": state, "more": more}))
 
 
-def recall(folder: Path, trainer: Trainer) -> dict[str, Any]:
+def recall(folder: Path, trainer: Resumable) -> dict[str, Any]:
     """Go on from a checkpoint.
 
     Args:
@@ -42,11 +49,8 @@ def recall(folder: Path, trainer: Trainer) -> dict[str, Any]:
         TrainingError: If the checkpoint is damaged.
     """
     try:
-        trainer.learner.restore(torch.load(folder / NETWORK, weights_only=True))
-        with np.load(folder / REPLAY, allow_pickle=False) as replay:
-            trainer.replay.restore(dict(replay))
         state = json.loads((folder / STATE).read_text(encoding="utf-8"))
-        trainer.restore(state["trainer"])
+        trainer.read(folder, state["trainer"])
         more: dict[str, Any] = state["more"]
     except (OSError, ValueError, KeyError, TypeError, RuntimeError) as err:
         raise TrainingError(

@@ -15,7 +15,7 @@ from codriving.learning.layout import FAMILIES
 INTERRUPTED = 130
 """Exit code of a process that the user stopped (128 + SIGINT)."""
 
-LEARNERS = ("madqn",)
+LEARNERS = ("madqn", "ppo", "tell")
 """What can be trained; each has a YAML in conf/train for every family, called after both."""
 
 OWN = ("run", "output")

@@ -59,10 +59,8 @@ class Display:
             row: Its row of the curve.
         """
         self._bar.update(self._task, note=f"success {row['score']:.0%}")
-        loss = "-" if row["loss"] is None else f"{row['loss']:.4f}"
-        self.note(
-            f"{row['decisions']:>9} of {self._total} decisions, epsilon {row['epsilon']:.2f}, loss {loss}, {_said(row)}"
-        )
+        more = [f"{name} {row[name]:.4g}" for name in ("epsilon", "loss", "pull") if row.get(name) is not None]
+        self.note(", ".join([f"{row['decisions']:>9} of {self._total} decisions", *more, _said(row)]))
 
     def final(self, row: Mapping[str, Any]) -> None:
         """Tell what the last validation said of one state.

@@ -1,13 +1,13 @@
-"""One training of MADQN in its folder, from its beginning or from where it was stopped."""
+"""One training in its folder, from its beginning or from where it was stopped; whatever it is that learns."""
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from codriving.errors import TrainingError
 from codriving.learning.actions import ACTIONS
+from codriving.learning.forms import AnyNetwork
 from codriving.learning.layout import FAR, NEAR, VERSION
-from codriving.learning.network import Network
 from codriving.learning.weights import Purpose, Trained, load, save
 from codriving.storage.atomic import whole_file, write_text
 from codriving.training.checkpoint import recall, store
@@ -15,8 +15,13 @@ from codriving.training.curve import COLLISION, DURATION, SUCCESS, Row, curve_cs
 from codriving.training.display import Display
 from codriving.training.folder import Stop, TrainingFolder
 from codriving.training.settings import MadqnSettings
+from codriving.training.single_settings import SingleSettings
+from codriving.training.single_trainer import SingleTrainer
 from codriving.training.trainer import Trainer
 from codriving.training.validation import Grade, examine, overall
+
+Settings: TypeAlias = MadqnSettings | SingleSettings
+Learner: TypeAlias = Trainer | SingleTrainer
 
 EXAM_SEEDS = 1000
 """Seeds that each exam has for itself."""
@@ -24,17 +29,15 @@ EXAM_SEEDS = 1000
 FINAL_SEEDS = 100_000
 """How far the seeds of the last validation lie beyond those of the others."""
 
-METHOD = "madqn"
 
-
-def train(settings: MadqnSettings, folder: TrainingFolder, display: Display, stop: Stop) -> Path:
+def train(settings: Settings, folder: TrainingFolder, display: Display, stop: Stop) -> Path:
     """Train, validate and choose.
 
     Args:
         settings: How.
         folder: Where to.
         display: Who is told how far it is.
-        stop: Asked between episodes whether the user wants to stop.
+        stop: Asked now and then whether the user wants to stop.
 
     Returns:
         The file of the chosen weights.
@@ -43,19 +46,18 @@ def train(settings: MadqnSettings, folder: TrainingFolder, display: Display, sto
         TrainingError: If a checkpoint is damaged.
         KeyboardInterrupt: If it was stopped; the checkpoint is written.
     """
-    trainer = Trainer(settings)
+    trainer = settings.trainer()
     rows: list[dict[str, Any]] = []
     if folder.checkpoint.exists():
         rows = recall(folder.checkpoint, trainer)["rows"]
-        display.note(f"going on after {trainer.counts.decisions} decisions")
+        display.note(f"going on after {trainer.decisions} decisions")
     target = len(rows) + 1
-    while trainer.counts.decisions < settings.decisions:
-        trainer.episode()
-        display.advance(trainer.counts.decisions)
-        if trainer.counts.decisions >= min(target * settings.exam_every, settings.decisions):
-            rows.append(_validate(trainer, folder))
+    while trainer.decisions < settings.decisions:
+        trainer.advance()
+        display.advance(trainer.decisions)
+        if trainer.decisions >= min(target * settings.exam_every, settings.decisions):
+            rows.append(_validate(settings, trainer, folder))
             target = len(rows) + 1
-            trainer.counts.begin_section()
             store(folder.checkpoint, trainer, {"rows": rows})
             _write_curve(rows, settings, folder)
             display.validated(rows[-1])
@@ -65,29 +67,19 @@ def train(settings: MadqnSettings, folder: TrainingFolder, display: Display, sto
     return _choose(settings, rows, folder, display, trainer)
 
 
-def _validate(trainer: Trainer, folder: TrainingFolder) -> dict[str, Any]:
+def _validate(settings: Settings, trainer: Learner, folder: TrainingFolder) -> dict[str, Any]:
     """Validate the network as it is, keep it, and return a row of the curve."""
-    settings, counts = trainer.settings, trainer.counts
-    grades = _exams(settings, trainer.network, settings.exam_seed, None)
-    row: dict[str, Any] = {
-        "decisions": counts.decisions,
-        "episodes": counts.episodes,
-        "updates": counts.updates,
-        "epsilon": round(settings.exploration.at(counts.decisions), 4),
-        "loss": round(counts.losses / counts.learned, 5) if counts.learned else None,
-        "train_success": round(counts.arrived / counts.driven, 4) if counts.driven else None,
-        **_columns(grades),
-    }
-    save(
-        folder.state(counts.decisions),
-        Trained(trainer.network, _purpose(settings, folder, {"decisions": counts.decisions})),
-    )
+    decisions, network = trainer.decisions, trainer.network
+    row = {**trainer.section(), **_columns(_exams(settings, network, settings.exam_seed, None))}
+    save(folder.state(decisions), Trained(network, _purpose(settings, folder, {"decisions": decisions})))
     return row
 
 
-def _exams(settings: MadqnSettings, network: Network, first: int, episodes: int | None) -> dict[str, Grade]:
+def _exams(settings: Settings, network: AnyNetwork, first: int, episodes: int | None) -> dict[str, Grade]:
     return {
-        exam.name: examine(exam, network, settings.family, first + k * EXAM_SEEDS, episodes or exam.episodes)
+        exam.name: examine(
+            exam, network, settings.family, settings.shared, first + k * EXAM_SEEDS, episodes or exam.episodes
+        )
         for k, exam in enumerate(settings.exams)
     }
 
@@ -102,7 +94,7 @@ def _columns(grades: Mapping[str, Grade]) -> dict[str, float | None]:
 
 
 def _choose(
-    settings: MadqnSettings, rows: list[dict[str, Any]], folder: TrainingFolder, display: Display, trainer: Trainer
+    settings: Settings, rows: list[dict[str, Any]], folder: TrainingFolder, display: Display, trainer: Learner
 ) -> Path:
     """Validate the best states once more on further seeds, and keep the best of them."""
     best = sorted(rows, key=lambda row: (-row["score"], row["decisions"]))[: settings.finalists]
@@ -128,13 +120,13 @@ def _choose(
     return folder.best
 
 
-def _purpose(settings: MadqnSettings, folder: TrainingFolder, said: Mapping[str, Any]) -> Purpose:
+def _purpose(settings: Settings, folder: TrainingFolder, said: Mapping[str, Any]) -> Purpose:
     models = [exam.environment.environment.driving_model for exam in settings.exams]
     intervals = {model.decision_interval for model in models}
     if len(intervals) > 1:
         raise TrainingError(f"all exams must decide alike often, got intervals of {sorted(intervals)} s")
     return Purpose(
-        method=METHOD,
+        method=settings.learner,
         family=settings.family,
         features=VERSION,
         near=NEAR,
@@ -143,11 +135,22 @@ def _purpose(settings: MadqnSettings, folder: TrainingFolder, said: Mapping[str,
         target_speeds=tuple(sorted({model.target_speeds for model in models})),
         actions=tuple(map(str, ACTIONS[settings.family])),
         hidden=settings.hidden,
-        training={"command": folder.command, "config": folder.fingerprint, "seed": settings.seed, **said},
+        training={
+            "command": folder.command,
+            "config": folder.fingerprint,
+            "seed": settings.seed,
+            **_taught(settings),
+            **said,
+        },
+        form=settings.form,
     )
 
 
-def _write_curve(rows: list[Row] | list[dict[str, Any]], settings: MadqnSettings, folder: TrainingFolder) -> None:
+def _write_curve(rows: list[Row] | list[dict[str, Any]], settings: Settings, folder: TrainingFolder) -> None:
     write_text(folder.path / "curve.csv", curve_csv(rows))
     with whole_file(folder.path / "curve.png") as file:
-        file.write_bytes(curve_png(rows, f"MADQN, {settings.family}, seed {settings.seed}"))
+        file.write_bytes(curve_png(rows, f"{settings.learner}, {settings.family}, seed {settings.seed}"))
+
+
+def _taught(settings: Settings) -> dict[str, str]:
+    return {"teacher": settings.teacher} if settings.teacher else {}

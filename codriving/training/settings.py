@@ -2,13 +2,18 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from codriving.envs.reward import RewardWeights, reward_weights
 from codriving.errors import ConfigError
+from codriving.learning.forms import PERCEPTRON
 from codriving.learning.layout import FAMILIES
 from codriving.training.schedule import Linear
 from codriving.training.traffic import Traffic
 from codriving.training.validation import Exam
+
+if TYPE_CHECKING:
+    from codriving.training.trainer import Trainer
 
 LEAST_SEED = 10_000
 """Seeds below this are for tables alone."""
@@ -69,6 +74,10 @@ class MadqnSettings:
     finalists: int
     final_episodes: int
 
+    learner, form, teacher = "madqn", PERCEPTRON, ""
+    shared = True
+    """CAVs tell one another states and intents."""
+
     def __post_init__(self) -> None:
         if self.family not in FAMILIES:
             raise ConfigError(f"family must be one of {', '.join(FAMILIES)}, got {self.family!r}")
@@ -101,6 +110,12 @@ class MadqnSettings:
         if not self.exams or not any(kind.weight > 0 and kind.since == 0 for kind in self.traffic):
             raise ConfigError("traffic must hold a kind that is driven from the beginning, and exams at least one")
         reward_weights(self.reward)
+
+    def trainer(self) -> "Trainer":
+        """Return a training that has not begun."""
+        from codriving.training.trainer import Trainer
+
+        return Trainer(self)
 
     @property
     def weights(self) -> RewardWeights:

@@ -2,9 +2,11 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
@@ -19,6 +21,8 @@ from codriving.training.replay import Replay
 from codriving.training.settings import MadqnSettings
 from codriving.training.traffic import shares
 from codriving.training.validation import features_of
+
+NETWORK, REPLAY = "network.pt", "replay.npz"
 
 
 @dataclass(slots=True)
@@ -75,7 +79,7 @@ class Trainer:
         self.replay = Replay(settings.capacity, inputs, len(self._actions))
         self._pull = np.array([settings.faster if a is Action.FASTER else 1.0 for a in self._actions])
         self._roads = [
-            [(env, features_of(env, settings.family)) for env in kind.environments(settings.weights)]
+            [(env, features_of(env, settings.family, settings.shared)) for env in kind.environments(settings.weights)]
             for kind in settings.traffic
         ]
 
@@ -84,7 +88,12 @@ class Trainer:
         """The slow average as it is now, which is what is validated and kept."""
         return as_numpy(self.learner.target, live=False)
 
-    def episode(self) -> None:
+    @property
+    def decisions(self) -> int:
+        """Decisions of single agents so far."""
+        return self.counts.decisions
+
+    def advance(self) -> None:
         """Drive one episode and learn on the way."""
         settings, counts = self.settings, self.counts
         share = shares(settings.traffic, counts.decisions / settings.decisions)
@@ -128,17 +137,41 @@ class Trainer:
 
         return decide
 
-    def state(self) -> dict[str, Any]:
-        """Return what a training goes on from, besides the network and the replay."""
+    def section(self) -> dict[str, float | int | None]:
+        """Return what a row of the curve says besides the exams, and begin the next section."""
+        counts = self.counts
+        row = {
+            "decisions": counts.decisions,
+            "episodes": counts.episodes,
+            "updates": counts.updates,
+            "epsilon": round(self.settings.exploration.at(counts.decisions), 4),
+            "loss": round(counts.losses / counts.learned, 5) if counts.learned else None,
+            "train_success": round(counts.arrived / counts.driven, 4) if counts.driven else None,
+        }
+        counts.begin_section()
+        return row
+
+    def write(self, folder: Path) -> dict[str, Any]:
+        """Write the network and the replay, and return what else the training goes on from.
+
+        Args:
+            folder: Where to.
+        """
+        torch.save(self.learner.state(), folder / NETWORK)
+        np.savez(folder / REPLAY, **self.replay.state())  # type: ignore[arg-type]
         counts = {name: getattr(self.counts, name) for name in self.counts.__slots__}
         return {"counts": counts, "rng": self.rng.bit_generator.state}
 
-    def restore(self, state: dict[str, Any]) -> None:
-        """Go on from the state of another one.
+    def read(self, folder: Path, state: dict[str, Any]) -> None:
+        """Go on from what another one has written.
 
         Args:
-            state: Its state.
+            folder: Where to.
+            state: What it returned.
         """
+        self.learner.restore(torch.load(folder / NETWORK, weights_only=True))
+        with np.load(folder / REPLAY, allow_pickle=False) as replay:
+            self.replay.restore(dict(replay))
         self.counts = Counts(**state["counts"])
         self.rng.bit_generator.state = state["rng"]
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 from codriving.datatypes.outcome import Ending
 from codriving.errors import ConfigError
 from codriving.learning.features import Features
-from codriving.learning.network import Network, greedy
+from codriving.learning.forms import AnyNetwork
+from codriving.learning.network import greedy
 from codriving.training.episode import drive
 
 if TYPE_CHECKING:
@@ -69,18 +70,19 @@ class Grade:
     duration: float | None
 
 
-def examine(exam: Exam, network: Network, family: str, first_seed: int, episodes: int) -> Grade:
+def examine(exam: Exam, network: AnyNetwork, family: str, shared: bool, first_seed: int, episodes: int) -> Grade:
     """Drive an exam greedily.
 
     Args:
         exam: What is driven.
         network: Who decides.
         family: Family of the road.
+        shared: Whether CAVs share states and intents.
         first_seed: Seed of the first episode; the others follow it one by one.
         episodes: Number of episodes.
     """
     env = exam.environment
-    features = features_of(env, family)
+    features = features_of(env, family, shared)
     endings, durations = [], []
     for seed in range(first_seed, first_seed + episodes):
         for _ in drive(env, seed, features, family, lambda seen, masks: greedy(network(seen), masks)):
@@ -97,14 +99,15 @@ def examine(exam: Exam, network: Network, family: str, first_seed: int, episodes
     )
 
 
-def features_of(env: "ParallelDriving", family: str) -> Features:
-    """Return what cooperating agents observe of an environment.
+def features_of(env: "ParallelDriving", family: str, shared: bool) -> Features:
+    """Return what agents observe of an environment.
 
     Args:
         env: The environment.
         family: Family of its road.
+        shared: Whether they share states and intents.
     """
-    return Features(env.environment.road_map, env.environment.driving_model, family, shared=True)
+    return Features(env.environment.road_map, env.environment.driving_model, family, shared)
 
 
 def overall(grades: Sequence[Grade]) -> float:

@@ -1,0 +1,9 @@
+"""PPO: each CAV on its own, by a policy that one CAV has learned among human drivers (Schulman et al., 2017)."""
+
+from codriving.methods.learned import PROBABILITIES, Learned
+
+
+class Ppo(Learned):
+    """A policy of a single vehicle, on every CAV; others are strangers to it, as they were when it learned."""
+
+    name, shared, meaning = "ppo", False, PROBABILITIES

@@ -1,0 +1,29 @@
+"""TeLL: each CAV on its own, by a policy that learned with a teacher beside it (after Xu et al., 2025)."""
+
+from pathlib import Path
+
+from codriving.learning.layout import JUNCTION
+from codriving.learning.weights import load, shipped
+from codriving.methods.learned import PROBABILITIES, Learned
+
+
+class Tell(Learned):
+    """A policy of a single vehicle that attends to others one by one; its teacher is not there any more.
+
+    Nobody is asked while it drives, so that the reasoner is ``none``; the variant says who has taught it.
+
+    Args:
+        weights: File of weights of one's own; None takes those that are shipped for the family of the road.
+
+    Raises:
+        WeightsError: If the file is missing, damaged, or not of this method.
+    """
+
+    name, shared, meaning = "tell", False, PROBABILITIES
+
+    def __init__(self, weights: Path | None) -> None:
+        super().__init__(weights)
+        file = shipped(self.name, JUNCTION) if weights is None else weights
+        teacher = str(load(file).purpose.training.get("teacher", "")) or "nobody"
+        taught = f"taught by {teacher}"
+        self.variant = f"{self.variant}, {taught}" if self.variant else taught

@@ -1,0 +1,58 @@
+"""An actor that attends to others one by one: a token a slot, and the ego vehicle asks (TeLL, Xu et al., 2025)."""
+
+import torch
+from torch import nn
+
+from codriving.learning.attention import HEADS, WIDTH, Attention
+from codriving.learning.layout import EGO, SLOT, SLOTS
+from codriving.learning.network import FloatArray
+from codriving.training.double_dqn import as_numpy
+from codriving.training.perceptron import perceptron
+
+
+class AttentionActor(nn.Module):
+    """One layer of attention over slots, then a perceptron (the same function as ``learning.attention.Attention``).
+
+    Args:
+        features: Numbers in the features.
+        hidden: Units of each hidden layer of the perceptron.
+        outputs: Number of actions.
+    """
+
+    def __init__(self, features: int, hidden: tuple[int, ...], outputs: int) -> None:
+        super().__init__()
+        own = features - SLOTS * len(SLOT)
+        self.ego, self.other = nn.Linear(own, WIDTH), nn.Linear(len(SLOT), WIDTH)
+        self.query, self.key, self.value = (nn.Linear(WIDTH, WIDTH) for _ in range(3))
+        self.judge = perceptron((2 * WIDTH, *hidden, outputs))
+
+    def forward(self, observations: torch.Tensor) -> torch.Tensor:
+        """Return one number an action (n, actions).
+
+        Args:
+            observations: Features (n, features).
+        """
+        first, last = len(EGO), len(EGO) + SLOTS * len(SLOT)
+        slots = observations[:, first:last].reshape(-1, SLOTS, len(SLOT))
+        own = torch.cat([observations[:, :first], observations[:, last:]], 1)
+        ego = torch.relu(self.ego(own))
+        # The ego vehicle is a token as well, so that there is somebody to attend to on an empty road.
+        everyone = torch.cat([ego[:, None], torch.relu(self.other(slots))], 1)
+        there = torch.cat([torch.ones_like(slots[:, :1, 0]), slots[:, :, 0]], 1) > 0.0
+        shape = (-1, SLOTS + 1, HEADS, WIDTH // HEADS)
+        key, value = self.key(everyone).reshape(shape), self.value(everyone).reshape(shape)
+        query = self.query(ego).reshape(-1, 1, HEADS, WIDTH // HEADS)
+        scores = (query * key).sum(3) / (WIDTH // HEADS) ** 0.5
+        shares = torch.softmax(scores.masked_fill(~there[:, :, None], -1e9), 1)
+        seen = (shares[..., None] * value).sum(1).reshape(-1, WIDTH)
+        judged: torch.Tensor = self.judge(torch.cat([ego, seen], 1))
+        return judged
+
+    def as_numpy(self) -> Attention:
+        """Return the actor as numpy computes it."""
+
+        def plain(layer: nn.Linear) -> tuple[FloatArray, FloatArray]:
+            return layer.weight.detach().numpy().T.copy(), layer.bias.detach().numpy().copy()
+
+        layers = {name: plain(getattr(self, name)) for name in Attention.LAYERS}
+        return Attention(layers, as_numpy(self.judge, live=False))

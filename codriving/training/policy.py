@@ -1,0 +1,129 @@
+"""The policy of a single learner: an actor that keeps to what is allowed, a critic, and a pull towards a teacher."""
+
+from collections.abc import Callable
+from typing import Any
+
+import torch
+from stable_baselines3.common.policies import ActorCriticPolicy
+from torch import nn
+
+from codriving.learning.forms import AnyNetwork
+from codriving.training.attention import AttentionActor
+from codriving.training.double_dqn import as_numpy
+from codriving.training.perceptron import perceptron
+
+SURE = 0.9
+"""Probability of the advised action in the distribution of a teacher; the other actions share the rest."""
+
+
+class DriverPolicy(ActorCriticPolicy):
+    """Actor and critic for observations that are features, mask and advice in one row (see ``Sight``).
+
+    Stable-Baselines3 adds to its loss what ``evaluate_actions`` returns as entropy, times a coefficient. The divergence
+    from the teacher enters by the same door: entropy - pull KL(teacher || policy), with the pull in units of that
+    coefficient. So the loss is that of PPO plus beta KL (TeLL, Xu et al., 2025).
+
+    Args:
+        *args: As Stable-Baselines3 gives them.
+        features: Numbers in the features.
+        hidden: Units of each hidden layer.
+        attends: Whether the actor attends to others one by one.
+        **kwargs: As Stable-Baselines3 gives them.
+    """
+
+    def __init__(self, *args: Any, features: int, hidden: tuple[int, ...], attends: bool, **kwargs: Any) -> None:  # noqa: ANN401
+        self._features, self._hidden, self._attends = features, hidden, attends
+        self.pull = 0.0
+        super().__init__(*args, **kwargs)
+
+    def _build(self, lr_schedule: Callable[[float], float]) -> None:
+        """Make the networks; called by the class above."""
+        self._outputs = int(self.action_space.n)
+        self.actor: nn.Module = (
+            AttentionActor(self._features, self._hidden, self._outputs)
+            if self._attends
+            else perceptron((self._features, *self._hidden, self._outputs))
+        )
+        self.critic = perceptron((self._features, *self._hidden, 1))
+        for network in (self.actor, self.critic):
+            for layer in network.modules():
+                if isinstance(layer, nn.Linear):
+                    nn.init.orthogonal_(layer.weight, 2**0.5)
+                    nn.init.zeros_(layer.bias)
+        # A first policy that prefers nothing explores best.
+        last = [layer for layer in self.actor.modules() if isinstance(layer, nn.Linear)][-1]
+        nn.init.orthogonal_(last.weight, 0.01)
+        self.optimizer = torch.optim.Adam(self.parameters(), lr=lr_schedule(1), eps=1e-5)
+
+    def forward(
+        self, obs: torch.Tensor, deterministic: bool = False
+    ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+        """Return actions, values and the logarithms of the actions' probabilities.
+
+        Args:
+            obs: Observations (n, features + 2 actions).
+            deterministic: Whether the likeliest action is taken.
+        """
+        logs = self._logs(obs)
+        actions = logs.argmax(1) if deterministic else torch.multinomial(logs.exp(), 1).squeeze(1)
+        return actions, self.predict_values(obs), logs.gather(1, actions[:, None]).squeeze(1)
+
+    def evaluate_actions(
+        self, obs: torch.Tensor, actions: torch.Tensor
+    ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+        """Return values, logarithms of the actions' probabilities, and entropy less the pull towards the teacher.
+
+        Args:
+            obs: Observations (n, features + 2 actions).
+            actions: Actions that were taken (n,).
+        """
+        logs = self._logs(obs)
+        chosen = logs.gather(1, actions.long()[:, None]).squeeze(1)
+        entropy = -(logs.exp() * logs).sum(1)
+        if self.pull > 0:
+            entropy = entropy - self.pull * self.divergence(obs, logs)
+        return self.predict_values(obs), chosen, entropy
+
+    def divergence(self, obs: torch.Tensor, logs: torch.Tensor) -> torch.Tensor:
+        """Return KL(teacher || policy) of each row; 0 where there is no advice.
+
+        Args:
+            obs: Observations (n, features + 2 actions).
+            logs: Logarithms of the policy's probabilities (n, actions).
+        """
+        mask, advice = self._mask(obs), obs[:, self._features + self._outputs :]
+        others = mask & (advice < 0.5)
+        rest = others.sum(1, keepdim=True)
+        teacher = torch.where(advice > 0.5, torch.where(rest > 0, SURE, 1.0), others * (1 - SURE) / rest.clamp(min=1))
+        known = advice.sum(1, keepdim=True) > 0.5
+        terms = torch.where(teacher > 0, teacher * (teacher.clamp(min=1e-9).log() - logs), 0.0)
+        return torch.where(known, terms, 0.0).sum(1)
+
+    def predict_values(self, obs: torch.Tensor) -> torch.Tensor:
+        """Return what the critic expects (n, 1).
+
+        Args:
+            obs: Observations (n, features + 2 actions).
+        """
+        values: torch.Tensor = self.critic(obs[:, : self._features])
+        return values
+
+    def _mask(self, obs: torch.Tensor) -> torch.Tensor:
+        return obs[:, self._features : self._features + self._outputs] > 0.5
+
+    def _logs(self, obs: torch.Tensor) -> torch.Tensor:
+        """Logarithms of probabilities; those of forbidden actions are so low that they are never drawn."""
+        logits = self.actor(obs[:, : self._features]).masked_fill(~self._mask(obs), -1e9)
+        return torch.log_softmax(logits, 1)
+
+
+def actor_as_numpy(actor: nn.Module) -> AnyNetwork:
+    """Return an actor as numpy computes it.
+
+    Args:
+        actor: The actor of a ``DriverPolicy``.
+    """
+    if isinstance(actor, AttentionActor):
+        return actor.as_numpy()
+    assert isinstance(actor, nn.Sequential)
+    return as_numpy(actor, live=False)

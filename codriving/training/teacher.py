@@ -1,0 +1,139 @@
+"""Who teaches TeLL: a language model, or the rule that stands in for it offline."""
+
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.situation import Situation
+from codriving.datatypes.world import WorldState
+from codriving.errors import ConfigError
+from codriving.geometry.road_map import RoadMap
+from codriving.methods.alone import Alone
+from codriving.methods.ports import Reasoner
+from codriving.prediction.forecast import HORIZON
+from codriving.prediction.rollout import rollout
+from codriving.single_vehicle.protocol import Driver
+from codriving.training.schedule import Linear
+
+if TYPE_CHECKING:
+    from codriving.reasoning.decision.model_decider import ModelDecider
+
+
+class Teacher(Protocol):
+    """Says what it would do."""
+
+    def advise(self, world: WorldState) -> Mapping[str, Action]:
+        """Return what CAVs should do, by id; nothing where it is not asked.
+
+        Args:
+            world: The world, of which each CAV sees its own part; call once a decision, from the beginning of an
+                episode.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Guidance:
+    """How a student is guided (TeLL, Xu et al., 2025).
+
+    Attributes:
+        llm: Who teaches: a language model, or ``offline`` for the driver below.
+        driver: The rule that judges every action; it decides where no model is asked, and tells a model what it found.
+        every: A teacher is asked at every so many decisions of an episode.
+        pull: Weight of the divergence from the teacher in the loss, by decisions.
+
+    Raises:
+        ConfigError: If a value is out of range.
+    """
+
+    llm: Reasoner
+    driver: Driver
+    every: int
+    pull: Linear
+
+    def __post_init__(self) -> None:
+        if self.every < 1:
+            raise ConfigError(f"every must be 1 or more, got {self.every}")
+        if min(self.pull.start, self.pull.end) < 0:
+            raise ConfigError(f"pull must be 0 or more, got {self.pull.start:g} to {self.pull.end:g}")
+
+    def teacher(self, road_map: RoadMap, model: DrivingModel) -> "Advisor":
+        """Return a teacher for one of the environments.
+
+        Args:
+            road_map: Its road, precomputed.
+            model: How CAVs answer to actions.
+        """
+        return Advisor(self, road_map, model)
+
+
+class Advisor:
+    """Decides for a CAV as a driver who is on its own would: by a rule, or by what a model says.
+
+    Args:
+        guidance: Who is asked, and how often.
+        road_map: The precomputed road.
+        model: How CAVs answer to actions.
+
+    Attributes:
+        asks: Whether advice is still wanted; nobody is asked once it has no weight.
+    """
+
+    def __init__(self, guidance: Guidance, road_map: RoadMap, model: DrivingModel) -> None:
+        # Drivers remember their CAVs by name, which is the same in all environments.
+        self._alone = Alone(deepcopy(guidance.driver))
+        self._every, self._road = guidance.every, (road_map, model)
+        self._decider = _decider(guidance.llm)
+        self.asks = True
+
+    def advise(self, world: WorldState) -> Mapping[str, Action]:
+        """Return what CAVs should do, by id.
+
+        Args:
+            world: The world; call once a decision, from the beginning of an episode.
+
+        Raises:
+            ModelUnavailableError: If a model is asked and does not answer.
+            SpendingLimitError: If the tokens or the money that may be spent are used up.
+        """
+        if world.step == 0:
+            # Nothing is drawn by those who drive alone, so that any seed will do.
+            self._alone.reset(*self._road, 0)
+        if not self.asks or world.step % self._every:
+            return {}
+        deliberation = self._alone.act(world)
+        if self._decider is None:
+            return deliberation.actions
+        weighed = [_weighed(situation, self._road[1]) for situation in deliberation.situations]
+        return {d.ego: d.action for d in self._decider.decide(weighed)}
+
+
+def _weighed(situation: Situation, model: DrivingModel) -> Situation:
+    """Say of each action how far it gets a CAV, and when to its conflicts, as a model is told of actions elsewhere."""
+    ego, target = situation.scene.ego, situation.scene.intent.target_speed
+    plans = tuple((a.action, Action.FASTER) for a in situation.assessments)
+    steps = round(HORIZON / model.step)
+    travelled = rollout(model, [ego.speed], [target], plans, steps)[0][0]
+    weighed = []
+    for assessment, places in zip(situation.assessments, travelled, strict=True):
+        after = [int(np.searchsorted(places, c.distances[0])) for c in situation.conflicts]
+        arrivals = tuple(k * model.step if k <= steps else float("inf") for k in after)
+        weighed.append(replace(assessment, arrivals=arrivals, progress=float(places[-1])))
+    return replace(situation, assessments=tuple(weighed))
+
+
+def _decider(llm: Reasoner) -> "ModelDecider | None":
+    chat = llm.chat()
+    if chat is None:
+        return None
+    from codriving.llm.ledger import Ledger
+    from codriving.reasoning.decision.model_decider import ModelDecider
+    from codriving.reasoning.prompts.render import load_prompts
+
+    ask_plain = bool(getattr(llm, "ask_plain", False))
+    return ModelDecider(chat, load_prompts(getattr(llm, "prompts", None)), Ledger(), ask_plain, sees_conflicts=True)
