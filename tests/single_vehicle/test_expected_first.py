@@ -24,9 +24,13 @@ def first(junction: Junction, one: Car, other: Car) -> dict[str, tuple[bool, str
     found = {}
     for me, you in ((one, other), (other, one)):
         for e in met(seen(junction, one, other, ego=me.id)):
-            if e.conflict.routes == (me.route, you.route):
+            if _real(e, me, you):
                 found[me.id] = goes_first(e, junction.road_map, TIE)
     return found
+
+
+def _real(e: Encounter, me: Car, you: Car) -> bool:
+    return e.conflict.routes == (me.route, you.route)
 
 
 ways = st.tuples(st.sampled_from(ROUTES), st.floats(60.0, 118.0), st.floats(0.0, 9.0))
@@ -37,8 +41,15 @@ ways = st.tuples(st.sampled_from(ROUTES), st.floats(60.0, 118.0), st.floats(0.0,
 def test_two_never_both_go_first(
     junction: Junction, one: tuple[str, float, float], other: tuple[str, float, float]
 ) -> None:
-    found = first(junction, car("CAV1", *one), car("CAV2", *other))
+    """Where each can stop is known to itself alone; the rest holds for those of whom the other judges alike."""
+    cars = car("CAV1", *one), car("CAV2", *other)
+    found = first(junction, *cars)
     assume(len(found) == 2)
+    bound = {
+        me.id: next((e.bound, e.other_bound) for e in met(seen(junction, *cars, ego=me.id)) if _real(e, me, you))
+        for me, you in (cars, cars[::-1])
+    }
+    assume(bound["CAV1"] == bound["CAV2"][::-1])
     assert not (found["CAV1"][0] and found["CAV2"][0])
 
 

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+pytest.importorskip("torch")
+
 from codriving.datatypes.outcome import Ending
 from codriving.training.episode import Moment
 from codriving.training.nstep import Trail, Transition
