@@ -26,7 +26,7 @@ run: $(READY) ## drive 20 episodes at the intersection and print the table
 	$(BIN)/codriving run scenario=intersection $(ARGS)
 
 test: $(READY) ## run the tests
-	$(BIN)/python -m pytest $(ARGS)
+	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
 # A stamp of its own: only training needs PyTorch.
 $(TORCH): $(READY) requirements-train.lock

@@ -6,6 +6,7 @@ CodrivingError                      anything this program raises on purpose
 │   │   └── ScenarioError           a scenario whose vehicles cannot be placed or whose road is broken
 │   ├── RunFolderError              a run folder that is unwritable, of another config, or damaged
 │   ├── FilmError                   a film that cannot be written
+│   ├── MemoryFileError             a file of memories that is missing, damaged, or of another embedder or version
 │   ├── WeightsError                trained weights that are missing, damaged, or meant for something else
 │   ├── TrainingError               a training that cannot begin or go on
 │   └── ModelError                  a language model that cannot be used, or must not be used any more
@@ -37,6 +38,10 @@ class RunFolderError(UserError):
 
 class FilmError(UserError):
     """Raised when a film cannot be written."""
+
+
+class MemoryFileError(UserError):
+    """Raised when a file of memories is missing, damaged, of another embedder or version, or cannot be written."""
 
 
 class WeightsError(UserError):

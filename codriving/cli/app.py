@@ -10,7 +10,9 @@ from codriving import __version__
 from codriving.cli.ablate import ablate
 from codriving.cli.check import check
 from codriving.cli.compare import compare
+from codriving.cli.learn import learn
 from codriving.cli.list import list_choices
+from codriving.cli.memory import memory
 from codriving.cli.replay import replay
 from codriving.cli.run import run
 from codriving.cli.train import train
@@ -69,8 +71,10 @@ def _options(
 app.command(epilog="Example: codriving run scenario=intersection episodes=50 seed=0 workers=2 run=first")(run)
 app.command(epilog="Example: codriving ablate scenario=intersection episodes=20")(ablate)
 app.command(epilog="Example: codriving compare baselines scenario=intersection episodes=20")(compare)
+app.command(epilog="Example: codriving learn scenario=intersection interactions=0,5,20 episodes=50 run=first")(learn)
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
+app.add_typer(memory, name="memory")
 app.command(epilog="Example: codriving train madqn --family junction seed=1")(train)
 app.command("list", epilog="Example: codriving list scenarios")(list_choices)
 

@@ -13,8 +13,8 @@ EXPERIMENTS = "experiments"
 LISTED = (*GROUPS, EXPERIMENTS)
 """Every group that has choices."""
 
-SWEPT = tuple(group for group in GROUPS if group != "launcher")
-"""Groups of which one command can take several choices."""
+SWEPT = tuple(group for group in GROUPS if group not in ("launcher", "memory"))
+"""Groups of which one command can take every choice; a snapshot has to be named, so not every memory can be taken."""
 
 ALL = "all"
 """The word for every choice of a group; no YAML may be called so."""
@@ -46,7 +46,7 @@ FIRST = {
     "method": TAKING_PART["all"],
     "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
     "llm": ("offline",),
-    "memory": ("off",),
+    "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),
 }
 """Choices that come before the others: in the paper's order, or from the least to the most; the rest goes by name."""

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render", "prompts")
@@ -49,6 +49,10 @@ def fingerprint(resolved: Mapping[str, Any]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
+SNAPSHOT, AUTO = "snapshot", "auto"
+"""Where a memory's snapshot is told by its contents, its file may lie anywhere."""
+
+
 def relevant(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out what has no effect on results.
 
@@ -56,15 +60,18 @@ def relevant(resolved: Mapping[str, Any]) -> dict[str, Any]:
         resolved: The composed config as a plain dict.
 
     Returns:
-        A copy; what other nodes hold of ``llm`` is left out likewise.
+        A copy; what other nodes hold of ``llm`` and ``memory`` is left out likewise.
     """
-    model = resolved.get("llm")
-    return {key: _without(value, model) for key, value in resolved.items() if key not in WITHOUT_EFFECT}
+    dropped: list[tuple[object, Sequence[str]]] = [(resolved.get("llm"), HOW_A_MODEL_IS_ASKED)]
+    memory = resolved.get("memory")
+    if isinstance(memory, Mapping) and memory.get(SNAPSHOT, AUTO) != AUTO:
+        dropped.append((memory, ("file", "embedding_deadline")))
+    return {key: _without(value, dropped) for key, value in resolved.items() if key not in WITHOUT_EFFECT}
 
 
-def _without(node: Any, model: object) -> Any:  # noqa: ANN401 - any plain value
-    """A node without the settings of how a model is asked, wherever the model stands in it."""
+def _without(node: Any, dropped: Sequence[tuple[object, Sequence[str]]]) -> Any:  # noqa: ANN401 - any plain value
+    """A node without some keys of some nodes, wherever these stand in it."""
     if not isinstance(node, Mapping):
-        return [_without(value, model) for value in node] if isinstance(node, list) else node
-    dropped = HOW_A_MODEL_IS_ASKED if node == model else ()
-    return {key: _without(value, model) for key, value in node.items() if key not in dropped}
+        return [_without(value, dropped) for value in node] if isinstance(node, list) else node
+    keys = {key for wanted, names in dropped if node == wanted for key in names}
+    return {key: _without(value, dropped) for key, value in node.items() if key not in keys}

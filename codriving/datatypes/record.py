@@ -38,6 +38,7 @@ class EpisodeRecord:
         participants: Who took part, in order of id.
         decisions: Number of decision steps.
         counts: Further counters a method reports (fallbacks, repaired orders, cost, ...), summed over the episode.
+        memory: What was recalled from; empty without a memory.
     """
 
     scenario: str
@@ -50,3 +51,4 @@ class EpisodeRecord:
     participants: tuple[Participant, ...]
     decisions: int
     counts: dict[str, int | float]
+    memory: str = ""

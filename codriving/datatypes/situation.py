@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.experience import Memory
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.scene_description import SceneDescription
 
@@ -46,7 +47,7 @@ class Situation:
     order: PassingOrder
     clear_times: tuple[float, ...]
     assessments: tuple[ActionAssessment, ...]
-    memories: tuple[str, ...] = ()
+    memories: tuple[Memory, ...] = ()
 
     @property
     def allowed(self) -> tuple[Action, ...]:
@@ -62,8 +63,10 @@ class Decision:
         ego: Id of the CAV.
         action: The action.
         reason: Why, in one sentence.
+        recalled: Numbers of the experiences that changed the decision.
     """
 
     ego: str
     action: Action
     reason: str
+    recalled: tuple[int, ...] = ()

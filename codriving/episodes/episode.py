@@ -117,6 +117,7 @@ def run_episode(
         participants=_participants(trajectory),
         decisions=len(log.seconds),
         counts=dict(sorted(log.counts.items())),
+        memory=labels.memory,
     )
     return EpisodeResult(
         record,
@@ -145,6 +146,9 @@ def _drive(environment: Environment, method: Method, seed: int, log: _Log, go_on
         log.decisions.append(deliberation.as_dict())
         log.add(deliberation.counts, getattr(deliberation, "transcript", ()))
         world = environment.step(deliberation.actions)
+    conclude = getattr(method, "conclude", None)
+    if conclude is not None:
+        log.add(*conclude(world, outcome))
     return outcome
 
 
@@ -187,6 +191,7 @@ def failed_result(labels: Labels, seed: int, error: BaseException, trace: str = 
         participants=(),
         decisions=0,
         counts={},
+        memory=labels.memory,
     )
     return EpisodeResult(record, None, (), 0.0, (), traceback=trace)
 

@@ -15,12 +15,14 @@ class Labels:
         method: Name of the method.
         variant: Name of the CDA variant.
         reasoner: Who reasons: ``rules`` or the name of a model.
+        memory: What is recalled from; empty without a memory.
     """
 
     scenario: str
     method: str
     variant: str
     reasoner: str
+    memory: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from typing import Any, Protocol
 
 from codriving.config.build import build
 from codriving.experiment.cells import Cell
+from codriving.experiment.nodes import holds
 
 REPLAY = "replay"
 """The setting of ``llm.cache`` with which no server is asked."""
@@ -91,20 +92,6 @@ def model_of(resolved: Mapping[str, Any]) -> Model | None:
     asks = hasattr(model, "max_concurrency") and hasattr(model, "chat") and model.chat() is not None
     found: Model | None = model if asks else None
     return found
-
-
-def holds(node: object, wanted: object) -> bool:
-    """Tell whether a config node is what is wanted or has it somewhere inside.
-
-    Args:
-        node: A node of plain values.
-        wanted: What is looked for.
-    """
-    if node == wanted:
-        return True
-    if isinstance(node, Mapping):
-        return any(holds(value, wanted) for value in node.values())
-    return isinstance(node, list) and any(holds(value, wanted) for value in node)
 
 
 class Asked:

@@ -79,6 +79,8 @@ def make_cell(resolved: Mapping[str, Any], point: Point | None = None) -> Cell:
         method=_label(method, "name", "method"),
         variant=_label(method, "variant", "method"),
         reasoner=_label(method, "reasoner", "method"),
+        # A method that has no memory need not say so.
+        memory=_label(method, "remembers", "method") if hasattr(method, "remembers") else "",
     )
     metrics = _label(build(resolved["metrics"], plugins, "metrics"), "name", "metrics")
     return Cell(folder_name(labels), labels, resolved, metrics, swept_values(point.swept, resolved) if point else {})

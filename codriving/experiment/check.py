@@ -9,8 +9,9 @@ from codriving.config.choices import choices
 from codriving.config.compose import compose
 from codriving.config.validate import validate
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError
-from codriving.experiment.asking import REPLAY, holds, model_of
+from codriving.experiment.asking import REPLAY, model_of
 from codriving.experiment.checked import verdict
+from codriving.experiment.nodes import holds, replaced
 from codriving.experiment.objects import BuildObjects
 
 SEED, STEP = 10_001, 4
@@ -73,12 +74,12 @@ def _settings(resolved: Mapping[str, Any]) -> dict[str, Any]:
         llm["cache"] = "off"
     if "ask_plain" in llm:
         llm["ask_plain"] = True
-    return {**resolved, "llm": llm, "method": _replaced(resolved["method"], resolved["llm"], llm)}
+    return {**resolved, "llm": llm, "method": replaced(resolved["method"], resolved["llm"], llm)}
 
 
 def _ask(resolved: Mapping[str, Any]) -> tuple[float, Any]:
     """Drive to the scene by the rules, then ask the model; gives the simulated time and what was deliberated."""
-    rules = {**resolved, "method": _replaced(resolved["method"], resolved["llm"], _RULES)}
+    rules = {**resolved, "method": replaced(resolved["method"], resolved["llm"], _RULES)}
     environment, driver, _ = BuildObjects({"check": rules})("check")
     world = environment.reset(SEED)
     driver.reset(environment.road_map, environment.driving_model, SEED)
@@ -96,12 +97,3 @@ def _is_open(line: Mapping[str, Any]) -> bool:
     cavs = line.get("cavs", [])
     names = {cav["id"] for cav in cavs}
     return any({p["first"], p["second"]} <= names for cav in cavs for p in cav["order"]["precedences"])
-
-
-def _replaced(node: Any, old: object, new: Any) -> Any:  # noqa: ANN401 - any plain value
-    """A config node with something in it replaced, wherever it stands."""
-    if node == old:
-        return new
-    if isinstance(node, Mapping):
-        return {key: _replaced(value, old, new) for key, value in node.items()}
-    return [_replaced(value, old, new) for value in node] if isinstance(node, list) else node

@@ -20,6 +20,7 @@ from codriving.experiment.film import FilmEpisode
 from codriving.experiment.further import Driven, Further
 from codriving.experiment.keep import KeepEpisode
 from codriving.experiment.plan import Plan
+from codriving.experiment.remembering import growing
 from codriving.experiment.shares import run_shares
 from codriving.experiment.stopping import HaltedError, Interrupted
 from codriving.reports.display import Display
@@ -116,7 +117,7 @@ def execute(
         missing = [unit for unit in units if unit not in records]
         film = FilmEpisode(folder.path, {entry.folder: entry for entry in entries}) if plan.render else None
         unfilmed = [unit for unit in units if film and unit in records and film.lacks(unit)]
-        resolved = {cell.folder: cell.resolved for cell in cells}
+        resolved = {cell.folder: growing(cell.resolved, folder.path, cell.folder) for cell in cells}
         keep = KeepEpisode(folder.path, variables_in([cell.resolved for cell in cells]))
         job = Job({cell.folder: cell.labels for cell in cells}, build(resolved), keep, film)
         failed: tuple[Report, ...] = ()
@@ -139,7 +140,7 @@ def execute(
             folder.clean()
         everything = _records(folder, entries, plan.seeds, records, errors=True)
         rows = [[everything[Unit(cell.folder, seed)] for seed in plan.seeds] for cell in cells]
-        driven = Driven(cells, rows, _timings(folder, cells, rows))
+        driven = Driven(cells, rows, _timings(folder, cells, rows), folder.path)
         tables = _tables(plan, driven, paper or Paper())
         extra = extend(driven)
         _write(folder, tables, _timing_table(driven), extra)

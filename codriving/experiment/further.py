@@ -20,11 +20,13 @@ class Driven:
         cells: Its cells, in the order of the tables.
         records: The records of each cell, by seed.
         timings: What each of them cost, None where that is lost.
+        folder: The run folder.
     """
 
     cells: Sequence[Cell]
     records: Sequence[Sequence[EpisodeRecord]]
     timings: Sequence[Sequence[Timing | None]]
+    folder: Path = Path()
 
     @property
     def metrics(self) -> str:

@@ -13,6 +13,7 @@ from codriving.experiment.cells import Cell, make_cell
 from codriving.experiment.configs import composed, each_cell, validated
 from codriving.experiment.naming import distinct, repeated
 from codriving.experiment.objects import modules_to_preload
+from codriving.experiment.remembering import pinned
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,7 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
         # The simulator's import takes a second: let it pass while the configs are checked here.
         launcher.prepare(first["workers"], first["episodes"] * len(configs), modules_to_preload(configs))
     validated(points, configs)
+    configs = each_cell(points, configs, pinned)
     pairs = list(zip(configs, points, strict=True))
     cells = each_cell(points, pairs, lambda pair: make_cell(*pair))
     return Plan(

@@ -74,7 +74,8 @@ def run_ablation(overrides: Sequence[str], config_dir: Path | None = None) -> in
     Raises:
         UserError: If the config or the run folder cannot be used.
     """
-    return command("ablate", ablation_points(expand(overrides, config_dir)), overrides, config_dir)
+    points = ablation_points(expand(overrides, config_dir))
+    return command("ablate", points, overrides, config_dir, check=_refuse_alike)
 
 
 def _refuse_alike(plan: Plan) -> None:
@@ -125,10 +126,23 @@ def drive(
         UserError: If the config or the run folder cannot be used.
         Interrupted: If the user stops it; finished episodes are kept.
     """
-    return _run(make_plan(points, config_dir), extend)
+    return drive_plan(make_plan(points, config_dir), extend)
 
 
-def _run(plan: Plan, extend: Callable[[Driven], Further] | None) -> Finished:
+def drive_plan(plan: Plan, extend: Callable[[Driven], Further] | None = None) -> Finished:
+    """Drive what a plan says, or what is missing of it, with a progress display and without a table.
+
+    Args:
+        plan: The plan.
+        extend: Makes what the command has beyond the tables of every run.
+
+    Returns:
+        The finished run.
+
+    Raises:
+        UserError: If the run folder cannot be used.
+        Interrupted: If the user stops it; finished episodes are kept.
+    """
     preload = [*modules_to_preload(plan.configs.values()), *(["codriving.pictures.screening"] if plan.render else [])]
     further = extend or (lambda _: Further())
 
@@ -144,6 +158,7 @@ def command(
     overrides: Sequence[str],
     config_dir: Path | None,
     extend: Callable[[Driven], Further] | None = None,
+    check: Callable[[Plan], None] = lambda _: None,
 ) -> int:
     """Do what a command of several cells does: drive them, print their table, say how to go on.
 
@@ -153,6 +168,7 @@ def command(
         overrides: What the user gave.
         config_dir: A folder of the user's own configs.
         extend: Makes what the command has beyond the tables of every run.
+        check: Refuses a plan that the command cannot do anything with, before anything is driven.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -161,10 +177,9 @@ def command(
         UserError: If the config or the run folder cannot be used.
     """
     plan = make_plan(points, config_dir)
-    if name == "ablate":
-        _refuse_alike(plan)
+    check(plan)
     try:
-        finished = _run(plan, extend)
+        finished = drive_plan(plan, extend)
     except Interrupted as stop:
         again = resume_command(name, overrides, config_dir, stop.folder.name)
         print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)

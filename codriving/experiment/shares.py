@@ -1,16 +1,17 @@
-"""One batch in two shares: who only computes in processes, who waits for a language model in threads."""
+"""One batch in shares: who computes in processes, who waits for a language model in threads, who learns in order."""
 
 from collections.abc import Sequence
 
 from codriving.episodes.batch import run_batch
 from codriving.episodes.failures import FailuresInARow
 from codriving.episodes.job import Job, Report
-from codriving.episodes.launcher import Launcher, Processes
+from codriving.episodes.launcher import Launcher, Processes, Serial
 from codriving.episodes.progress import Progress
 from codriving.episodes.threads import Threads
 from codriving.episodes.unit import Unit
 from codriving.experiment.asking import Asked
 from codriving.experiment.plan import Plan
+from codriving.experiment.remembering import learns
 
 
 def run_shares(
@@ -26,7 +27,8 @@ def run_shares(
 
     Episodes whose method asks no language model are driven as the plan says. Those that ask one wait for its server
     nearly all the time, and share one client with its limits: they are driven in threads of this process, as many at
-    once as requests may be under way, unless the plan says otherwise than in processes.
+    once as requests may be under way, unless the plan says otherwise than in processes. Episodes that learn from one
+    another come one after the other, each cell in the order of its seeds.
 
     Args:
         missing: What to drive.
@@ -44,9 +46,15 @@ def run_shares(
         UserError: If the batch has to stop.
         KeyboardInterrupt: If the user stops it; what was saved stays.
     """
-    waiting = [unit for unit in missing if unit.cell in asked.models]
-    computing = [*(unit for unit in missing if unit.cell not in asked.models), *unfilmed]
+    in_order = {cell.folder for cell in plan.cells if learns(cell.resolved)} & {unit.cell for unit in missing}
+    learning = [unit for unit in missing if unit.cell in in_order]
+    independent = [unit for unit in missing if unit.cell not in in_order]
+    waiting = [unit for unit in independent if unit.cell in asked.models]
+    computing = [*(unit for unit in independent if unit.cell not in asked.models), *unfilmed]
     failed: list[Report] = []
+    if learning:
+        watch = FailuresInARow(asked.names, asked.patience)
+        failed += run_batch(learning, job, Serial(), 1, preload, progress, watch.note).failed
     if computing:
         failed += run_batch(computing, job, plan.launcher, plan.workers, preload, progress).failed
     if waiting:

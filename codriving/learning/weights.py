@@ -10,7 +10,8 @@ from typing import Any, Self
 
 import numpy as np
 from safetensors import SafetensorError
-from safetensors.numpy import load_file, save_file
+from safetensors.numpy import load_file
+from safetensors.numpy import save as packed
 
 from codriving.errors import WeightsError
 from codriving.learning.actions import ACTIONS
@@ -160,7 +161,9 @@ def save(file: Path, trained: Trained) -> None:
         file: File of the weights; its folder must exist.
         trained: What is written.
     """
-    save_file({name: np.ascontiguousarray(tensor) for name, tensor in tensors(trained.network).items()}, file)
+    arrays = {name: np.ascontiguousarray(tensor) for name, tensor in tensors(trained.network).items()}
+    # Not by the library's own file, which only its owner may read.
+    file.write_bytes(packed(arrays))
     sidecar(file).write_text(trained.purpose.written(), encoding="utf-8", newline="\n")
 
 

@@ -4,7 +4,7 @@ import asyncio
 import logging
 import os
 from types import ModuleType
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 from codriving.llm.extract import clean
 from codriving.llm.faults import fault_of
@@ -47,9 +47,7 @@ class LiteLLMSender:
 
     async def load(self) -> None:
         """Import LiteLLM and what it imports in its first call, which takes seconds."""
-        async with _loading:
-            if not _loaded:
-                _loaded.append(await _import())
+        await load_litellm()
 
     async def send(self, request: Request, form: str, key: str | None, deadline: float) -> Reply:
         """See ``Sender``."""
@@ -63,7 +61,7 @@ class LiteLLMSender:
         try:
             response = await _loaded[0].acompletion(
                 model=request.model,
-                custom_llm_provider=_provider(request),
+                custom_llm_provider=provider_of(request.model, request.api_base),
                 messages=[{"role": m.role, "content": m.content} for m in messages],
                 api_base=request.api_base,
                 api_key=key or NO_KEY,
@@ -84,6 +82,14 @@ _loaded: list[Any] = []
 _loading = asyncio.Lock()
 
 
+async def load_litellm() -> ModuleType:
+    """Import LiteLLM and what it imports in its first call, which takes seconds; only the first time."""
+    async with _loading:
+        if not _loaded:
+            _loaded.append(await _import())
+    return cast(ModuleType, _loaded[0])
+
+
 async def _import() -> ModuleType:
     """Import LiteLLM, make it keep quiet, and give it one way of sending for all providers."""
     os.environ.setdefault("LITELLM_LOCAL_MODEL_COST_MAP", "True")
@@ -94,6 +100,8 @@ async def _import() -> ModuleType:
 
     litellm.suppress_debug_info = True
     litellm.telemetry = False
+    # For embeddings a 0 of the call counts as nothing said; retries have one owner.
+    litellm.DEFAULT_MAX_RETRIES = 0  # type: ignore[attr-defined]
     for name in ("LiteLLM", "httpx", "openai"):
         # Their lines may hold addresses with keys; what goes wrong is told by us.
         logging.getLogger(name).setLevel(logging.CRITICAL)
@@ -113,12 +121,17 @@ async def _import() -> ModuleType:
     return litellm
 
 
-def _provider(request: Request) -> str | None:
-    """Name the protocol where a server of one's own is given and the model's name does not say it."""
-    if request.api_base is None:
+def provider_of(model: str, api_base: str | None) -> str | None:
+    """Name the protocol where a server of one's own is given and the model's name does not say it.
+
+    Args:
+        model: Model, as LiteLLM calls it.
+        api_base: Address of the server; None for the provider's own.
+    """
+    if api_base is None:
         return None
     try:
-        _loaded[0].get_llm_provider(model=request.model)
+        _loaded[0].get_llm_provider(model=model)
     except Exception:
         return _COMPATIBLE
     return None

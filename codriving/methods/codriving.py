@@ -3,10 +3,14 @@
 from typing import Any
 
 from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.experience import Experience, Interaction
+from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
+from codriving.memory.protocol import CaseMemory
 from codriving.methods.deliberation import Deliberation
+from codriving.methods.experience_log import ExperienceLog
 from codriving.methods.perception import Perception
 from codriving.methods.pipeline import Pipeline
 from codriving.methods.ports import Reasoner, check_prompts, ports
@@ -28,7 +32,7 @@ class CoDriving:
     Args:
         cda: Which sub-modules of the reasoning are there.
         llm: Who reasons.
-        memory: Experiences to recall; None for the framework without its memory module.
+        memory: Experiences to recall, and perhaps to learn from; None for the framework without its memory module.
         margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
 
     Raises:
@@ -37,12 +41,17 @@ class CoDriving:
 
     name = "codriving"
 
-    def __init__(self, cda: CdaLevel, llm: Reasoner, memory: object | None, margin: float) -> None:
+    def __init__(self, cda: CdaLevel, llm: Reasoner, memory: CaseMemory | None, margin: float) -> None:
         if not 0 <= margin <= 5:
             raise ConfigError(f"margin must be 0 to 5 s, got {margin:g}")
         check_prompts(llm)
+        if memory is not None and memory.reflections and llm.chat() is None:
+            raise ConfigError(
+                "memory.reflection=llm needs a language model; set llm= to one, or memory.reflection=rules"
+            )
         self.cda, self.llm, self.memory, self.margin = cda, llm, memory, margin
         self.variant, self.reasoner = cda.variant, llm.name
+        self.remembers = memory.label if memory is not None else ""
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Fill the slots for a new episode.
@@ -78,8 +87,13 @@ class CoDriving:
             safety=ThreeLayers() if self.cda.safety_check else NoCheck(),
             decider=decider,
             margin=self.margin,
+            memory=self.memory,
             ledger=ledger,
         )
+        self._road_map, self._seed = road_map, seed
+        self._log = ExperienceLog(road_map, model) if self.memory is not None and self.memory.learns else None
+        if self.memory is not None:
+            self.memory.begin(seed)
 
     def act(self, world: WorldState) -> Deliberation:
         """Decide for every CAV on the road.
@@ -87,7 +101,40 @@ class CoDriving:
         Args:
             world: The world.
         """
-        return self._pipeline.act(world)
+        deliberation = self._pipeline.act(world)
+        if self._log is not None:
+            self._log.note(world, deliberation.situations, deliberation.decisions)
+        return deliberation
+
+    def conclude(self, world: WorldState, outcome: Outcome) -> tuple[dict[str, float], list[dict[str, Any]]]:
+        """Learn from an episode that has come to its end, if there is a memory that learns.
+
+        Args:
+            world: The world at the end.
+            outcome: How it ended.
+
+        Returns:
+            Counters by column, and lines of the transcript.
+        """
+        if self._log is None or self.memory is None:
+            return {}, []
+        experiences = self._log.conclude(world, outcome.collision)
+        counts, lines = self._reflect(experiences, world.time)
+        interaction = Interaction(self._road_map.road.name, self._seed, self.name, self.variant, self.reasoner)
+        new = self.memory.learn(interaction, experiences)
+        return {**counts, "experiences": len(experiences), "experiences_new": new}, lines
+
+    def _reflect(self, experiences: list[Experience], time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:
+        """Let a language model write the lessons of mistakes, in place, if the memory wants that."""
+        chat = self.llm.chat()
+        if self.memory is None or not self.memory.reflections or chat is None or self._ledger is None:
+            return {}, []
+        from codriving.methods.reflection import Reflection
+        from codriving.reasoning.prompts.render import load_prompts
+
+        prompts = load_prompts(getattr(self.llm, "prompts", None))
+        experiences[:] = Reflection(chat, prompts, self._ledger, self.memory.reflections).reflect(experiences)
+        return self._ledger.close_step(time)
 
     def unfinished_step(self, time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:
         """Return what was asked in a step that broke off, so that its cost is not lost.

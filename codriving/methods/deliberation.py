@@ -71,7 +71,9 @@ def _entry(situation: Situation, decision: Decision, order: dict[str, Any]) -> d
         "allowed": [str(a) for a in situation.allowed],
         "removed": {str(a.action): list(a.reasons) for a in removed},
         "assessments": [_plain(a) for a in situation.assessments],
-        "memories": list(situation.memories),
+        "memories": [memory.text for memory in situation.memories],
+        "similarities": [_plain(memory.similarity) for memory in situation.memories],
+        "recalled": list(decision.recalled),
     }
 
 

@@ -1,7 +1,7 @@
 """The paper's algorithm: share states, share intents, negotiate, check, recall, decide (Algorithm 1)."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
@@ -11,6 +11,7 @@ from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.llm.ledger import Ledger
+from codriving.memory.protocol import CaseMemory
 from codriving.methods.deliberation import Deliberation
 from codriving.methods.perception import Perception
 from codriving.prediction.forecast import Forecast
@@ -33,6 +34,7 @@ class Pipeline:
         safety: The three-layer check, or none.
         decider: Rules or a language model.
         margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
+        memory: Experiences of like situations; None without the memory module.
         ledger: What is asked of a language model; None if none is.
     """
 
@@ -41,6 +43,7 @@ class Pipeline:
     safety: SafetyCheck
     decider: Decider
     margin: float
+    memory: CaseMemory | None = None
     ledger: Ledger | None = None
 
     def act(self, world: WorldState) -> Deliberation:
@@ -59,9 +62,25 @@ class Pipeline:
             )
             for ego in scenes
         )
+        situations = self._remembering(situations)
         decisions = tuple(self.decider.decide(situations))
         counts, lines = self.ledger.close_step(world.time) if self.ledger is not None else ({}, [])
+        if self.memory is not None:
+            counts = {
+                **counts,
+                "recalled": sum(len(s.memories) for s in situations),
+                "reconsidered": sum(bool(d.recalled) for d in decisions),
+            }
         return Deliberation(world.time, world.step, situations, decisions, counts, tuple(lines))
+
+    def _remembering(self, situations: Sequence[Situation]) -> tuple[Situation, ...]:
+        """Put what is remembered of like situations beside each (paper Algorithm 1)."""
+        if self.memory is None:
+            return tuple(situations)
+        found = self.memory.recall(situations)
+        return tuple(
+            replace(s, memories=memories) if memories else s for s, memories in zip(situations, found, strict=True)
+        )
 
     @property
     def road_map(self) -> RoadMap:

@@ -42,6 +42,12 @@ class OrderReply(BaseModel):
     orders: Sequence[PairReply]
 
 
+class LessonReply(BaseModel):
+    """What is to be learnt from one decision."""
+
+    lesson: Reason = ""
+
+
 def decision_reply(allowed: Sequence[str]) -> type[DecisionReply]:
     """Return the form of a decision.
 

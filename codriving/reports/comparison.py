@@ -8,6 +8,7 @@ from codriving.reports.model_columns import FALLBACK_RATE
 from codriving.reports.pairs import PAIRED, better_in, paired, worse_in
 from codriving.reports.paper import Paper
 from codriving.reports.rows import Row
+from codriving.reports.stand_in import STANDS_IN
 from codriving.reports.summary import summary_row
 
 REFERENCE = "codriving"
@@ -15,9 +16,6 @@ REFERENCE = "codriving"
 
 DRIVEN, MISSING, QUOTED_ALONE = "driven", "not there yet", "only in the paper"
 """Whether a method could be driven; the last for one that goes by a language model, where rules stood in for it."""
-
-STANDS_IN = {"dilu-rule": "dilu"}
-"""What a method calls itself if built-in rules stand in for its language model, and what it would be with one."""
 
 GUIDED = ("dilu", "tell")
 """Methods that go by a language model; with rules in its place they are not set beside the paper's numbers."""

@@ -3,12 +3,13 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from codriving.reports.comparison import DRIVEN, METHOD_CHOICE, MISSING, QUOTED_ALONE, STANDS_IN, Compared
+from codriving.reports.comparison import DRIVEN, METHOD_CHOICE, MISSING, QUOTED_ALONE, Compared
 from codriving.reports.display import NOTES, Display, Line
 from codriving.reports.model_columns import FALLBACK_RATE
 from codriving.reports.model_display import FALLBACK_NOTE, FALLBACKS
 from codriving.reports.paper import Paper
 from codriving.reports.rows import Row
+from codriving.reports.stand_in import stand_in_notes
 from codriving.reports.wording import (
     episodes_text,
     fixed,
@@ -94,11 +95,7 @@ def further_notes(rows: Sequence[Row], cpu: bool) -> list[str]:
 
 def _stand_in_notes(rows: Sequence[Row]) -> list[str]:
     """Say where built-in rules stand in for a language model, which the paper's numbers are not about."""
-    names = dict.fromkeys(str(row["method"]) for row in rows if row["method"] in STANDS_IN)
-    notes = [
-        f"{name}: built-in rules in the place of {STANDS_IN[name]}'s language model; it is not that method."
-        for name in names
-    ]
+    notes = stand_in_notes(rows)
     alone = dict.fromkeys(str(row["method"]) for row in rows if row["status"] == QUOTED_ALONE)
     if alone:
         told = "the paper's go by a language model, the rows above by rules."

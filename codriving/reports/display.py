@@ -3,9 +3,11 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from codriving.reports.episodes_table import MEMORY
 from codriving.reports.model_display import model_heads, model_notes, model_texts
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.rows import Row, Value
+from codriving.reports.stand_in import stand_in_notes
 from codriving.reports.wording import episodes_text, interval_text, metrics_text, percent, reasoner_text, three
 
 NOTES = (
@@ -92,10 +94,12 @@ def display(
         "PET mean / max / min [s]",
         "PET < 1.5 s",
         "velocity mean / max / min [m/s]",
+        *([MEMORY] if _any(rows, MEMORY) else []),
         *model_heads(rows, bool(seconds)),
         *([CLAIM] if ablation else []),
     )
-    words = ("scenario", "method", CLAIM, *(key for key in swept if not all(_is_number(row.get(key)) for row in rows)))
+    named = (key for key in swept if not all(_is_number(row.get(key)) for row in rows))
+    words = ("scenario", "method", MEMORY, CLAIM, *named)
     theirs = _beside(rows, paper)
     lines: list[Line] = []
     for index, (row, claim) in enumerate(zip(rows, claims, strict=True)):
@@ -105,7 +109,7 @@ def display(
             lines.append(_line(columns, _theirs(row, theirs[index]), ours=False))
         if index + 1 < len(rows) and rows[index + 1]["scenario"] != row["scenario"]:
             lines[-1] = replace(lines[-1], last=True)
-    told = (*NOTES, *model_notes(rows, bool(seconds)), *notes)
+    told = (*NOTES, *stand_in_notes(rows), *model_notes(rows, bool(seconds)), *notes)
     return Display(_title(scenarios, rows, metrics), columns, words, tuple(lines), told)
 
 
@@ -143,6 +147,7 @@ def _ours(row: Row, claim: str) -> dict[str, str]:
         "PET mean / max / min [s]": three(row, "pet"),
         "PET < 1.5 s": percent(row["pet_below_1_5"]),
         "velocity mean / max / min [m/s]": three(row, "velocity"),
+        MEMORY: str(row.get(MEMORY) or "off"),
         CLAIM: claim,
     }
 

@@ -29,7 +29,10 @@ FURTHER = (
     "message",
 )
 
-TEXT = frozenset({*LABELS, "outcome", "collision_pair", "striker", "struck", "off_road", "message"})
+MEMORY = "memory"
+"""Column of what was recalled from; only where something was."""
+
+TEXT = frozenset({*LABELS, "outcome", "collision_pair", "striker", "struck", "off_road", "message", MEMORY})
 """Columns of words; all others are numbers."""
 
 
@@ -43,8 +46,18 @@ def episode_columns(records: Iterable[EpisodeRecord], swept: Sequence[str] = ())
     Returns:
         Columns in order.
     """
-    known = (*LEADING, *swept, *FURTHER)
+    records = list(records)
+    known = (*LEADING, *swept, *FURTHER, *memory_column(records))
     return (*known, *counter_columns(records, known))
+
+
+def memory_column(records: Iterable[EpisodeRecord]) -> tuple[str, ...]:
+    """Give the column of what was recalled from, if any episode had a memory.
+
+    Args:
+        records: All records of the table.
+    """
+    return (MEMORY,) if any(record.memory for record in records) else ()
 
 
 def episode_rows(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | None = None) -> list[Row]:
@@ -92,5 +105,6 @@ def _row(record: EpisodeRecord) -> Row:
         "bystander_collisions": len(outcome.bystander_collisions),
         "off_road": " ".join(outcome.off_road) or None,
         "message": outcome.message or None,
+        **({MEMORY: record.memory} if record.memory else {}),
     }
     return row

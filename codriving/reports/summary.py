@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
 from codriving.metrics.wilson import wilson_interval
-from codriving.reports.episodes_table import LABELS
+from codriving.reports.episodes_table import LABELS, MEMORY, memory_column
 from codriving.reports.model_columns import FALLBACK_RATE, counted, counter_columns, fallback_rate, reasoned
 from codriving.reports.rows import Row, Value
 from codriving.reports.statistics import mean, median, share
@@ -62,7 +62,8 @@ def summary_columns(records: Iterable[EpisodeRecord], swept: Sequence[str] = ())
     Returns:
         Columns in order.
     """
-    known = (*LEADING, *swept, *FURTHER)
+    records = list(records)
+    known = (*LEADING, *swept, *FURTHER, *memory_column(records))
     return (*known, *counter_columns(records, known, rate=True))
 
 
@@ -109,6 +110,7 @@ def summary_row(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | Non
         "collision_cav_block": pairs["CAV-block"],
         "bystander_collisions": sum(len(record.outcome.bystander_collisions) for record in completed),
         "decisions": sum(record.decisions for record in records),
+        **({MEMORY: first.memory} if first.memory else {}),
         **_quality(successes),
         **(swept or {}),
     }

@@ -18,6 +18,10 @@ from codriving.single_vehicle.patience import Patience
 from codriving.single_vehicle.payoff import Temper
 from codriving.single_vehicle.projected_idm import ProjectedIdm
 from codriving.single_vehicle.protocol import Choice, View
+from codriving.single_vehicle.stubborn import Stubborn
+
+UNBRAKED = int(np.sum(ACCELERATIONS >= 0))
+"""Number of accelerations without braking; they are the first ones."""
 
 
 class NonCooperativeGame:
@@ -67,11 +71,12 @@ class NonCooperativeGame:
         self.tempers, self.own, self.shares = tuple(tempers.values()), tempers[own], shares
         self.hold, self.indifference, self.others = hold, indifference, others
         self.times: Array = np.arange(round(horizon / sample) + 1, dtype=np.float64) * sample
-        self._patience = Patience()
+        self._patience, self._stubborn = Patience(), Stubborn()
 
     def reset(self) -> None:
         """Begin an episode; nothing is remembered from the one before."""
         self._patience = Patience()
+        self._stubborn = Stubborn()
         self.others.reset()
 
     def decide(self, view: View) -> Choice:
@@ -114,7 +119,10 @@ class NonCooperativeGame:
         game = passing_game(met, ego.speed, view.top, self.hold, self.times)
         # Only who is first on every way that the partner may take can be: so two can never both believe that they are.
         first = all(goes_first(e, view.road_map, self.others.tie)[0] for e in met)
-        answers = self.answers(game, first)
+        stubborn = self._stubborn.keeps_on(ego.id, other.id, other.speed)
+        answers = self.answers(game, first, UNBRAKED if stubborn else len(ACCELERATIONS))
+        if not stubborn and all(ACCELERATIONS[k] < 0 for k in answers):
+            self._stubborn.expected_to_brake(ego.id, other.id, other.speed)
         row, _ = best_answer(game.own(self.own), answers, self.shares)
         likely = answers[int(np.argmax(self.shares))]
         leads = bool(game.own_first[row, likely])
@@ -122,19 +130,22 @@ class NonCooperativeGame:
         said = f"the game with {other.id}, expected to choose {_steps(answers)} m/s2"
         return float(ACCELERATIONS[row]), said, Precedence(*pair, f"{pair[0]} is first by {said}")
 
-    def answers(self, game: PassingGame, first: bool) -> tuple[int, ...]:
+    def answers(self, game: PassingGame, first: bool, among: int = len(ACCELERATIONS)) -> tuple[int, ...]:
         """Return the action that is expected of a partner of each type.
 
         Args:
             game: The game.
             first: Whether both would agree that the ego vehicle goes first.
+            among: Number of accelerations that the partner is expected to choose from, the highest ones.
         """
-        own = game.own(self.own)
+        own = game.own(self.own)[:, :among]
 
         def agreed(row: int, column: int) -> bool:
             return bool(game.own_first[row, column]) is first
 
-        return tuple(expected_action(own, game.other(temper), self.indifference, agreed)[0] for temper in self.tempers)
+        return tuple(
+            expected_action(own, game.other(temper)[:, :among], self.indifference, agreed)[0] for temper in self.tempers
+        )
 
     def refuses(self, view: View, side: Side, idm: IntelligentDriver) -> str:
         """Say why the game of a lane change ends with keeping the lane; nothing if it ends with the change.

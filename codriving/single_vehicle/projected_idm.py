@@ -6,12 +6,13 @@ from codriving.datatypes.order import Precedence
 from codriving.errors import ConfigError
 from codriving.prediction.idm import IntelligentDriver
 from codriving.single_vehicle.action_mapping import closest_action, mean_accelerations
-from codriving.single_vehicle.encounters import FRONT, Encounter, crossing_angle, encounters, passes_by
+from codriving.single_vehicle.encounters import FRONT, Encounter, crossing_angle, encounters
 from codriving.single_vehicle.expected_first import goes_first
 from codriving.single_vehicle.lane_choice import LaneChoice
 from codriving.single_vehicle.leaders import leaders
 from codriving.single_vehicle.patience import Patience
 from codriving.single_vehicle.protocol import Choice, View
+from codriving.single_vehicle.starting import may_start
 
 LIMITS = {
     "acceleration": (0.1, 10.0),
@@ -29,12 +30,6 @@ LIMITS = {
     "brake_at": (0.0, 10.0),
 }
 """Least and largest value of each setting."""
-
-TURN = 1.0
-"""Time by which those who wait start one after another [s]."""
-
-SAME = 0.25
-"""Difference of the times for which two have been standing that does not count [s]."""
 
 
 class ProjectedIdm:
@@ -186,25 +181,4 @@ class ProjectedIdm:
             met: Where it is open who goes first.
             waited: How long it has been standing [s].
         """
-        if not met or waited < self.patience or not all(self._lets_start(e, view) for e in met):
-            return False
-        # Of those who stand, whoever has waited longest starts first; its start is seen before the next one's turn.
-        name = view.scene.ego.id
-        before = {e.other.id for e in met if _stood_longer(e.other.standing, e.other.id, waited, name)}
-        return waited >= self.patience + TURN * len(before)
-
-    def _lets_start(self, e: Encounter, view: View) -> bool:
-        if e.other.standing > 0:
-            return passes_by(e, view.road_map)
-        if e.other_inside:
-            return False
-        go = view.forecast.reach(view.scene.ego.speed, True).most
-        through = view.forecast.time_to(e.conflict.exits[0], go)
-        return e.conflict.ttcp[1] > through + self.clear
-
-
-def _stood_longer(standing: float, other: str, waited: float, name: str) -> bool:
-    """Whether somebody who stands is to start before a vehicle that has waited for some time as well."""
-    if standing <= 0:
-        return False
-    return standing > waited + SAME or (standing >= waited - SAME and other < name)
+        return may_start(view, met, waited, self.patience, self.clear)

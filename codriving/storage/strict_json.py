@@ -99,11 +99,13 @@ def _optional(kind: object, value: object, where: str) -> object:
 def _object(kind: type, pairs: dict[str, object], where: str) -> object:
     declared = _fields(kind)
     prefix = f"{where}." if where else ""
-    if missing := [name for name in declared if name not in pairs]:
+    # What came later has a default, so that older files stay readable.
+    later = {field.name for field in dataclasses.fields(kind) if field.default is not dataclasses.MISSING}
+    if missing := [name for name in declared if name not in pairs and name not in later]:
         raise ValueError(f"field {prefix}{missing[0]} is missing")
     if unknown := [name for name in pairs if name not in declared]:
         raise ValueError(f"field {prefix}{unknown[0]} is unknown")
-    return kind(**{name: _convert(hint, pairs[name], f"{prefix}{name}") for name, hint in declared.items()})
+    return kind(**{name: _convert(declared[name], value, f"{prefix}{name}") for name, value in pairs.items()})
 
 
 def _choice(kind: type[enum.Enum], value: object, where: str) -> enum.Enum:

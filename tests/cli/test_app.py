@@ -17,7 +17,22 @@ def test_version() -> None:
     assert (result.exit_code, result.stdout) == (0, f"codriving {__version__}\n")
 
 
-@pytest.mark.parametrize("command", [(), ("run",), ("ablate",), ("compare",), ("check",), ("list",)])
+@pytest.mark.parametrize(
+    "command",
+    [
+        (),
+        ("run",),
+        ("ablate",),
+        ("compare",),
+        ("learn",),
+        ("check",),
+        ("list",),
+        ("memory", "build"),
+        ("memory", "show"),
+        ("memory", "search"),
+        ("memory", "merge"),
+    ],
+)
 def test_every_help_shows_an_example(command: tuple[str, ...]) -> None:
     result = call(*command, "--help")
     assert result.exit_code == 0

@@ -46,7 +46,7 @@ def test_all_is_offered_where_several_can_be_taken() -> None:
     assert offered("cda=a") == ["cda=agreement_seeking", "cda=all"]
     assert "launcher=all" not in offered("launcher=")
     assert "experiments=all" not in offered("experiments=")
-    assert offered("memory=") == ["memory=off"]
+    assert offered("memory=") == ["memory=off", "memory=frozen", "memory=online"]
     assert dict(complete_override("scenario=all"))["scenario=all"].startswith("Every one of these")
 
 

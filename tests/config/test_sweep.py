@@ -39,7 +39,6 @@ def refused(*tokens: str, config_dir: Path | None = None) -> str:
         ["scenario.x=choice(1)"],
         ["scenario.x=1,1"],
         ["run=all"],
-        ["memory=all"],
     ],
 )
 def test_one_value_is_one_config_and_no_sweep(tokens: list[str]) -> None:

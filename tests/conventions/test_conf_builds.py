@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from remembered import experience, filled
 
 from codriving.config.build import build
 from codriving.config.choices import EXPERIMENTS, LISTED, choices, describe
@@ -14,12 +15,16 @@ from codriving.config.schema import GROUPS, OPTIONAL
 from codriving.config.training import TRAININGS
 from codriving.config.validate import validate
 
+SNAPSHOT = ("memory", "frozen")
+
 CHOICES = [(group, name) for group in GROUPS for name in choices(group)]
 
 
 @pytest.mark.parametrize(("group", "name"), CHOICES)
-def test_choice_builds(group: str, name: str) -> None:
-    node = compose([f"{group}={name}"])[group]
+def test_choice_builds(group: str, name: str, tmp_path: Path) -> None:
+    # A snapshot is named by whoever recalls from it.
+    needs = [f"memory.file={filled(tmp_path / 'm.sqlite', [experience()])}"] if (group, name) == SNAPSHOT else []
+    node = compose([f"{group}={name}", *needs])[group]
     if node is None:
         assert group in OPTIONAL
         return

@@ -75,6 +75,8 @@ class Loopback:
         port: Port to serve at; 0 takes a free one.
 
     Attributes:
+        embedding_plan: Status of the next answers to requests for vectors; 200 once it is used up.
+        embedded: The texts of each such request that was answered.
         requests: The requests for an answer, in order of arrival; others are in ``others``.
         in_flight: How many are being answered now.
         high_water: How many were being answered at once at most.
@@ -97,6 +99,8 @@ class Loopback:
         self.requests: list[Request] = []
         self.others: list[Request] = []
         self.in_flight = self.high_water = self.connections = 0
+        self.embedding_plan: list[int] = []
+        self.embedded: list[list[str]] = []
         self._begun = 0
         self._ready, self._ended = threading.Event(), asyncio.Event()
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -243,11 +247,31 @@ class Loopback:
         return fault.status, "application/json", json.dumps(fault.wrap(completion))
 
     def _elsewhere(self, request: Request) -> tuple[int, str, str]:
-        """The list of models; anything else does not exist."""
+        """The list of models, and vectors of texts; anything else does not exist."""
+        if request.path.endswith("/embeddings"):
+            sent = request.headers.get("authorization", "")
+            status = 401 if self.key is not None and sent != f"Bearer {self.key}" else 200
+            status = self.embedding_plan.pop(0) if self.embedding_plan else status
+            if status != 200:
+                return status, "application/json", json.dumps({"error": {"message": f"refused {sent}"}})
+            texts = request.body.get("input", [])
+            self.embedded.append(texts)
+            data = [{"object": "embedding", "index": k, "embedding": vector(text)} for k, text in enumerate(texts)]
+            body = {"object": "list", "data": data, "model": "any", "usage": usage(1, 0)}
+            return 200, "application/json", json.dumps(body)
         if request.path.endswith("/models"):
             names = self.models if self.models is not None else ["any"]
             return 200, "application/json", json.dumps({"data": [{"id": name, "object": "model"} for name in names]})
         return 404, "application/json", json.dumps({"error": {"message": f"no {request.path} here"}})
+
+
+def vector(text: str) -> list[float]:
+    """Count the letters of a text, a vector of 26 numbers.
+
+    Args:
+        text: Any text.
+    """
+    return [float(text.lower().count(chr(ord("a") + k))) for k in range(26)]
 
 
 def usage(asked: int, said: int) -> dict[str, int]:

@@ -178,3 +178,9 @@ def test_markdown_has_the_same_rows(make: Callable[..., EpisodeRecord], paper: P
 
 def test_a_missing_paper_is_no_paper(tmp_path: Path) -> None:
     assert read_paper(tmp_path) == Paper()
+
+
+def test_rules_in_the_place_of_a_model_are_not_that_method(make: Callable[..., EpisodeRecord], paper: Paper) -> None:
+    said = "dilu-rule: built-in rules in the place of dilu's language model; it is not that method."
+    assert said in display([summary_row([make(0, method="dilu-rule")])], paper).notes
+    assert said not in display([summary_row([make(0, method="dilu")])], paper).notes

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.situation import Decision, Situation
+from codriving.reasoning.decision.cases import reconsider
 
 EAGERNESS = (Action.FASTER, Action.IDLE, Action.SLOWER)
 """Actions along the lane from the most to the least progress."""
@@ -29,7 +30,7 @@ TOLERANCE = 0.02
 
 
 class RuleDecider:
-    """Goes as fast as is safe and as the passing order allows."""
+    """Goes as fast as is safe and as the passing order allows, and repeats no mistake that is remembered."""
 
     def decide(self, situations: Sequence[Situation]) -> list[Decision]:
         """Return one decision a situation, in the same order.
@@ -37,7 +38,7 @@ class RuleDecider:
         Args:
             situations: What each CAV is told.
         """
-        return [decide_one(situation) for situation in situations]
+        return [reconsider(situation, decide_one(situation)) for situation in situations]
 
 
 def decide_one(situation: Situation) -> Decision:

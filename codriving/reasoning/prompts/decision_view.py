@@ -62,9 +62,9 @@ def decision_view(situation: Situation, nearest: int | None = None, with_memorie
         "route": scene.intent.route,
         "target_speed": scene.intent.target_speed,
         "between_lanes": bool(scene.covers),
-        "must_change": None if scene.must_change is None else _side(scene, scene.must_change.lane),
+        "must_change": None if scene.must_change is None else side_name(scene, scene.must_change.lane),
         "room": 0.0 if scene.must_change is None else scene.must_change.room,
-        "lanes": _lanes(scene, neighbours, names),
+        "lanes": lane_views(scene, neighbours, names),
         "others": _others(scene, neighbours, names),
         "conflict_lanes": [lane_name(lane) for lane in scene.conflict_lanes],
         "conflicts": [_conflict(situation, neighbours, ks, names) for ks in groups.values()],
@@ -78,7 +78,7 @@ def decision_view(situation: Situation, nearest: int | None = None, with_memorie
         "before": [OrderView(names(p.first), names.sentence(p.reason)) for p in pairs if p.second == ego],
         "after": [OrderView(names(p.second), names.sentence(p.reason)) for p in pairs if p.first == ego],
         "actions": _actions(situation.assessments, list(groups.values()), names),
-        "memories": [names.sentence(text, LONGEST_MEMORY) for text in situation.memories] if with_memories else [],
+        "memories": [names.sentence(m.text, LONGEST_MEMORY) for m in situation.memories] if with_memories else [],
         "allowed": [str(action) for action in situation.allowed],
     }
 
@@ -93,11 +93,24 @@ def lane_name(lane: LaneId) -> str:
     return f"{start}-{end}/{index}"
 
 
-def _side(scene: SceneDescription, lane: LaneId) -> str:
+def side_name(scene: SceneDescription, lane: LaneId) -> str:
+    """Return the action that leads towards a lane.
+
+    Args:
+        scene: What the CAV knows.
+        lane: The lane.
+    """
     return "LANE_LEFT" if lane[2] < scene.ego.lane[2] else "LANE_RIGHT"
 
 
-def _lanes(scene: SceneDescription, neighbours: Sequence[Neighbour], names: Names) -> list[LaneView]:
+def lane_views(scene: SceneDescription, neighbours: Sequence[Neighbour], names: Names) -> list[LaneView]:
+    """Return the ego lane and those beside it, each with whoever is next ahead and next behind.
+
+    Args:
+        scene: What the CAV knows.
+        neighbours: The vehicles that are mentioned.
+        names: What they are called.
+    """
     own = {n.role: VehicleView(names(n.id), DRIVERS[n.kind], n.gap or 0.0, n.speed) for n in neighbours}
     lanes = [LaneView("ego lane", own.get(Role.LEADING), own.get(Role.REARING))]
     for lane in scene.adjacent_lanes:

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from codriving.reasoning.prompts.seen_views import seen_example
 from codriving.reasoning.prompts.views import (
     ActionView,
     ConflictView,
@@ -20,9 +21,29 @@ def example(purpose: str) -> dict[str, Any]:
     """Return variables of every kind: every list has an entry and every condition holds at least once.
 
     Args:
-        purpose: ``negotiate`` or ``decide``.
+        purpose: What the template asks for.
     """
-    return _negotiation() if purpose == "negotiate" else _decision()
+    if purpose.startswith("dilu"):
+        return seen_example(purpose)
+    return {"negotiate": _negotiation, "decide": _decision, "reflect": _reflection}[purpose]()
+
+
+def _reflection() -> dict[str, Any]:
+    return {
+        "scene": "Driving 8.0 m/s, target 9.0 m/s; nobody ahead on the lane.",
+        "conflict": "Crossing conflict with a human vehicle: dTTCP 3.0 s, general danger.",
+        "order": "The CAV goes second; 1 go before it.",
+        "action": "FASTER",
+        "verdict": "intensified",
+        "comment": "Your action has intensified the conflict; similar actions should be avoided.",
+        "dttcp_before": 3.0,
+        "dttcp_after": 1.2,
+        "own_change": -1.5,
+        "own_braking": 4.2,
+        "forced_braking": 4.5,
+        "collision": 2.5,
+        "needless": True,
+    }
 
 
 def _negotiation() -> dict[str, Any]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 OURS = Path(__file__).parent
 ROLES = ("system", "user")
-PURPOSES = ("negotiate", "decide")
+PURPOSES = ("negotiate", "decide", "reflect", "dilu", "dilu_reflect")
 FILES = tuple(f"{purpose}.{role}.md.j2" for purpose in PURPOSES for role in ROLES)
 """The templates that there are."""
 
@@ -49,7 +49,7 @@ class Prompts:
         """Return the system and the user message of a question.
 
         Args:
-            purpose: ``negotiate`` or ``decide``.
+            purpose: One of ``PURPOSES``.
             values: The variables of the templates.
 
         Raises:

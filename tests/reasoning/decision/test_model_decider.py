@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 from asked import Reasoned, allowed, deciding, reasoned, sensible, shown
+from remembered import memory
 from worlds import Junction, car
 
 from codriving.datatypes.action import Action
@@ -146,7 +147,7 @@ def test_chat_is_left_alone_if_there_is_nothing_to_ask(junction: Junction) -> No
 
 def test_shorter_question_loses_memories_then_the_farther_vehicles(told: tuple[Situation, ...]) -> None:
     made, _, _ = decider(sensible)
-    question = made.question(replace(told[0], memories=("Remember to yield.",)))
+    question = made.question(replace(told[0], memories=(replace(memory(), text="Remember to yield."),)))
     texts = [shown(question)]
     while (shorter := question.shorter()) is not None:
         question = shorter

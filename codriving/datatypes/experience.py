@@ -1,0 +1,131 @@
+"""What a CAV remembers: a scene, a conflict, an action and what became of it (paper Section III-D)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+from codriving.datatypes.action import Action
+
+
+class Verdict(StrEnum):
+    """What an action did to the conflict, judged by what came of it."""
+
+    INTENSIFIED = "intensified"
+    EASED = "eased"
+    TOO_CAUTIOUS = "too cautious"
+    NEUTRAL = "neutral"
+
+
+@dataclass(frozen=True, slots=True)
+class Description:
+    """A situation as it is stored and searched for: in words, and the numbers and kinds that the words are made of.
+
+    Nothing in it names a vehicle, a place or a route, so that situations of the same kind read alike.
+
+    Attributes:
+        scene: The scene description.
+        conflict: The description of the most urgent conflict.
+        order: What was agreed on in that conflict.
+        numbers: Numbers by name; what is not defined is missing.
+        kinds: Words of a fixed set by name, for instance ``relation``.
+    """
+
+    scene: str
+    conflict: str
+    order: str
+    numbers: Mapping[str, float]
+    kinds: Mapping[str, str]
+
+    @property
+    def text(self) -> str:
+        """Scene, conflict and order as one text."""
+        return " ".join(part for part in (self.scene, self.conflict, self.order) if part)
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """What came of one action, in numbers.
+
+    Attributes:
+        dttcp_before: Difference of the times to the conflict point when the CAV decided [s]; None without a conflict.
+        dttcp_after: The same after the step [s]; None if the conflict was over or there was none.
+        own_change: By how much the action itself widened (positive) or narrowed that difference, against keeping the
+            speed [s].
+        own_braking: Hardest mean deceleration of the CAV over one of the next decision steps [m/s2].
+        forced_braking: Hardest mean deceleration of another vehicle in its way over this or the next step [m/s2].
+        collision: Time until the CAV was in a collision [s]; None if it was in none within the horizon.
+        to_blame: Whether the action led to that collision.
+        needless: Whether it waited although nobody used the way.
+    """
+
+    dttcp_before: float | None = None
+    dttcp_after: float | None = None
+    own_change: float = 0.0
+    own_braking: float = 0.0
+    forced_braking: float = 0.0
+    collision: float | None = None
+    to_blame: bool = False
+    needless: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Interaction:
+    """One episode that was learnt from.
+
+    Attributes:
+        scenario: Name of the scenario.
+        seed: Seed of the episode.
+        method: Name of the method.
+        variant: Name of its variant.
+        reasoner: Who reasoned.
+    """
+
+    scenario: str
+    seed: int
+    method: str
+    variant: str
+    reasoner: str
+
+
+@dataclass(frozen=True, slots=True)
+class Experience:
+    """One decision worth remembering.
+
+    Attributes:
+        description: The situation in which it was taken.
+        action: What the CAV did.
+        verdict: What that did to the conflict.
+        effect: The same in numbers.
+        lesson: What is told of it.
+        step: Number of decisions taken before in the episode.
+        ego: Id of the CAV.
+    """
+
+    description: Description
+    action: Action
+    verdict: Verdict
+    effect: Effect
+    lesson: str
+    step: int
+    ego: str
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """An experience that was found for a situation.
+
+    Attributes:
+        id: Its number in the store.
+        text: What is told of it.
+        action: What was done.
+        verdict: What that did.
+        similarity: Cosine similarity to the situation, at most 1.
+        count: How often it was made.
+    """
+
+    id: int
+    text: str
+    action: Action
+    verdict: Verdict
+    similarity: float
+    count: int

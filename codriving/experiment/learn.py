@@ -1,0 +1,197 @@
+"""`codriving learn`: memories of so many interactions, then the same tests with each (paper, learning figure)."""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+
+from codriving.config.locate import experiments_dir
+from codriving.config.overrides import parse
+from codriving.config.sweep import Point, expand
+from codriving.errors import ConfigError, ModelError
+from codriving.experiment.further import Driven, Further
+from codriving.experiment.memory_build import FIRST_SEED, refuse_forgetful
+from codriving.experiment.plan import make_plan
+from codriving.experiment.remembering import memory_file
+from codriving.experiment.run import INTERRUPTED, drive_plan, report, resume_command
+from codriving.experiment.stopping import HaltedError, Interrupted
+from codriving.reports.learning import LearningCell, learning_columns, learning_rows
+from codriving.reports.learning_display import learning_display
+from codriving.reports.learning_figure import learning_figure
+from codriving.reports.markdown import markdown_text
+from codriving.reports.paper_learning import read_learning
+from codriving.reports.run_tables import Table
+
+INTERACTIONS = "interactions"
+SIZES = (0, 2, 5, 10, 20)
+"""Interactions after which is tested, unless the user says otherwise."""
+
+MOST = 10_000
+
+KEY = "memory.interactions"
+"""The key that is swept."""
+
+LEVELS = "cda=full,intent_sharing,status_sharing"
+"""CDA levels, unless the user names some: everything, nothing negotiated, and only states shared."""
+
+RECALLED = ("memory.shots", "memory.least_similarity")
+"""Settings of the memory that hold while it is built and while it is tested."""
+
+
+def run_learn(overrides: Sequence[str], config_dir: Path | None = None) -> int:
+    """Build memories, test with them, and print how success depends on what was learnt: ``codriving learn``.
+
+    Args:
+        overrides: ``key=value`` tokens, among them ``interactions=0,2,5``.
+        config_dir: A folder of the user's own configs.
+
+    Returns:
+        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
+
+    Raises:
+        UserError: If the config or a run folder cannot be used.
+    """
+    sizes, others = _sizes(overrides)
+    points = settings_of(others, config_dir)
+    # One name for both runs, so that the same command goes on with both.
+    named = [t.partition("=")[2] for t in others if t.partition("=")[0] == "run"]
+    run = named[-1] if named else datetime.now().strftime("%Y-%m-%d_%H%M%S")
+    again = resume_command("learn", overrides, config_dir, run)
+    try:
+        builds = make_plan(build_points(points, max(sizes), run), config_dir)
+        refuse_forgetful(builds)
+        print(f"Learning: {builds.episodes} interactions in each of {len(builds.cells)} settings.", file=sys.stderr)
+        learnt = drive_plan(builds)
+        if learnt.failed:
+            report(learnt, again)
+            return 1
+        files = [memory_file(learnt.folder, cell.folder) for cell in builds.cells]
+        tests = make_plan(frozen_points(points, files, sizes, run), config_dir)
+        print(f"Testing: {tests.episodes} episodes in each of {len(tests.cells)} cells.", file=sys.stderr)
+        finished = drive_plan(tests, lambda driven: learned(driven, len(points)))
+    except Interrupted as stop:
+        print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)
+        print(f"Go on with: {again}", file=sys.stderr)
+        return INTERRUPTED
+    except HaltedError as stop:
+        raise ModelError(f"{stop.text}; go on with: {again}") from stop
+    report(finished, again)
+    return 1 if finished.failed or finished.unfilmed else 0
+
+
+def shown_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
+    """Give the configs of the tests for ``--cfg``, without the files of memories that are yet to be built.
+
+    Args:
+        overrides: ``key=value`` tokens.
+        config_dir: A folder of the user's own configs.
+
+    Raises:
+        ConfigError: If a token cannot be used.
+    """
+    _, others = _sizes(overrides)
+    return list(build_points(settings_of(others, config_dir), max(SIZES), "learn"))
+
+
+def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:
+    """Give the settings that are learnt and tested in, one config each, without a memory.
+
+    Args:
+        overrides: ``key=value`` tokens without ``interactions``.
+        config_dir: A folder of the user's own configs.
+
+    Raises:
+        ConfigError: If a token cannot be used.
+    """
+    keys = [parse(token).key_or_group for token in overrides]
+    if "memory" in keys:
+        raise ConfigError("codriving learn sets memory itself; memory.shots and memory.least_similarity can be given")
+    named = {key.partition(".")[0] for key in keys}
+    base = [token for token in ("scenario=all", LEVELS) if token.partition("=")[0] not in named]
+    if "seed" not in keys:
+        base.append("seed=0")
+    return expand([*base, *overrides], config_dir)
+
+
+def build_points(points: Sequence[Point], interactions: int, run: str) -> list[Point]:
+    """Give what is driven to learn, one config a setting.
+
+    Args:
+        points: The settings.
+        interactions: How many interactions.
+        run: Name of the run.
+    """
+    base = ("memory=online", "experiment=learn-memory")
+    own = ("experiment", "episodes", "seed", "run", "render")
+    ends = (f"episodes={max(interactions, 1)}", f"seed={FIRST_SEED}", f"run={run}")
+    return [
+        replace(p, overrides=(*base, *(t for t in p.overrides if t.lstrip("+").partition("=")[0] not in own), *ends))
+        for p in points
+    ]
+
+
+def frozen_points(points: Sequence[Point], files: Sequence[Path], sizes: Sequence[int], run: str) -> list[Point]:
+    """Give what is tested: every setting with the first interactions of its memory.
+
+    Args:
+        points: The settings.
+        files: The memory of each.
+        sizes: After how many interactions.
+        run: Name of the run.
+    """
+    cells = []
+    for point, file in zip(points, files, strict=True):
+        named = any(t.lstrip("+").startswith("experiment=") for t in point.overrides)
+        base = ("memory=frozen", *(() if named else ("experiment=learn",)))
+        kept = tuple(t for t in point.overrides if t.lstrip("+").partition("=")[0] != "run")
+        for size in sizes:
+            own = (f"run={run}", f"{KEY}={size}", f"memory.file='{file}'")
+            cells.append(Point((*base, *kept, *own), {**point.swept, KEY: str(size)}, point.removed))
+    return cells
+
+
+def learned(driven: Driven, settings: int) -> Further:
+    """Make the learning table and figure.
+
+    Args:
+        driven: All episodes of the tests, the cells of one setting together.
+        settings: Number of settings.
+
+    Returns:
+        ``learn.csv``, ``learn.md``, ``figures/learn.*`` and what is printed.
+    """
+    paper = read_learning(experiments_dir())
+    each = len(driven.cells) // settings
+    cells = [
+        LearningCell(
+            records=records,
+            interactions=int(cell.resolved["memory"]["interactions"]),
+            setting=index // each,
+            swept={key: value for key, value in cell.swept.items() if key not in (KEY, "scenario", "cda")},
+            shots=int(cell.resolved["memory"]["shots"]),
+        )
+        for index, (cell, records) in enumerate(zip(driven.cells, driven.records, strict=True))
+    ]
+    rows = learning_rows(cells, paper)
+    swept = tuple(dict.fromkeys(key for cell in cells for key in cell.swept))
+    table = Table(learning_columns(swept), tuple(rows), swept)
+    display = learning_display(rows, driven.metrics, swept)
+    figures = {f"figures/{name}": content for name, content in learning_figure(rows, paper, driven.metrics).items()}
+    files = {"learn.csv": table.csv().encode(), "learn.md": markdown_text(display).encode(), **figures}
+    return Further(files, (display,), (table,))
+
+
+def _sizes(overrides: Sequence[str]) -> tuple[list[int], list[str]]:
+    """Take ``interactions=`` out of the tokens."""
+    own = [t for t in overrides if t.lstrip("+").partition("=")[0] == INTERACTIONS]
+    others = [t for t in overrides if t not in own]
+    if not own:
+        return list(SIZES), others
+    texts = own[-1].partition("=")[2].split(",")
+    if not all(text.isdigit() and int(text) <= MOST for text in texts):
+        raise ConfigError(
+            f"interactions must be whole numbers from 0 to {MOST}, for instance interactions=0,2,5, got "
+            f"{own[-1].partition('=')[2]!r}"
+        )
+    return sorted({int(text) for text in texts}), others

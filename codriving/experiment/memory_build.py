@@ -1,0 +1,133 @@
+"""`codriving memory build`: episodes to learn from, on seeds that no table uses, into one file a cell."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from codriving.config.overrides import parse
+from codriving.config.sweep import Point, expand
+from codriving.errors import ConfigError
+from codriving.experiment.further import Driven, Further
+from codriving.experiment.plan import Plan
+from codriving.experiment.remembering import learns, memory_file
+from codriving.experiment.run import command
+from codriving.memory.reading import read_memory
+from codriving.reports.markdown import markdown_text
+from codriving.reports.memory_display import Built, built_display
+
+INTERACTIONS = "interactions"
+"""The word for how many episodes to learn from."""
+
+FIRST_SEED = 20_000
+"""Seed of the first episode to learn from, if the user names none."""
+
+TABLE_SEEDS = range(1000)
+"""Seeds that tables are made with."""
+
+MOST = 10_000
+"""Most interactions of one command."""
+
+
+def run_build(overrides: Sequence[str], config_dir: Path | None = None) -> int:
+    """Drive episodes with ``memory=online`` and print what was learnt: ``codriving memory build``.
+
+    Args:
+        overrides: ``key=value`` tokens, among them ``interactions=N``.
+        config_dir: A folder of the user's own configs.
+
+    Returns:
+        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
+
+    Raises:
+        UserError: If the config or the run folder cannot be used.
+    """
+    points = build_points(overrides, config_dir)
+    return command("memory build", points, overrides, config_dir, built, refuse_forgetful)
+
+
+def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
+    """Find out what is to be driven.
+
+    Args:
+        overrides: ``key=value`` tokens, among them ``interactions=N``.
+        config_dir: A folder of the user's own configs.
+
+    Returns:
+        One config a memory.
+
+    Raises:
+        ConfigError: If a token cannot be used, or a seed belongs to the tables.
+    """
+    keys = {token: parse(token).key_or_group if not _is_count(token) else INTERACTIONS for token in overrides}
+    named = set(keys.values())
+    if "episodes" in named:
+        raise ConfigError("codriving memory build takes interactions=N; each interaction is one episode")
+    count = 20
+    for token in (token for token, key in keys.items() if key == INTERACTIONS):
+        count = interactions_of(token.partition("=")[2])
+    others = [token for token, key in keys.items() if key != INTERACTIONS]
+    if any(key == "memory" and token.partition("=")[2] != "online" for token, key in keys.items()):
+        raise ConfigError("codriving memory build learns with memory=online; other choices recall and learn nothing")
+    base = ["memory=online", f"episodes={count}"]
+    base += [] if "experiment" in named else ["experiment=memory"]
+    base += [] if "seed" in named else [f"seed={FIRST_SEED}"]
+    points = [Point((*base, *p.overrides), p.swept, p.removed) for p in expand(others, config_dir)]
+    seeds = [int(t.partition("=")[2]) for t in others if keys[t] == "seed" and t.partition("=")[2].isdigit()]
+    if any(seed in TABLE_SEEDS for seed in seeds):
+        raise ConfigError(
+            f"seed must be {TABLE_SEEDS.stop} or more to learn from, got {seeds[-1]}: smaller ones are for tables, and "
+            "what was learnt on them would be tested on them"
+        )
+    return points
+
+
+def interactions_of(text: str) -> int:
+    """Read a number of interactions.
+
+    Args:
+        text: What was typed.
+
+    Raises:
+        ConfigError: If it is none.
+    """
+    if not text.isdigit() or not 1 <= int(text) <= MOST:
+        raise ConfigError(f"interactions must be a whole number, 1 to {MOST}, got {text!r}")
+    return int(text)
+
+
+def built(driven: Driven) -> Further:
+    """Say what was learnt.
+
+    Args:
+        driven: All episodes of the run.
+
+    Returns:
+        ``memory.md`` and what is printed.
+    """
+    rows = []
+    for cell in driven.cells:
+        file = memory_file(driven.folder, cell.folder)
+        named = (cell.resolved.get("memory") or {}).get("file")
+        reading = read_memory(file if named is None else Path(named))
+        labels = cell.labels
+        name = f"{labels.method} {labels.variant}".strip()
+        rows.append(Built(labels.scenario, name, labels.reasoner, cell.swept, reading))
+    display = built_display(rows)
+    return Further({"memory.md": markdown_text(display).encode()}, (display,))
+
+
+def refuse_forgetful(plan: Plan) -> None:
+    """Refuse a method that would remember nothing.
+
+    Args:
+        plan: What is to be driven.
+
+    Raises:
+        ConfigError: If the method of a cell has no memory that learns.
+    """
+    for cell in plan.cells:
+        if not learns(cell.resolved):
+            raise ConfigError(f"method {cell.labels.method!r} has no memory to build; choose one that has")
+
+
+def _is_count(token: str) -> bool:
+    return token.partition("=")[0].lstrip("+") == INTERACTIONS

@@ -1,0 +1,131 @@
+"""Texts to vectors by an embedding model, through LiteLLM; retried and bounded in time like every other request."""
+
+import asyncio
+import os
+from collections.abc import Sequence
+from math import isfinite
+from typing import Any
+from urllib.parse import urlsplit
+
+from codriving.errors import ConfigError, ModelError, ModelUnavailableError
+from codriving.llm.faults import CallError, Kind, fault_of
+from codriving.llm.loop import loop
+from codriving.llm.retrying import Retries, Sleep
+from codriving.llm.send import NO_KEY, load_litellm, provider_of
+
+ATTEMPTS = 5
+"""How often a request is sent at most."""
+
+_CURE = "check memory.embedding_model, memory.embedding_api_base and memory.embedding_key_env"
+
+
+class EmbeddingModel:
+    """An embedding model of one server.
+
+    Args:
+        model: Model, as LiteLLM calls it.
+        api_base: Address of the server; None for the provider's own.
+        key_env: Name of the environment variable that holds the key; None sends none.
+        deadline: How long one attempt may take [s].
+        sleep: Waits between attempts; replaced in tests.
+
+    Raises:
+        ConfigError: If a setting breaks its rule.
+    """
+
+    def __init__(
+        self, model: str, api_base: str | None, key_env: str | None, deadline: float, sleep: Sleep = asyncio.sleep
+    ) -> None:
+        if not model.strip():
+            raise ConfigError("embedding_model must be the name of a model, got an empty text")
+        if api_base is not None and urlsplit(api_base).scheme not in ("http", "https"):
+            raise ConfigError("embedding_api_base must be an address such as http://127.0.0.1:8000/v1")
+        if not 0.1 <= deadline <= 3600:
+            raise ConfigError(f"embedding_deadline must be 0.1 to 3600 s, got {deadline:g}")
+        self.model, self.api_base, self.key_env, self.deadline = model, api_base, key_env, deadline
+        self._retries = Retries(model, ATTEMPTS, deadline, lambda retry: None, sleep)
+
+    def embed(self, texts: Sequence[str]) -> list[list[float]]:
+        """Embed some texts in one request.
+
+        Args:
+            texts: The texts; may be empty.
+
+        Returns:
+            One vector a text, all of one length.
+
+        Raises:
+            ModelUnavailableError: If the server does not answer, retries included.
+            ModelError: If it must be mended: no key, no such model, no server.
+        """
+        if not texts:
+            return []
+        try:
+            return loop().run(self._embed(list(texts)))
+        except CallError as fault:
+            failed = fault
+        where = self.api_base or f"the provider of {self.model}"
+        if failed.kind.passes and failed.kind is not Kind.UNREACHABLE:
+            raise ModelUnavailableError(f"{self.model}: {where} {failed}")
+        raise ModelError(f"the embedding model {self.model} cannot be used: {where} {failed}; {_CURE}")
+
+    async def _embed(self, texts: list[str]) -> list[list[float]]:
+        key = self._key()
+        await load_litellm()
+
+        async def attempt() -> Any:  # noqa: ANN401 - LiteLLM's response has no narrow type
+            return await self._retries.within_deadline(self._send(texts, key))
+
+        response = await self._retries.run(attempt, lambda fault: fault.kind.passes)
+        return self._vectors(response, len(texts))
+
+    async def _send(self, texts: list[str], key: str | None) -> Any:  # noqa: ANN401
+        litellm = await load_litellm()
+        try:
+            return await litellm.aembedding(
+                model=self.model,
+                custom_llm_provider=provider_of(self.model, self.api_base),
+                input=texts,
+                api_base=self.api_base,
+                api_key=key or NO_KEY,
+                timeout=self.deadline,
+                max_retries=0,
+                num_retries=0,
+                encoding_format="float",
+            )
+        except Exception as error:
+            fault = fault_of(error, key)
+        # Outside the handler: the library's exception, which may quote the key, is not dragged along as context.
+        raise fault
+
+    def _key(self) -> str | None:
+        if self.key_env is None:
+            if self.api_base is None:
+                raise ModelError(
+                    "memory.embedding_api_base must be the address of your server, got null; only with "
+                    "memory.embedding_key_env can it be left out"
+                )
+            return None
+        key = os.environ.get(self.key_env, "").strip()
+        if not key:
+            raise ModelError(
+                f"{self.key_env} is not set; put the key of the embedding model into that environment variable, or set "
+                "memory.embedding_key_env to the name of another one (null if the server wants no key)"
+            )
+        return key
+
+    def _vectors(self, response: Any, wanted: int) -> list[list[float]]:  # noqa: ANN401
+        """Read the vectors in the order of the texts."""
+        try:
+            entries = sorted((entry if isinstance(entry, dict) else dict(entry) for entry in response.data), key=_place)
+            vectors = [[float(x) for x in entry["embedding"]] for entry in entries]
+        except (TypeError, ValueError, KeyError, AttributeError) as error:
+            raise CallError(Kind.UNREADABLE, "no embeddings in the answer") from error
+        lengths = {len(vector) for vector in vectors}
+        if len(vectors) != wanted or len(lengths) != 1 or not all(isfinite(x) for v in vectors for x in v):
+            raise CallError(Kind.UNREADABLE, f"{wanted} vectors of one length with finite numbers expected")
+        return vectors
+
+
+def _place(entry: dict[str, Any]) -> int:
+    return int(entry.get("index", 0))

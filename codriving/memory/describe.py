@@ -1,0 +1,151 @@
+"""A situation as it is remembered: the same things that a decider is told, without a name, a place or a route."""
+
+from math import cos, hypot, isfinite, sin
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.experience import Description
+from codriving.datatypes.scene_description import Neighbour, Role
+from codriving.datatypes.situation import Situation
+
+NOBODY = "nobody"
+DRIVERS = {"CAV": "CAV", "HDV": "human", None: "unknown"}
+
+
+def describe(situation: Situation) -> Description:
+    """Describe a situation.
+
+    Args:
+        situation: What the CAV is told; nothing else is used.
+    """
+    numbers: dict[str, float] = {}
+    kinds: dict[str, str] = {}
+    scene = _scene(situation, numbers, kinds)
+    conflict = _conflict(situation, numbers, kinds)
+    order = _order(situation, numbers, kinds)
+    return Description(scene, conflict, order, {name: round(x, 3) for name, x in numbers.items()}, kinds)
+
+
+def _scene(situation: Situation, numbers: dict[str, float], kinds: dict[str, str]) -> str:
+    """The CAV itself, and who is next to it on its lane and anywhere else."""
+    told, ego = situation.scene, situation.scene.ego
+    numbers["speed"], numbers["target"] = ego.speed, told.intent.target_speed
+    words = [f"Driving {ego.speed:.1f} m/s, target {told.intent.target_speed:.1f} m/s"]
+    for role, name, where in ((Role.LEADING, "lead", "ahead"), (Role.REARING, "rear", "behind")):
+        other = next((n for n in told.neighbours if n.role is role), None)
+        if other is None or other.gap is None:
+            words.append(f"{NOBODY} {where} on the lane")
+            continue
+        numbers[f"{name}_gap"], numbers[f"{name}_speed"] = max(other.gap, 0.0), other.speed
+        words.append(f"a vehicle {other.gap:.0f} m {where} on the lane at {other.speed:.1f} m/s")
+    if told.must_change is not None:
+        numbers["room"] = told.must_change.room
+        words.append(f"the lane has to be changed within {told.must_change.room:.0f} m")
+    words += _beside(situation, numbers)
+    words += _nearest(situation, numbers)
+    kinds["allowed"] = " ".join(sorted(str(action) for action in situation.allowed))
+    words.append(f"allowed: {kinds['allowed']}")
+    return "; ".join(words) + "."
+
+
+def _beside(situation: Situation, numbers: dict[str, float]) -> list[str]:
+    """Who is next ahead and next behind on the lanes beside, where lanes are known."""
+    told, ego = situation.scene, situation.scene.ego
+    words = []
+    for lane in told.adjacent_lanes:
+        side = "left" if lane[2] < ego.lane[2] else "right"
+        numbers[f"{side}_lane"] = 1.0
+        gaps: dict[str, tuple[float, float]] = {}
+        for n in (n for n in told.neighbours if n.lane == lane):
+            along = cos(ego.heading) * (n.x - ego.x) + sin(ego.heading) * (n.y - ego.y)
+            gap = max(abs(along) - (n.length + ego.length) / 2, 0.0)
+            where = "ahead" if along > 0 else "behind"
+            gaps[where] = min(gaps.get(where, (gap, n.speed)), (gap, n.speed))
+        for where, (gap, speed) in sorted(gaps.items()):
+            numbers[f"{side}_{where}"], numbers[f"{side}_{where}_speed"] = gap, speed
+            words.append(f"on the {side} lane a vehicle {gap:.0f} m {where} at {speed:.1f} m/s")
+        if not gaps:
+            words.append(f"the {side} lane is empty")
+    return words
+
+
+def _nearest(situation: Situation, numbers: dict[str, float]) -> list[str]:
+    """Whoever is nearest of those ahead, wherever they drive: all that is seen where no conflicts are."""
+    ego = situation.scene.ego
+    along, across = cos(ego.heading), sin(ego.heading)
+
+    def place(n: Neighbour) -> tuple[float, float]:
+        dx, dy = n.x - ego.x, n.y - ego.y
+        return along * dx + across * dy, along * dy - across * dx
+
+    ahead = [n for n in situation.scene.neighbours if n.role is not Role.LEADING and place(n)[0] > 0]
+    if not ahead:
+        return []
+    nearest = min(ahead, key=lambda n: (hypot(n.x - ego.x, n.y - ego.y), n.id))
+    numbers["near_ahead"], numbers["near_right"] = place(nearest)
+    numbers["near_speed"] = nearest.speed
+    side = "right" if numbers["near_right"] > 0 else "left"
+    far, aside = numbers["near_ahead"], abs(numbers["near_right"])
+    return [f"the nearest other vehicle {far:.0f} m ahead and {aside:.0f} m to the {side} at {nearest.speed:.1f} m/s"]
+
+
+def _conflict(situation: Situation, numbers: dict[str, float], kinds: dict[str, str]) -> str:
+    """The most urgent conflict, and how many more there are."""
+    if not situation.conflicts:
+        kinds["relation"] = kinds["severity"] = "none"
+        return "No conflict."
+    c = situation.conflicts[0]
+    other = situation.scene.neighbour(c.other)
+    kinds["relation"], kinds["severity"] = str(c.relation), str(c.severity)
+    kinds["driver"] = DRIVERS[None if other is None else other.kind]
+    numbers.update(
+        mine=c.distances[0], its=c.distances[1], my_ttcp=c.ttcp[0], its_ttcp=c.ttcp[1], later=c.ttcp[0] - c.ttcp[1]
+    )
+    numbers["dttcp"], numbers["conflicts"] = c.dttcp, len({k.other for k in situation.conflicts})
+    if other is not None:
+        numbers["its_speed"] = other.speed
+    if isfinite(situation.clear_times[0]):
+        numbers["free"] = situation.clear_times[0]
+    return _words(c, kinds["driver"], numbers)
+
+
+def _words(c: Conflict, driver: str, numbers: dict[str, float]) -> str:
+    more = int(numbers["conflicts"]) - 1
+    speed = f" at {numbers['its_speed']:.1f} m/s" if "its_speed" in numbers else ""
+    return (
+        f"{str(c.relation).capitalize()} conflict with a {driver} vehicle: it is {c.distances[1]:.0f} m away{speed}, "
+        f"TTCP {c.ttcp[1]:.1f} s; the CAV is {c.distances[0]:.0f} m away, TTCP {c.ttcp[0]:.1f} s; "
+        f"dTTCP {c.dttcp:.1f} s, {c.severity}" + (f"; conflicts with {more} more" if more else "") + "."
+    )
+
+
+def _order(situation: Situation, numbers: dict[str, float], kinds: dict[str, str]) -> str:
+    """Who goes first in the most urgent conflict, and how many go before the CAV altogether."""
+    ego = situation.scene.ego.id
+    before = {p.first for p in situation.order.precedences if p.second == ego}
+    numbers["before"] = len(before)
+    first = None
+    if situation.conflicts:
+        first = situation.order.first_of(ego, situation.conflicts[0].other)
+    kinds["order"] = "none" if first is None else "first" if first == ego else "second"
+    if first is None:
+        return f"Nothing was agreed; {len(before)} go before the CAV." if before else "Nothing was agreed."
+    return f"The CAV goes {kinds['order']}; {len(before)} go before it."
+
+
+def brief(description: Description, action: Action) -> str:
+    """Say in one line what a situation was and what was done, short enough for a prompt.
+
+    Args:
+        description: The situation.
+        action: What was done.
+    """
+    n, k = description.numbers, description.kinds
+    if k["relation"] == "none":
+        lead = f", {n['lead_gap']:.0f} m behind {n['lead_speed']:.1f} m/s" if "lead_gap" in n else ""
+        return f"At {n['speed']:.1f} m/s, no conflict{lead}: {action}."
+    order = {"first": "first", "second": "second", "none": "not ordered"}[k["order"]]
+    return (
+        f"At {n['speed']:.1f} m/s, {k['relation']} with {k['driver']}, {n['mine']:.0f} m and {n['its']:.0f} m, "
+        f"TTCP {n['my_ttcp']:.1f} s and {n['its_ttcp']:.1f} s, dTTCP {n['dttcp']:.1f} s, {order}: {action}."
+    )

@@ -1,0 +1,49 @@
+"""What an embedder is: descriptions to vectors whose cosine tells how alike two situations are."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.experience import Description
+
+Vectors = NDArray[np.float32]
+
+
+class Embedder(Protocol):
+    """Turns descriptions into vectors.
+
+    Attributes:
+        name: Name and version; vectors of another name cannot be compared.
+        dimension: Length of the vectors; None if that is known only after the first call.
+    """
+
+    name: str
+
+    @property
+    def dimension(self) -> int | None:
+        """Length of the vectors."""
+        ...
+
+    def embed(self, descriptions: Sequence[Description]) -> Vectors:
+        """Return one vector a description, each of length 1.
+
+        Args:
+            descriptions: What to embed; may be empty.
+
+        Returns:
+            Vectors (n, dimension); a description without anything to go by gives zeros.
+        """
+        ...
+
+
+def unit(vectors: NDArray[np.float64]) -> Vectors:
+    """Scale each vector to length 1; zeros stay zeros.
+
+    Args:
+        vectors: Vectors (n, dimension).
+    """
+    norms = np.linalg.norm(vectors, axis=1, keepdims=True)
+    scaled: Vectors = (vectors / np.where(norms > 0, norms, 1.0)).astype(np.float32)
+    return scaled

@@ -1,0 +1,121 @@
+"""``memory=frozen``: a snapshot that is recalled from and never changed, so that tables depend on no order."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+
+from codriving.datatypes.experience import Experience, Interaction, Memory
+from codriving.datatypes.situation import Situation
+from codriving.errors import ConfigError, MemoryFileError
+from codriving.memory.embedders import EmbeddingServer, make_embedder
+from codriving.memory.recall import Recall
+from codriving.memory.recollection import Recollection, open_recollection
+
+AUTO = "auto"
+"""The word for the snapshot as it is when a run begins."""
+
+
+class FrozenMemory:
+    """A snapshot, as ``codriving memory build`` leaves it.
+
+    Args:
+        file: The file.
+        snapshot: SHA-256 of its contents, or ``auto`` for what they are when a run begins.
+        interactions: How many of its first interactions count; None for all.
+        shots: Experiences that each CAV is told at most.
+        least_similarity: Below this cosine an experience says nothing of a situation.
+        embedder: ``features``, ``words`` or ``litellm``; has to be the file's.
+        embedding_model: For ``litellm``: model, as LiteLLM calls it.
+        embedding_api_base: For ``litellm``: address of the server; None for the provider's own.
+        embedding_key_env: For ``litellm``: name of the environment variable that holds the key; None sends none.
+        embedding_deadline: For ``litellm``: how long one attempt may take [s].
+
+    Attributes:
+        learns: Whether it grows; it does not.
+        reflections: Mistakes that a model is asked about; none.
+        digest: SHA-256 of what is recalled from.
+        label: What tables say of it.
+
+    Raises:
+        ConfigError: If a setting breaks its rule.
+        MemoryFileError: If the file is missing, damaged, of another embedder or version, or not the snapshot.
+    """
+
+    learns = False
+    reflections = 0
+
+    def __init__(
+        self,
+        file: str | None,
+        snapshot: str,
+        interactions: int | None,
+        shots: int,
+        least_similarity: float,
+        embedder: str,
+        embedding_model: str,
+        embedding_api_base: str | None,
+        embedding_key_env: str | None,
+        embedding_deadline: float,
+    ) -> None:
+        if file is None:
+            raise ConfigError("file must name a file of memories, got null; make one with codriving memory build")
+        if interactions is not None and interactions < 0:
+            raise ConfigError(f"interactions must be 0 or more, or null for all, got {interactions}")
+        server = EmbeddingServer(embedding_model, embedding_api_base, embedding_key_env, embedding_deadline)
+        self._recall, self._embedder = Recall(shots, least_similarity), make_embedder(embedder, server)
+        path = Path(file).expanduser()
+        self._recollection = _opened(path, embedder, server, interactions, _stamp(path))
+        self.digest = self._recollection.digest
+        if snapshot not in (AUTO, self.digest):
+            raise MemoryFileError(
+                f"{file} does not hold the snapshot {snapshot[:12]} but {self.digest[:12]}: it has changed since; "
+                "restore it, or set memory.snapshot=auto and another run=<name>"
+            )
+        self.label = f"frozen {self.digest[:8]}, {self._recollection.interactions} interactions"
+
+    def begin(self, seed: int) -> None:
+        """Begin an episode; nothing depends on which.
+
+        Args:
+            seed: Seed of the episode.
+        """
+
+    def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
+        """Find what is like each situation.
+
+        Args:
+            situations: What each CAV is told.
+
+        Returns:
+            The memories of each, most similar first.
+        """
+        return self._recall.find(self._recollection, self._embedder, situations)
+
+    def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
+        """Learn nothing.
+
+        Args:
+            interaction: Not used.
+            experiences: Not used.
+
+        Returns:
+            0.
+        """
+        return 0
+
+
+def _stamp(path: Path) -> tuple[int, int]:
+    """What tells that a file has changed, without reading it."""
+    try:
+        stat = path.stat()
+    except OSError:
+        return 0, 0
+    return stat.st_mtime_ns, stat.st_size
+
+
+@lru_cache(maxsize=8)
+def _opened(
+    path: Path, embedder: str, server: EmbeddingServer, interactions: int | None, stamp: tuple[int, int]
+) -> Recollection:
+    """Open a file; all cells and episodes of a process share what was read, as long as the file stays as it is."""
+    return open_recollection(path, make_embedder(embedder, server), interactions)

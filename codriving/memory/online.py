@@ -1,0 +1,118 @@
+"""``memory=online``: learns while a batch is driven, each episode from those with smaller seeds."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from codriving.datatypes.experience import Experience, Interaction, Memory
+from codriving.datatypes.situation import Situation
+from codriving.errors import ConfigError
+from codriving.memory.embedders import EmbeddingServer, make_embedder
+from codriving.memory.recall import Recall
+from codriving.memory.recollection import Recollection
+from codriving.memory.store import MemoryStore
+
+REFLECTIONS = ("rules", "llm")
+
+
+class OnlineMemory:
+    """A memory that grows by one episode after another.
+
+    What an episode recalls is what episodes with smaller seeds have left; so a batch that was interrupted goes on as if
+    it had not been, and an episode that is driven again replaces what it left before.
+
+    Args:
+        file: The file that it grows in; None takes one in the run folder.
+        shots: Experiences that each CAV is told at most.
+        least_similarity: Below this cosine an experience says nothing of a situation.
+        duplicates: Similarity from which on two experiences with the same action and verdict are kept as one.
+        reflection: Who writes the lessons: ``rules``, or ``llm`` for those of mistakes.
+        reflections: Mistakes of an episode that a model is asked about at most, the worst first.
+        embedder: ``features``, ``words`` or ``litellm``.
+        embedding_model: For ``litellm``: model, as LiteLLM calls it.
+        embedding_api_base: For ``litellm``: address of the server; None for the provider's own.
+        embedding_key_env: For ``litellm``: name of the environment variable that holds the key; None sends none.
+        embedding_deadline: For ``litellm``: how long one attempt may take [s].
+
+    Attributes:
+        learns: Whether it grows.
+        reflections: Mistakes of an episode that a model is asked about; 0 if the rules write all lessons.
+        label: What tables say of it.
+
+    Raises:
+        ConfigError: If a setting breaks its rule.
+    """
+
+    learns = True
+    label = "online"
+
+    def __init__(
+        self,
+        file: str | None,
+        shots: int,
+        least_similarity: float,
+        duplicates: float,
+        reflection: str,
+        reflections: int,
+        embedder: str,
+        embedding_model: str,
+        embedding_api_base: str | None,
+        embedding_key_env: str | None,
+        embedding_deadline: float,
+    ) -> None:
+        if not 0.5 <= duplicates <= 1:
+            raise ConfigError(f"duplicates must be 0.5 to 1, got {duplicates:g}")
+        if reflection not in REFLECTIONS:
+            raise ConfigError(f"reflection must be one of {', '.join(REFLECTIONS)}, got {reflection!r}")
+        if not 1 <= reflections <= 1000:
+            raise ConfigError(f"reflections must be 1 to 1000, got {reflections}")
+        server = EmbeddingServer(embedding_model, embedding_api_base, embedding_key_env, embedding_deadline)
+        self._recall, self._embedder = Recall(shots, least_similarity), make_embedder(embedder, server)
+        self.file, self.duplicates = file, duplicates
+        self.reflections = reflections if reflection == "llm" else 0
+        self._recollection: Recollection | None = None
+
+    def begin(self, seed: int) -> None:
+        """Begin an episode: what was learnt with smaller seeds is what can be recalled.
+
+        Args:
+            seed: Seed of the episode.
+
+        Raises:
+            MemoryFileError: If the file cannot be used.
+        """
+        with self._store() as store:
+            self._recollection = store.recollection(before=seed)
+
+    def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
+        """Find what is like each situation.
+
+        Args:
+            situations: What each CAV is told.
+
+        Returns:
+            The memories of each, most similar first.
+        """
+        if self._recollection is None:
+            return [()] * len(situations)
+        return self._recall.find(self._recollection, self._embedder, situations)
+
+    def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
+        """Keep what was learnt in an episode.
+
+        Args:
+            interaction: The episode.
+            experiences: What to keep of it.
+
+        Returns:
+            How many were new.
+
+        Raises:
+            MemoryFileError: If the file cannot be written.
+        """
+        with self._store() as store:
+            return store.add(interaction, experiences)
+
+    def _store(self) -> MemoryStore:
+        if self.file is None:
+            raise ConfigError("memory.file must name the file that memory=online grows in, got null")
+        return MemoryStore(Path(self.file).expanduser(), self._embedder, self.duplicates)

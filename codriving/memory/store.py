@@ -1,0 +1,184 @@
+"""A memory that grows: one SQLite file is the truth, and what is alike is kept once with a count."""
+
+import sqlite3
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import astuple
+from pathlib import Path
+from typing import Self, TypeVar
+
+import numpy as np
+
+from codriving.datatypes.experience import Experience, Interaction
+from codriving.memory.embedder import Embedder, Vectors
+from codriving.memory.index import Index
+from codriving.memory.recollection import Recollection, check_embedder, damaged, load
+from codriving.memory.rows import COLUMNS, to_row, vectors_of
+from codriving.memory.store_file import about, create, open_file, unwritable
+
+NEIGHBOURS = 16
+"""Nearest experiences among which one with the same action and verdict is looked for."""
+
+Result = TypeVar("Result")
+
+
+class MemoryStore:
+    """A file of memories that is open for writing; a context manager. Several may have the same file open.
+
+    Args:
+        path: The file; made if it is missing.
+        embedder: Who embeds what is added.
+        duplicates: Similarity from which on two experiences with the same action and verdict are one; above 1 none are.
+
+    Raises:
+        MemoryFileError: If the file cannot be used or written, or is of another embedder or version.
+    """
+
+    def __init__(self, path: Path, embedder: Embedder, duplicates: float) -> None:
+        self.path, self.embedder, self.duplicates = path, embedder, duplicates
+        self._connection: sqlite3.Connection | None = None
+        self._index: Index | None = None
+        self._kinds: dict[int, tuple[str, str]] = {}
+        self._version = 0
+        if path.exists():
+            self._open()
+
+    def add(self, interaction: Interaction, experiences: Sequence[Experience], vectors: Vectors | None = None) -> int:
+        """Add what was learnt in one episode, all of it or nothing; the same episode driven again replaces itself.
+
+        Args:
+            interaction: The episode.
+            experiences: What to keep of it; may be empty.
+            vectors: Their vectors (n, dimension), if they are known.
+
+        Returns:
+            How many were new, not like one that was there.
+
+        Raises:
+            MemoryFileError: If the file cannot be written, or a vector cannot be stored.
+        """
+        made = self.embedder.embed([e.description for e in experiences]) if vectors is None else vectors
+        if self._connection is None:
+            self._open(made.shape[1] if len(made) else None)
+        if len(made) and made.shape[1] != self._dimension:
+            raise damaged(self.path, ValueError(f"vectors of {self._dimension} numbers expected, got {made.shape[1]}"))
+        if not np.isfinite(made).all():
+            raise damaged(self.path, ValueError("a new vector holds a number that is not finite"))
+
+        def change(connection: sqlite3.Connection) -> int:
+            self._forget(connection, interaction)
+            self._catch_up(connection)
+            cursor = connection.execute(
+                "INSERT INTO interactions (scenario, seed, method, variant, reasoner) VALUES (?, ?, ?, ?, ?)",
+                astuple(interaction),
+            )
+            new = [
+                self._keep(connection, int(cursor.lastrowid or 0), experience, vector)
+                for experience, vector in zip(experiences, made, strict=True)
+            ]
+            return sum(new)
+
+        return self._change(change)
+
+    def recollection(self, before: int | None = None) -> Recollection:
+        """Return what can be recalled now.
+
+        Args:
+            before: Only what was learnt with smaller seeds; None for everything.
+
+        Raises:
+            MemoryFileError: If the file is damaged.
+        """
+        if self._connection is None:
+            dimension = self.embedder.dimension or 1
+            return Recollection((), np.zeros((0, dimension), dtype=np.float32), "", 0)
+        try:
+            rows = self._connection.execute("SELECT id, seed FROM interactions ORDER BY id").fetchall()
+            chosen = [number for number, seed in rows if before is None or seed < before]
+            return load(self._connection, self._dimension, self.embedder.name, chosen)
+        except (sqlite3.Error, ValueError) as error:
+            raise damaged(self.path, error) from error
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._connection is not None:
+            self._connection.close()
+            self._connection = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _open(self, dimension: int | None = None) -> None:
+        if not self.path.exists():
+            create(self.path, self.embedder.name, dimension or self.embedder.dimension or 1)
+        connection = open_file(self.path, write=True)
+        try:
+            self._dimension = check_embedder(self.path, about(connection), self.embedder)
+        except BaseException:
+            connection.close()
+            raise
+        self._connection = connection
+
+    def _change(self, work: Callable[[sqlite3.Connection], Result]) -> Result:
+        """Do something in one transaction; a process that is killed meanwhile has done nothing."""
+        assert self._connection is not None
+        try:
+            self._connection.execute("BEGIN IMMEDIATE")
+            try:
+                done = work(self._connection)
+                self._connection.execute("COMMIT")
+                return done
+            except BaseException:
+                # The index may know of what never came to be.
+                self._index = None
+                with suppress(sqlite3.Error):
+                    self._connection.execute("ROLLBACK")
+                raise
+        except ValueError as error:
+            raise damaged(self.path, error) from error
+        except sqlite3.Error as error:
+            raise unwritable(self.path, error) from error
+
+    def _forget(self, connection: sqlite3.Connection, interaction: Interaction) -> None:
+        """Take back what an earlier drive of the same episode left, so that it counts once."""
+        query = "SELECT id FROM interactions WHERE (scenario, seed, method, variant, reasoner) = (?, ?, ?, ?, ?)"
+        for (number,) in connection.execute(query, astuple(interaction)).fetchall():
+            connection.execute("DELETE FROM sightings WHERE interaction = ?", (number,))
+            connection.execute("DELETE FROM interactions WHERE id = ?", (number,))
+            connection.execute("DELETE FROM experiences WHERE id NOT IN (SELECT experience FROM sightings)")
+            self._index = None
+
+    def _catch_up(self, connection: sqlite3.Connection) -> None:
+        """Take in what others have changed since."""
+        (version,) = connection.execute("PRAGMA data_version").fetchone()
+        if self._index is None or version != self._version:
+            self._version = version
+            self._index, self._kinds = Index(self._dimension), {}
+        last = self._index.ids[-1] if self._index.ids else 0
+        query = "SELECT id, vector, action, verdict FROM experiences WHERE id > ? ORDER BY id"
+        rows = connection.execute(query, (last,)).fetchall()
+        self._index.add([row[0] for row in rows], vectors_of([row[1] for row in rows], self._dimension))
+        self._kinds.update((row[0], (row[2], row[3])) for row in rows)
+
+    def _keep(self, connection: sqlite3.Connection, interaction: int, experience: Experience, vector: Vectors) -> bool:
+        """Note one experience: as another sighting of one that is like it, or as a new one."""
+        assert self._index is not None
+        kind = (str(experience.action), str(experience.verdict))
+        # Above 1 nothing is a duplicate, and nobody need look.
+        (hits,) = self._index.search(vector[None], NEIGHBOURS) if self.duplicates <= 1 else ([],)
+        known = next((n for n, similarity in hits if similarity >= self.duplicates and self._kinds[n] == kind), None)
+        if known is None:
+            marks = ", ".join("?" * len(COLUMNS))
+            insert = f"INSERT INTO experiences ({', '.join(COLUMNS)}) VALUES ({marks})"
+            number = int(connection.execute(insert, to_row(experience, vector)).lastrowid or 0)
+            self._index.add([number], vector[None])
+            self._kinds[number] = kind
+        else:
+            number = known
+        connection.execute(
+            "INSERT INTO sightings VALUES (?, ?, ?, ?)", (number, interaction, experience.step, experience.ego)
+        )
+        return known is None

@@ -1,0 +1,138 @@
+"""The SQLite file of a memory: made whole, checked on opening, one transaction a change."""
+
+import os
+import sqlite3
+import uuid
+from contextlib import closing, suppress
+from pathlib import Path
+
+from codriving.errors import MemoryFileError
+
+LAYOUT = 1
+"""Changes when an older version could not read the file any more."""
+
+APPLICATION = 0x43444D31
+"""What tells such a file from any other SQLite file ("CDM1")."""
+
+BUSY = 60.0
+"""How long to wait for somebody else who is writing [s]."""
+
+_TABLES = """
+CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE interactions (
+    id INTEGER PRIMARY KEY, scenario TEXT NOT NULL, seed INTEGER NOT NULL,
+    method TEXT NOT NULL, variant TEXT NOT NULL, reasoner TEXT NOT NULL
+);
+CREATE TABLE experiences (
+    id INTEGER PRIMARY KEY, vector BLOB NOT NULL, action TEXT NOT NULL, verdict TEXT NOT NULL,
+    scene TEXT NOT NULL, conflict TEXT NOT NULL, passing TEXT NOT NULL, numbers TEXT NOT NULL, kinds TEXT NOT NULL,
+    effect TEXT NOT NULL, lesson TEXT NOT NULL
+);
+CREATE TABLE sightings (
+    experience INTEGER NOT NULL REFERENCES experiences (id), interaction INTEGER NOT NULL REFERENCES interactions (id),
+    step INTEGER NOT NULL, ego TEXT NOT NULL, PRIMARY KEY (interaction, step, ego)
+) WITHOUT ROWID;
+CREATE INDEX sightings_of ON sightings (experience);
+"""
+"""``interactions`` are episodes, ``experiences`` what was kept of them, ``sightings`` where each of those was made."""
+
+
+def create(path: Path, embedder: str, dimension: int) -> None:
+    """Make an empty file; if several processes do, the first wins and nobody ever sees half of it.
+
+    Args:
+        path: The file; its folder is made where it is missing.
+        embedder: Name of the embedder of its vectors.
+        dimension: Length of the vectors.
+
+    Raises:
+        MemoryFileError: If it cannot be written.
+    """
+    partial = path.parent / f".partial-{path.name}-{uuid.uuid4().hex[:12]}"
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with closing(connect(partial.resolve().as_uri())) as connection:
+            connection.executescript(_TABLES)
+            about = {"embedder": embedder, "dimension": str(dimension)}
+            connection.executemany("INSERT INTO about VALUES (?, ?)", about.items())
+            connection.execute(f"PRAGMA application_id = {APPLICATION}")
+            connection.execute(f"PRAGMA user_version = {LAYOUT}")
+        with suppress(FileExistsError):
+            os.link(partial, path)
+    except (OSError, sqlite3.Error) as error:
+        raise unwritable(path, error) from error
+    finally:
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
+
+
+def open_file(path: Path, write: bool) -> sqlite3.Connection:
+    """Open a file that is there.
+
+    A writer that was killed may have left a journal beside it; whoever opens it next puts it back as it was.
+
+    Args:
+        path: The file.
+        write: Whether it is to be written; otherwise it is never changed.
+
+    Raises:
+        MemoryFileError: If it is missing, no such file, or of another version.
+    """
+    if not path.is_file():
+        raise MemoryFileError(f"there is no file of memories {path}; make one with codriving memory build")
+    try:
+        connection = connect(f"{path.resolve().as_uri()}?mode={'rw' if write or _journal(path).exists() else 'ro'}")
+        try:
+            _check(path, connection)
+        except BaseException:
+            connection.close()
+            raise
+    except sqlite3.Error as error:
+        raise MemoryFileError(
+            f"{path} cannot be read as a file of memories ({error}); name another one, or make one with codriving "
+            "memory build"
+        ) from error
+    return connection
+
+
+def connect(uri: str) -> sqlite3.Connection:
+    """Open a connection in which nothing begins a transaction but us.
+
+    Args:
+        uri: Address of the file.
+    """
+    return sqlite3.connect(uri, uri=True, timeout=BUSY, isolation_level=None, check_same_thread=False)
+
+
+def about(connection: sqlite3.Connection) -> dict[str, str]:
+    """Read what a file says of itself: ``embedder`` and ``dimension``.
+
+    Args:
+        connection: The open file.
+    """
+    return {str(key): str(value) for key, value in connection.execute("SELECT key, value FROM about")}
+
+
+def unwritable(path: Path, error: Exception) -> MemoryFileError:
+    """The error for a file that cannot be written.
+
+    Args:
+        path: The file.
+        error: What the system said.
+    """
+    return MemoryFileError(f"cannot write the memory {path}: {error}; make room, or name another file")
+
+
+def _journal(path: Path) -> Path:
+    return path.with_name(f"{path.name}-journal")
+
+
+def _check(path: Path, connection: sqlite3.Connection) -> None:
+    (kind,) = connection.execute("PRAGMA application_id").fetchone()
+    (layout,) = connection.execute("PRAGMA user_version").fetchone()
+    if kind != APPLICATION:
+        raise MemoryFileError(f"{path} is no file of memories; name another one")
+    if layout != LAYOUT:
+        raise MemoryFileError(
+            f"{path} was written by another version (layout {layout}, not {LAYOUT}); build it again with this one"
+        )

@@ -1,0 +1,101 @@
+"""Case-based reasoning for the built-in rules: what was a mistake in the most similar cases is not repeated.
+
+The rules see of a memory what a model is told: what was done, what that did to the conflict, how alike the situation
+was and how often it happened.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from math import log2
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.experience import Memory, Verdict
+from codriving.datatypes.situation import ActionAssessment, Decision, Situation
+
+BY_SPEED = (Action.SLOWER, Action.IDLE, Action.FASTER)
+"""Actions along the lane from the slowest to the fastest."""
+
+
+SIGNS = {Verdict.EASED: 1.0, Verdict.INTENSIFIED: -1.0, Verdict.TOO_CAUTIOUS: -1.0}
+"""How an effect speaks for or against an action."""
+
+
+def reconsider(situation: Situation, decision: Decision) -> Decision:
+    """Take another action than the rules would if the memories speak against it.
+
+    The cases in which an action was taken speak for it if it eased the conflict, and against it if it intensified the
+    conflict or was too cautious. If they speak against what the rules decide, the CAV does something else that is safe
+    and that they speak less against: something faster if it was too cautious, and otherwise what they speak most for,
+    or what gets it farthest if they are silent. If there is no such action, the decision stands.
+
+    Args:
+        situation: What the CAV is told, with its memories.
+        decision: What the rules decide without them.
+
+    Returns:
+        A decision; ``recalled`` names the memories that changed it.
+    """
+    if not situation.memories or any(a.safe and a.reasons for a in situation.assessments):
+        return decision
+    against = favour(situation.memories, decision.action)
+    if against >= 0:
+        return decision
+    verdict = _main_objection(situation.memories, decision.action)
+    others = [
+        a
+        for a in situation.assessments
+        if a.safe and a.action in BY_SPEED and favour(situation.memories, a.action) > against
+    ]
+    if verdict is Verdict.TOO_CAUTIOUS:
+        others = [a for a in others if BY_SPEED.index(a.action) > _speed(decision.action)]
+    if not others:
+        return decision
+    best = max(others, key=lambda a: _preference(situation.memories, a))
+    return _changed(situation, decision, best.action, verdict)
+
+
+def favour(memories: Iterable[Memory], action: Action) -> float:
+    """Weigh the cases in which an action was taken: by how alike and, more slowly, how many they are.
+
+    Args:
+        memories: The memories.
+        action: The action.
+
+    Returns:
+        Positive if they speak for it, negative if they speak against it, 0 if they are silent.
+    """
+    return sum(_weight(m) * SIGNS.get(m.verdict, 0.0) for m in memories if m.action is action)
+
+
+def _weight(memory: Memory) -> float:
+    return memory.similarity * (1 + log2(memory.count))
+
+
+def _main_objection(memories: Iterable[Memory], action: Action) -> Verdict:
+    weights = {
+        verdict: sum(_weight(m) for m in memories if (m.action, m.verdict) == (action, verdict))
+        for verdict in (Verdict.INTENSIFIED, Verdict.TOO_CAUTIOUS)
+    }
+    return max(weights, key=lambda verdict: weights[verdict])
+
+
+def _speed(action: Action) -> int:
+    return BY_SPEED.index(action) if action in BY_SPEED else len(BY_SPEED)
+
+
+def _preference(memories: Sequence[Memory], a: ActionAssessment) -> tuple[float, bool, float, int]:
+    """What the memories say counts first, then whether the order is kept, how far the CAV gets, and braking less."""
+    return favour(memories, a.action), a.progress is not None, a.progress or 0.0, _speed(a.action)
+
+
+def _changed(situation: Situation, decision: Decision, other: Action, verdict: Verdict) -> Decision:
+    cases = [m for m in situation.memories if (m.action, m.verdict) == (decision.action, verdict)]
+    number = sum(m.count for m in cases)
+    times = "once" if number == 1 else f"{number} times"
+    what = "was too cautious" if verdict is Verdict.TOO_CAUTIOUS else "intensified the conflict"
+    return replace(
+        decision,
+        action=other,
+        reason=f"{decision.action} {what} {times} in situations like this one, so {other}",
+        recalled=tuple(m.id for m in cases),
+    )

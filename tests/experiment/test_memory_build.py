@@ -1,0 +1,181 @@
+"""codriving memory build: what is driven, what is refused, and what a finished build leaves."""
+
+import json
+from pathlib import Path
+
+import pytest
+from remembered import description, experience, filled
+
+from codriving.config.compose import compose
+from codriving.config.show import fingerprint
+from codriving.errors import ConfigError, MemoryFileError
+from codriving.experiment.memory_build import build_points, run_build
+from codriving.experiment.memory_pages import merge_page, search_page, show_page
+from codriving.experiment.remembering import growing, learns, pinned
+from codriving.experiment.run import run_experiment
+from codriving.memory.reading import read_memory
+
+
+def config(*overrides: str) -> dict[str, object]:
+    return compose(build_points(overrides)[0].overrides)
+
+
+def test_a_build_learns_online_on_seeds_of_its_own() -> None:
+    made = config("scenario=merge", "interactions=7")
+    assert (made["episodes"], made["seed"], made["experiment"]) == (7, 20_000, "memory")
+    assert learns(made)
+    assert len(build_points(["scenario=merge,highway"])) == 2
+
+
+@pytest.mark.parametrize(
+    ("overrides", "said"),
+    [
+        (["interactions=none"], "interactions must be a whole number, 1 to 10000, got 'none'"),
+        (["interactions=0"], "interactions must be a whole number"),
+        (["episodes=3"], "takes interactions=N"),
+        (["memory=off"], "learns with memory=online"),
+        (["seed=0"], "seed must be 1000 or more to learn from, got 0"),
+        (["seed=999"], "seed must be 1000 or more"),
+    ],
+)
+def test_what_cannot_be_built_is_refused(overrides: list[str], said: str) -> None:
+    with pytest.raises(ConfigError, match=said):
+        build_points(overrides)
+
+
+def test_a_memory_grows_in_the_run_folder_unless_it_has_a_file(tmp_path: Path) -> None:
+    made = growing(config(), tmp_path, "cell")
+    assert made["memory"]["file"] == str(tmp_path / "memory" / "cell.sqlite")
+    assert made["method"]["memory"] == made["memory"]
+    own = config("memory.file=mine.sqlite")
+    assert growing(own, tmp_path, "cell") == own
+    plain = compose([])
+    assert growing(plain, tmp_path, "cell") == plain
+
+
+def test_a_snapshot_is_noted_by_its_contents_wherever_it_lies(tmp_path: Path) -> None:
+    one, two = (filled(tmp_path / name, [experience()]) for name in ("1.sqlite", "2.sqlite"))
+    first, second = (pinned(compose(["memory=frozen", f"memory.file={path}"])) for path in (one, two))
+    assert first["memory"]["snapshot"] == second["memory"]["snapshot"] != "auto"
+    assert first["method"]["memory"] == first["memory"]
+    assert fingerprint(first) == fingerprint(second)
+    filled(two, [experience(step=8)], first=20_007)
+    assert fingerprint(pinned(compose(["memory=frozen", f"memory.file={two}"]))) != fingerprint(first)
+
+
+def test_a_method_that_remembers_nothing_notes_nothing(tmp_path: Path) -> None:
+    path = filled(tmp_path / "m.sqlite", [experience()])
+    made = compose(["method=fcfs", "memory=frozen", f"memory.file={path}"])
+    assert pinned(made) == made
+    assert not learns(compose(["method=fcfs", "memory=online"]))
+
+
+def test_a_build_can_be_stopped_and_grown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two interactions and then two more are the same four as four at once, file and all."""
+    monkeypatch.chdir(tmp_path)
+    short = ["scenario.time_limit=4", "scenario.cavs=2"]
+    assert run_build([*short, "interactions=2", "run=parts"]) == 0
+    assert run_build([*short, "interactions=4", "run=parts"]) == 0
+    assert run_build([*short, "interactions=4", "run=whole"]) == 0
+    printed = capsys.readouterr().out
+    assert "Recall from it with memory=frozen memory.file=FILE." in printed
+    parts, whole = (
+        read_memory(Path("outputs/memory") / run / "memory/intersection-codriving-full.sqlite")
+        for run in ("parts", "whole")
+    )
+    assert parts.recollection.digest == whole.recollection.digest
+    assert [i.seed for i in whole.interactions] == [20_000, 20_001, 20_002, 20_003]
+    assert whole.recollection.digest[:12] in printed
+    assert "online" in Path("outputs/memory/whole/summary.csv").read_text()
+    for run in ("parts", "whole"):
+        records = [
+            json.loads(
+                (Path("outputs/memory") / run / f"episodes/intersection-codriving-full/{s}/record.json").read_text()
+            )
+            for s in range(20_000, 20_004)
+        ]
+        assert all(record["memory"] == "online" for record in records)
+
+
+def test_a_method_without_a_memory_cannot_be_built_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ConfigError, match="method 'fcfs' has no memory to build"):
+        run_build(["method=fcfs", "interactions=1"])
+    assert not list(tmp_path.glob("outputs/memory/*/episodes"))
+
+
+@pytest.fixture
+def both(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
+    monkeypatch.chdir(tmp_path)
+    one = filled(
+        Path("a.sqlite"), [experience(description(dttcp=0.5)), experience(description(relation="none"), step=5)]
+    )
+    two = filled(Path("b.sqlite"), [experience(description(dttcp=0.5), step=8)], first=30_000)
+    return one, two
+
+
+def test_show_says_what_a_memory_is_of(both: tuple[Path, Path]) -> None:
+    page = show_page(both[0], 1)
+    assert read_memory(both[0]).recollection.digest in page
+    assert "experiences   2, made 2 times" in page
+    assert "1 of intersection, codriving full, reasoner rules, seeds 20000 to 20000" in page
+    assert page.count("similar actions should be avoided") == 1
+
+
+def test_search_finds_by_words_and_near_numbers(both: tuple[Path, Path]) -> None:
+    first = search_page("a crossing conflict with serious danger", both[0], 2).splitlines()[1]
+    assert "#1," in first
+    assert "#2," in search_page("no conflict", both[0], 1).splitlines()[1]
+    assert "Nothing in" in search_page("zebra giraffe", both[0], 1)
+    with pytest.raises(ConfigError, match="nothing to search for"):
+        search_page(" ?! ", both[0], 1)
+
+
+def test_the_newest_memory_below_outputs_is_taken_if_none_is_named(both: tuple[Path, Path]) -> None:
+    with pytest.raises(MemoryFileError, match="there is no memory below outputs/"):
+        show_page(None, 1)
+    place = Path("outputs/memory/x/memory")
+    place.mkdir(parents=True)
+    both[0].rename(place / "a.sqlite")
+    assert str(place / "a.sqlite") in show_page(None, 1)
+
+
+def test_merging_counts_what_is_alike_once_and_changes_neither(both: tuple[Path, Path]) -> None:
+    before = [path.read_bytes() for path in both]
+    said = merge_page(*both, None, 0.98)
+    assert said.startswith("a+b.sqlite: 2 experiences of 3, from 2 interactions, snapshot ")
+    assert [path.read_bytes() for path in both] == before
+    assert [entry.count for entry in read_memory(Path("a+b.sqlite")).recollection.kept] == [2, 1]
+    with pytest.raises(MemoryFileError, match="is there already"):
+        merge_page(*both, None, 0.98)
+    assert "from 1 interactions" in merge_page(both[0], both[0], Path("same.sqlite"), 0.98)
+    with pytest.raises(MemoryFileError, match="there is no file of memories"):
+        merge_page(both[0], Path("none.sqlite"), Path("c.sqlite"), 0.98)
+    assert not Path("c.sqlite").exists()
+
+
+def test_tables_with_a_memory_are_the_same_for_any_number_of_workers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Learning is done in the order of the seeds whatever is asked for, and what is frozen depends on no order."""
+    monkeypatch.chdir(tmp_path)
+    short = ["scenario.time_limit=4", "scenario.cavs=2", "episodes=3", "seed=10000"]
+    kept = []
+    for workers in (1, 2):
+        assert run_experiment([*short, "memory=online", f"workers={workers}", f"run=learnt-{workers}"]) == 0
+        file = Path(f"outputs/run/learnt-{workers}/memory/intersection-codriving-full.sqlite")
+        recalled = [*short, "memory=frozen", f"memory.file={file}", f"workers={workers}", f"run=recalled-{workers}"]
+        assert run_experiment(recalled) == 0
+        kept.append(
+            {
+                (what, str(path.relative_to(f"outputs/run/{what}-{workers}"))): path.read_bytes()
+                for what in ("learnt", "recalled")
+                for path in sorted(Path(f"outputs/run/{what}-{workers}").rglob("*"))
+                if path.name in ("episodes.csv", "summary.csv", "record.json", "decisions.jsonl", "trajectory.csv")
+            }
+        )
+        kept[-1]["memory", "bytes"] = file.read_bytes()
+    assert len(kept[0]) == 2 * (2 + 3 * 3) + 1
+    assert kept[0] == kept[1]
