@@ -20,7 +20,8 @@ from codriving.errors import WeightsError
 from codriving.experiment.plan import make_plan
 from codriving.geometry.road_map import road_map
 from codriving.learning.weights import load, save, shipped
-from codriving.methods.madqn import Judged, Madqn
+from codriving.methods.learned import Judged
+from codriving.methods.madqn import Madqn
 from codriving.pictures.deliberated import deliberated
 
 Make = Callable[..., Environment]
