@@ -1,5 +1,7 @@
 """Transitions over several steps: sums, ends and what is dropped."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,6 @@ pytest.importorskip("torch")
 from codriving.datatypes.outcome import Ending
 from codriving.training.episode import Moment
 from codriving.training.nstep import Trail, Transition
-from codriving.training.trainer import remember
 
 GAMMA = 0.5
 MASK = np.array([True, True, False])
@@ -57,6 +58,14 @@ def test_the_last_step_of_a_bystander_is_dropped() -> None:
     assert made.dropped() == []
 
 
+def remembered(step: Moment, trails: dict[str, Trail], steps: int, discount: float) -> Iterator[Transition]:
+    """What the trainer makes of a step."""
+    pytest.importorskip("torch")
+    from codriving.training.trainer import remember
+
+    return remember(step, trails, steps, discount)
+
+
 def moment(
     ending: Ending | None, arrived: str = "", failed: str = "", rewards: tuple[float, ...] = (0.0,) * 3
 ) -> Moment:
@@ -78,21 +87,21 @@ def moment(
 
 def test_who_arrives_stops_while_the_others_go_on() -> None:
     trails: dict[str, Trail] = {}
-    found = list(remember(moment(None, arrived="B", rewards=(0.0, 1.0, 0.0)), trails, 1, GAMMA))
+    found = list(remembered(moment(None, arrived="B", rewards=(0.0, 1.0, 0.0)), trails, 1, GAMMA))
     assert [(t.action, t.gain, t.discount) for t in found] == [(0, 0, GAMMA), (1, 1, 0), (2, 0, GAMMA)]
 
 
 def test_a_crash_is_blamed_on_those_who_are_in_it() -> None:
     trails: dict[str, Trail] = {}
-    assert list(remember(moment(None), trails, 2, GAMMA)) == []
-    found = list(remember(moment(Ending.COLLISION, failed="AC", rewards=(-3.0, 0.5, -3.0)), trails, 2, GAMMA))
+    assert list(remembered(moment(None), trails, 2, GAMMA)) == []
+    found = list(remembered(moment(Ending.COLLISION, failed="AC", rewards=(-3.0, 0.5, -3.0)), trails, 2, GAMMA))
     assert [(t.action, t.gain, t.discount) for t in found] == [
         (0, -1.5, 0), (0, -3.0, 0), (1, 0.0, GAMMA), (2, -1.5, 0), (2, -3.0, 0),
     ]  # fmt: skip
 
 
 def test_the_time_limit_bootstraps_for_everybody() -> None:
-    found = list(remember(moment(Ending.TIMEOUT), {}, 2, GAMMA))
+    found = list(remembered(moment(Ending.TIMEOUT), {}, 2, GAMMA))
     assert [(t.action, t.discount, t.later[0]) for t in found] == [(0, 0.5, 100), (1, 0.5, 101), (2, 0.5, 102)]
 
 
