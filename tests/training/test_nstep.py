@@ -5,8 +5,6 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-pytest.importorskip("torch")
-
 from codriving.datatypes.outcome import Ending
 from codriving.training.episode import Moment
 from codriving.training.nstep import Trail, Transition
