@@ -1,10 +1,9 @@
 """``figures/learn.*``: success against the number of past interactions, a panel a scenario (paper, learning figure)."""
 
-import io
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from codriving.reports.figure_style import plain_settings, saved
 from codriving.reports.paper_learning import LearningStatement
 from codriving.reports.rows import Row
 from codriving.reports.wording import metrics_text, reasoner_text
@@ -23,19 +22,6 @@ STYLES = (
 )
 """Colour, marker and stroke of each level, in the palette of Okabe and Ito (2008); colour is never the only cue."""
 
-_SETTINGS = {
-    "font.family": "DejaVu Sans",
-    "font.size": 10.0,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#d9dbdf",
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    # Without it the names inside an SVG are drawn by lot.
-    "svg.hashsalt": "codriving",
-}
-
 
 def learning_figure(rows: Sequence[Row], paper: Sequence[LearningStatement], metrics: str) -> Mapping[str, bytes]:
     """Draw the figure.
@@ -48,23 +34,9 @@ def learning_figure(rows: Sequence[Row], paper: Sequence[LearningStatement], met
     Returns:
         The content of ``learn.png`` and ``learn.svg``; the same rows give the same bytes.
     """
-    with _plain_settings():
+    with plain_settings():
         figure = _draw(rows, paper, metrics)
-        return {
-            "learn.png": _saved(figure, "png", {"Software": None}),
-            "learn.svg": _saved(figure, "svg", {"Date": None, "Creator": None}),
-        }
-
-
-@contextmanager
-def _plain_settings() -> Iterator[None]:
-    """Matplotlib as it is shipped, whatever its user has set."""
-    import matplotlib
-
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_SETTINGS)  # type: ignore[arg-type]
-        yield
+        return saved(figure, "learn")
 
 
 def _draw(rows: Sequence[Row], paper: Sequence[LearningStatement], metrics: str) -> "Figure":
@@ -118,9 +90,3 @@ def _level(row: Row) -> str:
     known = {"scenario", "method", "variant", "reasoner", "interactions", "shots"}
     further = [f"{k}={v}" for k, v in row.items() if "." in k and k not in known]
     return " ".join([f"{row['method']} {row['variant']}".strip(), *further])
-
-
-def _saved(figure: "Figure", kind: str, metadata: Mapping[str, str | None]) -> bytes:
-    stream = io.BytesIO()
-    figure.savefig(stream, format=kind, dpi=160, metadata=dict(metadata))
-    return stream.getvalue()

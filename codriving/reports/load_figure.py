@@ -1,12 +1,11 @@
 """``figures/load.*``: success and velocity against the number of CAVs, a column of panels for each scenario."""
 
-import io
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from codriving.reports.comparison import DRIVEN, METHOD_CHOICE
+from codriving.reports.figure_style import plain_settings, saved
 from codriving.reports.load import Loaded
 from codriving.reports.load_display import load_title, method_text
 
@@ -28,19 +27,6 @@ STYLES = {
 OTHERS = (("#7a7a7a", "X", "-"), ("#7a1f5c", "<", "--"), ("#5c4a00", ">", "-."), ("#3b5b92", "h", ":"))
 """For methods of the user's, in turn."""
 
-_SETTINGS = {
-    "font.family": "DejaVu Sans",
-    "font.size": 10.0,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#d9dbdf",
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    # Without it the names inside an SVG are drawn by lot.
-    "svg.hashsalt": "codriving",
-}
-
 _SPREAD = 0.06
 """Shift of one line against the next, as a share of the smallest step between loads or of 2, to part the intervals."""
 
@@ -57,23 +43,9 @@ def load_figure(rows: Sequence[Loaded], loads: Sequence[int], metrics: str) -> M
         The content of ``load.png`` and ``load.svg``; the same rows give the same bytes.
     """
     driven = [row for row in rows if row.labels["status"] == DRIVEN]
-    with _plain_settings():
+    with plain_settings():
         figure = _draw(driven, sorted(loads), load_title(rows, metrics))
-        return {
-            "load.png": _saved(figure, "png", {"Software": None}),
-            "load.svg": _saved(figure, "svg", {"Date": None, "Creator": None}),
-        }
-
-
-@contextmanager
-def _plain_settings() -> Iterator[None]:
-    """Matplotlib as it is shipped, whatever its user has set."""
-    import matplotlib
-
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_SETTINGS)  # type: ignore[arg-type]
-        yield
+        return saved(figure, "load")
 
 
 def _draw(rows: Sequence[Loaded], loads: Sequence[int], title: str) -> "Figure":
@@ -155,9 +127,3 @@ def _styles(rows: Sequence[Loaded]) -> dict[str, tuple[str, str, str]]:
 def _shifted(loads: Sequence[int], index: int, lines: int) -> list[float]:
     step = min((b - a for a, b in pairwise(loads)), default=1)
     return [cavs + min(step, 2) * _SPREAD * (index - (lines - 1) / 2) for cavs in loads]
-
-
-def _saved(figure: "Figure", kind: str, metadata: Mapping[str, str | None]) -> bytes:
-    stream = io.BytesIO()
-    figure.savefig(stream, format=kind, dpi=160, metadata=dict(metadata))
-    return stream.getvalue()
