@@ -20,7 +20,7 @@ File = Annotated[
 Most = Annotated[int, typer.Option("--most", min=1, max=1000, help="How many experiences to show.")]
 
 
-@memory.command(epilog="Example: codriving memory build scenario=intersection interactions=20 run=first")
+@memory.command(epilog="Example: codriving memory build scenario=intersection interactions=20 run=learnt")
 def build(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConfig = False) -> None:
     """Drive interactions=N episodes to learn from, on seeds from 20000 on, and keep what was learnt in a file.
 
@@ -37,7 +37,7 @@ def build(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowCo
     raise typer.Exit(run_build(overrides or [], config_dir))
 
 
-@memory.command(epilog="Example: codriving memory show outputs/memory/first/memory/intersection-codriving-full.sqlite")
+@memory.command(epilog="Example: codriving memory show outputs/memory/learnt/memory/intersection-codriving-full.sqlite")
 def show(
     file: Annotated[
         Path | None, typer.Argument(metavar="[FILE]", help="The memory; the newest below outputs/ if left out.")
