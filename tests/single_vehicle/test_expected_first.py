@@ -49,8 +49,8 @@ def test_two_never_both_go_first(
         me.id: next((e.bound, e.other_bound) for e in met(seen(junction, *cars, ego=me.id)) if _real(e, me, you))
         for me, you in (cars, cars[::-1])
     }
-    assume(bound["CAV1"] == bound["CAV2"][::-1])
-    assert not (found["CAV1"][0] and found["CAV2"][0])
+    alike = bound["CAV1"] == bound["CAV2"][::-1]
+    assert not (found["CAV1"][0] and found["CAV2"][0] and alike)
 
 
 @pytest.mark.parametrize(
