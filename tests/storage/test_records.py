@@ -45,6 +45,7 @@ RECORDS = st.builds(
     participants=st.lists(st.builds(Participant, WORD, WORD, WORD, st.none() | NUMBER), max_size=2).map(tuple),
     decisions=st.integers(0, 1000),
     counts=st.dictionaries(WORD, st.integers(), max_size=2),
+    memory=WORD,
 )
 
 
@@ -54,6 +55,13 @@ def test_what_is_read_is_what_was_written(record: EpisodeRecord) -> None:
     text = record_text(record)
     assert decode(EpisodeRecord, text) == record
     assert record_text(record) == text
+
+
+def test_a_record_from_before_there_was_a_memory_can_be_read(record: EpisodeRecord) -> None:
+    older = {name: value for name, value in json.loads(record_text(record)).items() if name != "memory"}
+    assert decode(EpisodeRecord, json.dumps(older)) == dataclasses.replace(record, memory="")
+    with pytest.raises(ValueError, match="field seed is missing"):
+        decode(EpisodeRecord, json.dumps({name: value for name, value in older.items() if name != "seed"}))
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
