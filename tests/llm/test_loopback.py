@@ -103,9 +103,12 @@ def test_counts_tokens_from_the_text_and_records_requests(loopback: Loopback) ->
 
 
 def test_keeps_count_of_what_happens_at_once() -> None:
-    with Loopback(latency=0.05) as server:
-        with httpx.Client(trust_env=False, verify=False) as client, ThreadPoolExecutor(8) as pool:
-            list(pool.map(lambda k: client.post(f"{server.url}/chat/completions", json=body()), range(8)))
+    with (
+        Loopback(latency=0.05) as server,
+        httpx.Client(trust_env=False, verify=False) as client,
+        ThreadPoolExecutor(8) as pool,
+    ):
+        list(pool.map(lambda k: client.post(f"{server.url}/chat/completions", json=body()), range(8)))
     # Only once it is closed: whoever has its answer may be quicker than the server's own accounts.
     assert 2 <= server.high_water <= 8
     assert server.in_flight == 0
