@@ -8,7 +8,7 @@ import numpy as np
 
 import codriving
 from codriving.config.choices import choices
-from codriving.envs.actions import ACTIONS
+from codriving.gym.actions import ACTIONS
 
 SEEDS = (0, 1, 2)
 ROUNDS = 3

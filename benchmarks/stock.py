@@ -18,7 +18,7 @@ from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
 from codriving.environment.network import PAINT
-from codriving.environment.way import way
+from codriving.environment.traffic.way import way
 
 
 class Stock(AbstractEnv):

@@ -3,11 +3,11 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from codriving.envs.registration import offer
+from codriving.gym.registration import offer
 
 if TYPE_CHECKING:
-    from codriving.envs.parallel import ParallelDriving
     from codriving.experiment import Comparison, Results
+    from codriving.gym.parallel import ParallelDriving
 
 __all__ = ["__version__", "compare", "parallel_env", "run"]
 
@@ -68,7 +68,7 @@ def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDrivin
         name: Name of the scenario, for instance ``"roundabout"``.
         *overrides: ``key=value`` tokens, for instance ``"environment.drivers.headway=1.2"``.
         **settings: ``cda``, ``rows``, ``coordinates``, ``normalise``, ``reward``, ``render_mode`` and ``config_dir``,
-            as :class:`codriving.envs.parallel.ParallelDriving` describes them; all others are keys of the scenario,
+            as :class:`codriving.gym.parallel.ParallelDriving` describes them; all others are keys of the scenario,
             for instance ``cavs=4``.
 
     Raises:
@@ -78,7 +78,7 @@ def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDrivin
         >>> env = codriving.parallel_env("intersection", cavs=6, cda="status_sharing")  # doctest: +SKIP
         >>> observations, infos = env.reset(seed=0)  # doctest: +SKIP
     """
-    from codriving.envs.parallel import ParallelDriving
+    from codriving.gym.parallel import ParallelDriving
 
     return ParallelDriving(name, *overrides, **settings)
 

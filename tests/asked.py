@@ -12,9 +12,9 @@ from codriving.llm.offline import Offline
 from codriving.llm.question import Question
 from codriving.llm.scripted import Script, ScriptedChat
 from codriving.methods.codriving import CoDriving
-from codriving.methods.ports import ports
-from codriving.reasoning.cda import CdaLevel
-from codriving.reasoning.negotiation.negotiation import AgreedOrder
+from codriving.methods.language_model.ports import ports
+from codriving.reasoning.ordering.negotiation import AgreedOrder
+from codriving.reasoning.sharing.cda import CdaLevel
 
 
 @dataclass

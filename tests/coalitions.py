@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from codriving.ordering.instance import Entrant, Instance, Pair
-from codriving.ordering.payoff import Goal, Payoff, Scale
-from codriving.ordering.protocol import JointPlan
-from codriving.ordering.schedule import schedule, timed
+from codriving.datatypes.ordering_problem import Entrant, Instance, Pair
+from codriving.methods.coop_game.payoff import Goal, Payoff, Scale
+from codriving.reasoning.ordering.protocol import JointPlan
+from codriving.reasoning.ordering.schedule import schedule, timed
 
 TOP = 9.0
 """Top speed [m/s]."""

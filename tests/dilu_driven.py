@@ -15,8 +15,8 @@ from codriving.llm.offline import Offline
 from codriving.llm.question import Question
 from codriving.llm.scripted import Script, ScriptedChat
 from codriving.memory.protocol import CaseMemory
-from codriving.methods.dilu import DiLu
-from codriving.single_vehicle.demonstrated import Demonstrated
+from codriving.methods.dilu.dilu import DiLu
+from codriving.methods.single_vehicle.demonstrated import Demonstrated
 
 NEVER_HELD = 0.1
 """A time for which nothing is held: every step is decided."""

@@ -15,17 +15,17 @@ from codriving.datatypes.trajectory import Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
-from codriving.executors.layered import Layered
-from codriving.executors.planned import Planned
-from codriving.executors.protocol import Executor
-from codriving.executors.stage import Stage
 from codriving.methods.deliberation import Deliberation
+from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.ordered import Ordered
 from codriving.methods.protocol import Method
-from codriving.ordering.fcfs import FirstComeFirstServed
-from codriving.ordering.protocol import Ordering, OrderRule
-from codriving.prediction.rollout import rollout
-from codriving.reasoning.movers import movers
+from codriving.reasoning.execution.layered import Layered
+from codriving.reasoning.execution.planned import Planned
+from codriving.reasoning.execution.protocol import Executor
+from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.ordering.protocol import Ordering, OrderRule
+from codriving.reasoning.prediction.rollout import rollout
+from codriving.reasoning.sharing.movers import movers
 
 
 def configured_executor(name: str) -> dict[str, Any]:

@@ -63,10 +63,12 @@ def test_wheel_holds_configs_and_experiments(wheel: Path) -> None:
     assert "codriving/_experiments/experiments/paper_comparison.csv" in names
     assert "codriving/cli/app.py" in names
     assert "codriving/_conf/llm/openai.yaml" in names
-    assert "codriving/reasoning/prompts/decide.user.md.j2" in names
+    assert "codriving/llm/prompts/decide.user.md.j2" in names
     assert "codriving/_conf/train/madqn_junction.yaml" in names
     for family in ("junction", "lanes"):
-        assert {f"codriving/learning/weights/madqn_{family}.{end}" for end in ("safetensors", "json", "csv")} <= names
+        assert {
+            f"codriving/methods/learned/weights/madqn_{family}.{end}" for end in ("safetensors", "json", "csv")
+        } <= names
     assert not [name for name in names if name.startswith(("tests", "conf/", "docs"))]
 
 

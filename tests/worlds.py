@@ -15,16 +15,16 @@ from codriving.datatypes.vehicle import Intent, Kind, VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
 from codriving.geometry.lane_path import lane_path
-from codriving.prediction.forecast import Forecast
 from codriving.reasoning.conflicts import find_conflicts
-from codriving.reasoning.expectation import expect
-from codriving.reasoning.movers import movers
-from codriving.reasoning.negotiation.coordinator import RuleCoordinator
-from codriving.reasoning.plans import PLANS
+from codriving.reasoning.ordering.coordinator import RuleCoordinator
+from codriving.reasoning.prediction.expectation import expect
+from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.safety.outlook import CONTINUATIONS, LONGITUDINAL, Outlook, motions
-from codriving.reasoning.scenes import describe_scenes, with_conflicts
-from codriving.reasoning.state_sharing import SharedStates, StateSharing
-from codriving.reasoning.tracking import Tracking
+from codriving.reasoning.sharing.movers import movers
+from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
+from codriving.reasoning.sharing.state_sharing import SharedStates, StateSharing
+from codriving.reasoning.sharing.tracking import Tracking
 
 LAG = 5
 """Samples that must lie between two vehicles in a zone, for the expectations of these worlds."""

@@ -9,8 +9,8 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.scene import Start
 from codriving.environment.control import ControlGains
 from codriving.environment.corrections import Corrections
-from codriving.environment.on_way import OnWay
-from codriving.environment.way import Way
+from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.way import Way
 
 
 class ConnectedVehicle(OnWay, MDPVehicle):

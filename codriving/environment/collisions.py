@@ -6,8 +6,8 @@ from highway_env.vehicle.objects import RoadObject
 
 from codriving.datatypes.outcome import Collision
 from codriving.environment.cav import ConnectedVehicle
-from codriving.environment.on_way import OnWay
 from codriving.environment.striker import who_struck
+from codriving.environment.traffic.on_way import OnWay
 from codriving.geometry.box import corners, overlap
 
 PUSHED = 3.0

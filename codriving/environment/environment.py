@@ -13,17 +13,17 @@ from codriving.datatypes.world import WorldState
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.control import ControlGains
 from codriving.environment.corrections import Corrections
-from codriving.environment.driver_profile import DriverProfile
 from codriving.environment.judge import Judge
 from codriving.environment.network import build_network
 from codriving.environment.recorder import Recorder
+from codriving.environment.scenarios.protocol import Scenario
 from codriving.environment.snapshot import snapshot
 from codriving.environment.spawn import spawn
-from codriving.environment.traffic import Traffic
-from codriving.environment.way import Way, way
+from codriving.environment.traffic.driver_profile import DriverProfile
+from codriving.environment.traffic.traffic import Traffic
+from codriving.environment.traffic.way import Way, way
 from codriving.errors import EpisodeError
 from codriving.geometry.road_map import road_map
-from codriving.scenarios.protocol import Scenario
 
 
 class Environment:

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.collisions import find_block_collisions, find_collisions
-from codriving.environment.on_way import OnWay
-from codriving.environment.traffic import Traffic
+from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.traffic import Traffic
 
 
 class Judge:

@@ -7,7 +7,7 @@ import numpy as np
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.cav import ConnectedVehicle
-from codriving.environment.on_way import OnWay
+from codriving.environment.traffic.on_way import OnWay
 
 
 @dataclass(slots=True)

@@ -4,9 +4,9 @@ from codriving.datatypes.road import LaneId
 from codriving.datatypes.vehicle import Intent, Kind, VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.environment.cav import ConnectedVehicle
-from codriving.environment.on_way import OnWay
 from codriving.environment.recorder import acceleration
-from codriving.environment.traffic import Traffic
+from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.traffic import Traffic
 
 
 def state_of(vehicle: OnWay) -> VehicleState:

@@ -6,10 +6,10 @@ from codriving.datatypes.scene import Scene
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.control import ControlGains
-from codriving.environment.driver_profile import DriverProfile
-from codriving.environment.human_driver import HumanDriver
-from codriving.environment.traffic import Traffic
-from codriving.environment.way import Way
+from codriving.environment.traffic.driver_profile import DriverProfile
+from codriving.environment.traffic.human_driver import HumanDriver
+from codriving.environment.traffic.traffic import Traffic
+from codriving.environment.traffic.way import Way
 
 
 def spawn(

@@ -2,7 +2,7 @@
 
 import math
 
-from codriving.environment.on_way import OnWay
+from codriving.environment.traffic.on_way import OnWay
 from codriving.geometry.box import corners, overlap
 
 HALVINGS = 20

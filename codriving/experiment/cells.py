@@ -7,12 +7,12 @@ from typing import Any
 from codriving.config.build import build
 from codriving.config.show import fingerprint, relevant, show
 from codriving.config.sweep import Point
-from codriving.episodes.unit import Labels
 from codriving.errors import ConfigError
+from codriving.experiment.episodes.unit import Labels
 from codriving.experiment.naming import folder_name
 from codriving.experiment.swept import swept_values
-from codriving.storage.manifest import CellEntry
-from codriving.storage.redaction import flat, redact
+from codriving.runs.manifest import CellEntry
+from codriving.runs.redaction import flat, redact
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from codriving.config.schema import ROOT
 from codriving.config.sweep import Point
 from codriving.config.validate import validate
 from codriving.errors import ConfigError
-from codriving.storage.redaction import MASK, redact
+from codriving.runs.redaction import MASK, redact
 
 T = TypeVar("T")
 

@@ -10,12 +10,12 @@ from typing import Any
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
-from codriving.episodes.job import Job, Report
-from codriving.episodes.progress import Progress, Silent
-from codriving.episodes.unit import Objects, Unit
 from codriving.errors import ModelError
 from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell
+from codriving.experiment.episodes.job import Job, Report
+from codriving.experiment.episodes.progress import Progress, Silent
+from codriving.experiment.episodes.unit import Objects, Unit
 from codriving.experiment.film import FilmEpisode
 from codriving.experiment.further import Driven, Further
 from codriving.experiment.keep import KeepEpisode
@@ -28,13 +28,13 @@ from codriving.reports.paper import Paper
 from codriving.reports.rows import Row, csv_text
 from codriving.reports.run_tables import RunTables, run_tables, write_tables
 from codriving.reports.timing_table import seconds_per_decision, timing_columns, timing_rows
-from codriving.storage.atomic import write_text
-from codriving.storage.continuation import changed_versions
-from codriving.storage.manifest import FORMAT, MANIFEST, CellEntry, Manifest
-from codriving.storage.provenance import commit, machine, versions
-from codriving.storage.redaction import variables_in
-from codriving.storage.run_folder import RunFolder, new_run_path, unwritable
-from codriving.storage.timing import Timing, read_timing
+from codriving.runs.atomic import write_text
+from codriving.runs.continuation import changed_versions
+from codriving.runs.manifest import FORMAT, MANIFEST, CellEntry, Manifest
+from codriving.runs.provenance import commit, machine, versions
+from codriving.runs.redaction import variables_in
+from codriving.runs.run_folder import RunFolder, new_run_path, unwritable
+from codriving.runs.timing import Timing, read_timing
 
 
 @dataclass(frozen=True, slots=True)

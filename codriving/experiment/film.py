@@ -7,14 +7,14 @@ from fractions import Fraction
 from pathlib import Path
 
 from codriving.datatypes.outcome import Ending
-from codriving.episodes.unit import Unit
 from codriving.errors import UserError
+from codriving.experiment.episodes.unit import Unit
 from codriving.experiment.stored import StoredEpisode, screening
-from codriving.storage.atomic import whole_file, write_text
-from codriving.storage.manifest import CellEntry
-from codriving.storage.records import RECORD, read_record
-from codriving.storage.run_folder import EPISODES
-from codriving.storage.trajectory_file import TRAJECTORY
+from codriving.runs.atomic import whole_file, write_text
+from codriving.runs.manifest import CellEntry
+from codriving.runs.records import RECORD, read_record
+from codriving.runs.run_folder import EPISODES
+from codriving.runs.trajectory_file import TRAJECTORY
 
 FILM, FILM_ERROR = "replay.mp4", "replay-error.txt"
 

@@ -8,8 +8,8 @@ from codriving.datatypes.record import EpisodeRecord
 from codriving.experiment.cells import Cell
 from codriving.reports.display import Display
 from codriving.reports.run_tables import Table
-from codriving.storage.atomic import whole_file
-from codriving.storage.timing import Timing
+from codriving.runs.atomic import whole_file
+from codriving.runs.timing import Timing
 
 
 @dataclass(frozen=True, slots=True)

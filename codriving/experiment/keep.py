@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from codriving.episodes.episode import EpisodeResult
-from codriving.episodes.unit import Unit
-from codriving.storage.episode_folder import write_episode
-from codriving.storage.redaction import secrets_of
-from codriving.storage.run_folder import EPISODES
-from codriving.storage.timing import timing_of
+from codriving.experiment.episodes.episode import EpisodeResult
+from codriving.experiment.episodes.unit import Unit
+from codriving.runs.episode_folder import write_episode
+from codriving.runs.redaction import secrets_of
+from codriving.runs.run_folder import EPISODES
+from codriving.runs.timing import timing_of
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from codriving.episodes.unit import Labels
+from codriving.experiment.episodes.unit import Labels
 from codriving.experiment.swept import shown_apart
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from typing import Any
 
 from codriving.config.build import build
 from codriving.config.sweep import Point
-from codriving.episodes.launcher import Launcher
 from codriving.experiment.cells import Cell, make_cell
 from codriving.experiment.configs import composed, each_cell, validated
+from codriving.experiment.episodes.launcher import Launcher
 from codriving.experiment.naming import distinct, repeated
 from codriving.experiment.objects import modules_to_preload
 from codriving.experiment.remembering import pinned

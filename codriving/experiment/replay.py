@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from codriving.errors import ConfigError, RunFolderError
 from codriving.experiment.stored import find_episode, screening
-from codriving.storage.atomic import whole_file
+from codriving.runs.atomic import whole_file
 
 if TYPE_CHECKING:
-    from codriving.pictures.film import Frame
+    from codriving.animation.film import Frame
 
 FORMATS = ("mp4", "gif")
 FASTEST = {"mp4": 60.0, "gif": 50.0}
@@ -75,7 +75,7 @@ def replay(run: Path, options: ReplayOptions) -> str:
     try:
         with whole_file(path) as partial:
             if options.frame is not None:
-                from codriving.pictures.film import write_png
+                from codriving.animation.film import write_png
 
                 write_png(partial, show.frame(options.frame))
                 return f"Wrote {path}: {options.frame:g} s of seed {episode.seed}."

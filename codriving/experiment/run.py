@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 from codriving.config.locate import experiments_dir
 from codriving.config.sweep import Point, expand
-from codriving.episodes.progress import Progress, show_progress
 from codriving.errors import ConfigError, ModelError
 from codriving.experiment.ablation import ablation_points
 from codriving.experiment.cells import Cell
+from codriving.experiment.episodes.progress import Progress, show_progress
 from codriving.experiment.execute import Finished, execute
 from codriving.experiment.further import Driven, Further
 from codriving.experiment.objects import BuildObjects, modules_to_preload
@@ -143,7 +143,7 @@ def drive_plan(plan: Plan, extend: Callable[[Driven], Further] | None = None) ->
         UserError: If the run folder cannot be used.
         Interrupted: If the user stops it; finished episodes are kept.
     """
-    preload = [*modules_to_preload(plan.configs.values()), *(["codriving.pictures.screening"] if plan.render else [])]
+    preload = [*modules_to_preload(plan.configs.values()), *(["codriving.animation.screening"] if plan.render else [])]
     further = extend or (lambda _: Further())
 
     def progress(units: Mapping[str, int], note: Callable[[], str] | None) -> AbstractContextManager[Progress]:

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
-from codriving.episodes.batch import run_batch
-from codriving.episodes.failures import FailuresInARow
-from codriving.episodes.job import Job, Report
-from codriving.episodes.launcher import Launcher, Processes, Serial
-from codriving.episodes.progress import Progress
-from codriving.episodes.threads import Threads
-from codriving.episodes.unit import Unit
 from codriving.experiment.asking import Asked
+from codriving.experiment.episodes.batch import run_batch
+from codriving.experiment.episodes.failures import FailuresInARow
+from codriving.experiment.episodes.job import Job, Report
+from codriving.experiment.episodes.launcher import Launcher, Processes, Serial
+from codriving.experiment.episodes.progress import Progress
+from codriving.experiment.episodes.threads import Threads
+from codriving.experiment.episodes.unit import Unit
 from codriving.experiment.plan import Plan
 from codriving.experiment.remembering import learns
 

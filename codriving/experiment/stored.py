@@ -11,15 +11,15 @@ from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.road import Road
 from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import RunFolderError
-from codriving.storage.decisions_file import read_decisions
-from codriving.storage.manifest import MANIFEST, CellEntry, Manifest, read_manifest
-from codriving.storage.records import read_record
-from codriving.storage.redaction import nested
-from codriving.storage.run_folder import EPISODES
-from codriving.storage.trajectory_file import TRAJECTORY, read_trajectory
+from codriving.runs.decisions_file import read_decisions
+from codriving.runs.manifest import MANIFEST, CellEntry, Manifest, read_manifest
+from codriving.runs.records import read_record
+from codriving.runs.redaction import nested
+from codriving.runs.run_folder import EPISODES
+from codriving.runs.trajectory_file import TRAJECTORY, read_trajectory
 
 if TYPE_CHECKING:
-    from codriving.pictures.screening import Screening
+    from codriving.animation.screening import Screening
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,7 @@ def screening(episode: StoredEpisode, scale: float = 1.0, config_dir: Path | Non
         RunFolderError: If there is nothing to show, or a file is damaged.
         ConfigError: If its scenario cannot be built any more.
     """
-    from codriving.pictures.screening import Screening
+    from codriving.animation.screening import Screening
 
     record, trajectory = read_driven(episode.folder)
     return Screening(road_of(episode.cell, config_dir), trajectory, read_decisions(episode.folder), record, scale)

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from codriving.config.choices import LISTED
-from codriving.episodes.unit import Labels
-from codriving.storage.redaction import redact
+from codriving.experiment.episodes.unit import Labels
+from codriving.runs.redaction import redact
 
 _LABELS = {"scenario": "scenario", "method": "method"}
 _LABELS_BELOW = {"cda": "variant", "method": "variant", "llm": "reasoner"}

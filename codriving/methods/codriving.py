@@ -11,19 +11,19 @@ from codriving.geometry.road_map import RoadMap
 from codriving.memory.protocol import CaseMemory
 from codriving.methods.deliberation import Deliberation
 from codriving.methods.experience_log import ExperienceLog
+from codriving.methods.language_model.ports import Reasoner, check_prompts, ports
 from codriving.methods.perception import Perception
 from codriving.methods.pipeline import Pipeline
-from codriving.methods.ports import Reasoner, check_prompts, ports
-from codriving.prediction.forecast import Forecast
-from codriving.reasoning.cda import CdaLevel
-from codriving.reasoning.intent_sharing import HiddenIntents, SharedIntents
-from codriving.reasoning.negotiation.negotiation import AgreedOrder, Negotiation
-from codriving.reasoning.negotiation.own_order import OwnOrders
-from codriving.reasoning.plans import PLANS
+from codriving.reasoning.ordering.negotiation import AgreedOrder, Negotiation
+from codriving.reasoning.ordering.own_order import OwnOrders
+from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
 from codriving.reasoning.safety.outlook import CONTINUATIONS
-from codriving.reasoning.state_sharing import SensedStates, SharedStates
-from codriving.reasoning.tracking import Tracking
+from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.intent_sharing import HiddenIntents, SharedIntents
+from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates
+from codriving.reasoning.sharing.tracking import Tracking
 
 
 class CoDriving:
@@ -129,8 +129,8 @@ class CoDriving:
         chat = self.llm.chat()
         if self.memory is None or not self.memory.reflections or chat is None or self._ledger is None:
             return {}, []
-        from codriving.methods.reflection import Reflection
-        from codriving.reasoning.prompts.render import load_prompts
+        from codriving.llm.prompts.render import load_prompts
+        from codriving.methods.language_model.reflection import Reflection
 
         prompts = load_prompts(getattr(self.llm, "prompts", None))
         experiences[:] = Reflection(chat, prompts, self._ledger, self.memory.reflections).reflect(experiences)

@@ -15,9 +15,9 @@ from codriving.memory.effect import effect_of
 from codriving.memory.moments import Crash, Moment, Way
 from codriving.memory.verdict import LESSONS, verdict_of
 from codriving.reasoning.conflicts import find_conflicts
-from codriving.reasoning.scenes import describe_scenes
-from codriving.reasoning.state_sharing import SharedStates
-from codriving.reasoning.tracking import Tracking
+from codriving.reasoning.sharing.scenes import describe_scenes
+from codriving.reasoning.sharing.state_sharing import SharedStates
+from codriving.reasoning.sharing.tracking import Tracking
 
 FASTER_THAN: Mapping[Action | None, tuple[Action, ...]] = {
     Action.SLOWER: (Action.IDLE, Action.FASTER),

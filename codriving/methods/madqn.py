@@ -1,6 +1,6 @@
 """MADQN: all CAVs share one trained network, and each acts on what it observes (Egorov, 2016; see docs/methods)."""
 
-from codriving.methods.learned import VALUES, Learned
+from codriving.methods.learned.learned import VALUES, Learned
 
 
 class Madqn(Learned):

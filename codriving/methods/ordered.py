@@ -5,21 +5,21 @@ from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.situation import ActionAssessment, Decision, Situation
 from codriving.datatypes.world import WorldState
-from codriving.executors.lane_requests import LaneRequests
-from codriving.executors.protocol import Drive, Executor
-from codriving.executors.stage import Stage
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.deliberation import Deliberation
 from codriving.methods.perception import Perception
-from codriving.ordering.protocol import Ordering, OrderRule
-from codriving.prediction.forecast import Forecast
-from codriving.reasoning.intent_sharing import SharedIntents
-from codriving.reasoning.negotiation.agreement import agreement
-from codriving.reasoning.negotiation.problem import ProblemMaker
-from codriving.reasoning.plans import PLANS
+from codriving.reasoning.execution.lane_requests import LaneRequests
+from codriving.reasoning.execution.protocol import Drive, Executor
+from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.ordering.agreement import agreement
+from codriving.reasoning.ordering.problem import ProblemMaker
+from codriving.reasoning.ordering.protocol import Ordering, OrderRule
+from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.safety.outlook import CONTINUATIONS, LONGITUDINAL
-from codriving.reasoning.state_sharing import SharedStates
-from codriving.reasoning.tracking import Tracking
+from codriving.reasoning.sharing.intent_sharing import SharedIntents
+from codriving.reasoning.sharing.state_sharing import SharedStates
+from codriving.reasoning.sharing.tracking import Tracking
 
 
 class Ordered:

@@ -7,13 +7,13 @@ from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.scene_description import SceneDescription
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
-from codriving.prediction.forecast import Forecast
 from codriving.reasoning.conflicts import find_conflicts
-from codriving.reasoning.intent_sharing import GuessedIntents, IntentSharing
-from codriving.reasoning.movers import Mover, movers
-from codriving.reasoning.scenes import describe_scenes, with_conflicts
-from codriving.reasoning.state_sharing import StateSharing, WatchedStates
-from codriving.reasoning.tracking import Tracking
+from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.sharing.intent_sharing import GuessedIntents, IntentSharing
+from codriving.reasoning.sharing.movers import Mover, movers
+from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
+from codriving.reasoning.sharing.state_sharing import StateSharing, WatchedStates
+from codriving.reasoning.sharing.tracking import Tracking
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,14 +14,14 @@ from codriving.llm.ledger import Ledger
 from codriving.memory.protocol import CaseMemory
 from codriving.methods.deliberation import Deliberation
 from codriving.methods.perception import Perception
-from codriving.prediction.forecast import Forecast
-from codriving.reasoning.clear_times import clear_time
+from codriving.reasoning.decision.clear_times import clear_time
 from codriving.reasoning.decision.decider import Decider
-from codriving.reasoning.expectation import Expected, expect
-from codriving.reasoning.movers import Mover
-from codriving.reasoning.negotiation.negotiation import Negotiation
+from codriving.reasoning.ordering.negotiation import Negotiation
+from codriving.reasoning.prediction.expectation import Expected, expect
+from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.safety.assessment import SafetyCheck
 from codriving.reasoning.safety.outlook import Outlook, motions
+from codriving.reasoning.sharing.movers import Mover
 
 
 @dataclass(slots=True)

@@ -1,6 +1,6 @@
 """PPO: each CAV on its own, by a policy that one CAV has learned among human drivers (Schulman et al., 2017)."""
 
-from codriving.methods.learned import PROBABILITIES, Learned
+from codriving.methods.learned.learned import PROBABILITIES, Learned
 
 
 class Ppo(Learned):

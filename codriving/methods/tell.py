@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from codriving.learning.layout import JUNCTION
-from codriving.learning.weights import load, shipped
-from codriving.methods.learned import PROBABILITIES, Learned
+from codriving.methods.learned.layout import JUNCTION
+from codriving.methods.learned.learned import PROBABILITIES, Learned
+from codriving.methods.learned.weights import load, shipped
 
 
 class Tell(Learned):

@@ -13,7 +13,7 @@ from codriving.reports.markdown import markdown_text
 from codriving.reports.paper import Paper
 from codriving.reports.rows import Row, csv_text
 from codriving.reports.summary import summary_columns, summary_row
-from codriving.storage.atomic import write_text
+from codriving.runs.atomic import write_text
 
 if TYPE_CHECKING:
     from pandas import DataFrame

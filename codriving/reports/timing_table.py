@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from codriving.datatypes.record import EpisodeRecord
 from codriving.reports.rows import Row
-from codriving.storage.timing import Timing
+from codriving.runs.timing import Timing
 
 LEADING = ("scenario", "method", "variant", "reasoner", "seed")
 

@@ -3,9 +3,9 @@
 import torch
 from torch import nn
 
-from codriving.learning.attention import HEADS, WIDTH, Attention
-from codriving.learning.layout import EGO, SLOT, SLOTS
-from codriving.learning.network import FloatArray
+from codriving.methods.learned.attention import HEADS, WIDTH, Attention
+from codriving.methods.learned.layout import EGO, SLOT, SLOTS
+from codriving.methods.learned.network import FloatArray
 from codriving.training.double_dqn import as_numpy
 from codriving.training.perceptron import perceptron
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from codriving.errors import TrainingError
-from codriving.storage.atomic import whole_folder, write_text
+from codriving.runs.atomic import whole_folder, write_text
 
 STATE = "state.json"
 

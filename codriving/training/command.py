@@ -10,7 +10,7 @@ from codriving.config.build import build
 from codriving.config.schema import ROOT
 from codriving.config.training import compose_training, trainings
 from codriving.errors import ConfigError, TrainingError
-from codriving.learning.layout import FAMILIES
+from codriving.methods.learned.layout import FAMILIES
 
 INTERRUPTED = 130
 """Exit code of a process that the user stopped (128 + SIGINT)."""

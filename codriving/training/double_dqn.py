@@ -9,7 +9,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from codriving.learning.network import Network
+from codriving.methods.learned.network import Network
 from codriving.training.replay import Batch
 
 

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.world import WorldState
-from codriving.envs.actions import ACTIONS as NUMBERS
-from codriving.learning.actions import ACTIONS, allowed
-from codriving.learning.features import Features
-from codriving.learning.network import FloatArray
+from codriving.gym.actions import ACTIONS as NUMBERS
+from codriving.methods.learned.actions import ACTIONS, allowed
+from codriving.methods.learned.features import Features
+from codriving.methods.learned.network import FloatArray
 
 if TYPE_CHECKING:
-    from codriving.envs.parallel import ParallelDriving
+    from codriving.gym.parallel import ParallelDriving
 
 Masks = NDArray[np.bool_]
 Policy = Callable[[FloatArray, Masks], list[int]]

@@ -12,8 +12,8 @@ from typing import Any
 
 from codriving.config.show import show
 from codriving.errors import RunFolderError
-from codriving.storage.atomic import write_text
-from codriving.storage.lock import FolderLock
+from codriving.runs.atomic import write_text
+from codriving.runs.lock import FolderLock
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.learning.features import Observation
+from codriving.methods.learned.features import Observation
 
 
 class Transition(NamedTuple):

@@ -7,7 +7,7 @@ import torch
 from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import nn
 
-from codriving.learning.forms import AnyNetwork
+from codriving.methods.learned.forms import AnyNetwork
 from codriving.training.attention import AttentionActor
 from codriving.training.double_dqn import as_numpy
 from codriving.training.perceptron import perceptron

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from codriving.errors import TrainingError
-from codriving.learning.actions import ACTIONS
-from codriving.learning.forms import AnyNetwork
-from codriving.learning.layout import FAR, NEAR, VERSION
-from codriving.learning.weights import Purpose, Trained, load, save
-from codriving.storage.atomic import whole_file, write_text
+from codriving.methods.learned.actions import ACTIONS
+from codriving.methods.learned.forms import AnyNetwork
+from codriving.methods.learned.layout import FAR, NEAR, VERSION
+from codriving.methods.learned.weights import Purpose, Trained, load, save
+from codriving.runs.atomic import whole_file, write_text
 from codriving.training.checkpoint import recall, store
 from codriving.training.curve import COLLISION, DURATION, SUCCESS, Row, curve_csv, curve_png
 from codriving.training.display import Display

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from codriving.envs.reward import RewardWeights, reward_weights
 from codriving.errors import ConfigError
-from codriving.learning.forms import PERCEPTRON
-from codriving.learning.layout import FAMILIES
+from codriving.gym.reward import RewardWeights, reward_weights
+from codriving.methods.learned.forms import PERCEPTRON
+from codriving.methods.learned.layout import FAMILIES
 from codriving.training.schedule import Linear
 from codriving.training.traffic import Traffic
 from codriving.training.validation import Exam

@@ -6,10 +6,10 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
-from codriving.learning.actions import ACTIONS, allowed
-from codriving.learning.features import Features
-from codriving.learning.layout import feature_count
-from codriving.learning.network import FloatArray
+from codriving.methods.learned.actions import ACTIONS, allowed
+from codriving.methods.learned.features import Features
+from codriving.methods.learned.layout import feature_count
+from codriving.methods.learned.network import FloatArray
 from codriving.training.teacher import Teacher
 
 

@@ -4,18 +4,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from codriving.envs.reward import RewardWeights, reward_weights
 from codriving.errors import ConfigError
-from codriving.learning.actions import ACTIONS
-from codriving.learning.forms import FORMS
-from codriving.learning.layout import FAMILIES
+from codriving.gym.reward import RewardWeights, reward_weights
+from codriving.methods.learned.actions import ACTIONS
+from codriving.methods.learned.forms import FORMS
+from codriving.methods.learned.layout import FAMILIES
 from codriving.training.schedule import Linear
 from codriving.training.settings import LEAST_SEED
 from codriving.training.teacher import Guidance
 from codriving.training.validation import Exam
 
 if TYPE_CHECKING:
-    from codriving.envs.single import EyesOf, SingleDriving
+    from codriving.gym.single import EyesOf, SingleDriving
     from codriving.training.single_trainer import SingleTrainer
 
 LEARNERS = ("ppo", "tell")
@@ -57,7 +57,7 @@ class SingleTraffic:
         Raises:
             ConfigError: If the scenario refuses a setting.
         """
-        from codriving.envs.single import SingleDriving
+        from codriving.gym.single import SingleDriving
 
         settings = {"hdvs": list(self.hdvs), **self.settings}
         return SingleDriving(self.scenario, eyes, ACTIONS[family], reward=reward, cavs=self.cavs, **settings)

@@ -11,10 +11,10 @@ from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import DummyVecEnv
 
 from codriving.datatypes.outcome import Ending
-from codriving.envs.seeding import draw_seed
-from codriving.envs.single import SingleDriving
-from codriving.learning.forms import ATTENTION, AnyNetwork
-from codriving.learning.layout import feature_count
+from codriving.gym.seeding import draw_seed
+from codriving.gym.single import SingleDriving
+from codriving.methods.learned.forms import ATTENTION, AnyNetwork
+from codriving.methods.learned.layout import feature_count
 from codriving.training.policy import DriverPolicy, actor_as_numpy
 from codriving.training.sight import Sight
 from codriving.training.single_settings import SingleSettings

@@ -13,15 +13,15 @@ from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
-from codriving.methods.alone import Alone
-from codriving.methods.ports import Reasoner
-from codriving.prediction.forecast import HORIZON
-from codriving.prediction.rollout import rollout
-from codriving.single_vehicle.protocol import Driver
+from codriving.methods.language_model.ports import Reasoner
+from codriving.methods.single_vehicle.alone import Alone
+from codriving.methods.single_vehicle.protocol import Driver
+from codriving.reasoning.prediction.forecast import HORIZON
+from codriving.reasoning.prediction.rollout import rollout
 from codriving.training.schedule import Linear
 
 if TYPE_CHECKING:
-    from codriving.reasoning.decision.model_decider import ModelDecider
+    from codriving.methods.language_model.model_decider import ModelDecider
 
 
 class Teacher(Protocol):
@@ -132,8 +132,8 @@ def _decider(llm: Reasoner) -> "ModelDecider | None":
     if chat is None:
         return None
     from codriving.llm.ledger import Ledger
-    from codriving.reasoning.decision.model_decider import ModelDecider
-    from codriving.reasoning.prompts.render import load_prompts
+    from codriving.llm.prompts.render import load_prompts
+    from codriving.methods.language_model.model_decider import ModelDecider
 
     ask_plain = bool(getattr(llm, "ask_plain", False))
     return ModelDecider(chat, load_prompts(getattr(llm, "prompts", None)), Ledger(), ask_plain, sees_conflicts=True)

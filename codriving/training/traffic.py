@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from codriving.envs.reward import RewardWeights
 from codriving.errors import ConfigError
+from codriving.gym.reward import RewardWeights
 
 if TYPE_CHECKING:
-    from codriving.envs.parallel import ParallelDriving
+    from codriving.gym.parallel import ParallelDriving
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Traffic:
         Raises:
             ConfigError: If the scenario refuses a setting.
         """
-        from codriving.envs.parallel import ParallelDriving
+        from codriving.gym.parallel import ParallelDriving
 
         settings = {"hdvs": list(self.hdvs), **self.settings}
         numbers = range(self.cavs[0], self.cavs[1] + 1)

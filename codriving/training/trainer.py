@@ -10,10 +10,10 @@ import torch
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
-from codriving.envs.seeding import draw_seed
-from codriving.learning.actions import ACTIONS
-from codriving.learning.layout import feature_count
-from codriving.learning.network import FloatArray, Network, greedy
+from codriving.gym.seeding import draw_seed
+from codriving.methods.learned.actions import ACTIONS
+from codriving.methods.learned.layout import feature_count
+from codriving.methods.learned.network import FloatArray, Network, greedy
 from codriving.training.double_dqn import DoubleDqn, as_numpy
 from codriving.training.episode import Masks, Moment, drive
 from codriving.training.nstep import Trail, Transition

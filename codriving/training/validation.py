@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from codriving.datatypes.outcome import Ending
 from codriving.errors import ConfigError
-from codriving.learning.features import Features
-from codriving.learning.forms import AnyNetwork
-from codriving.learning.network import greedy
+from codriving.methods.learned.features import Features
+from codriving.methods.learned.forms import AnyNetwork
+from codriving.methods.learned.network import greedy
 from codriving.training.episode import drive
 
 if TYPE_CHECKING:
-    from codriving.envs.parallel import ParallelDriving
+    from codriving.gym.parallel import ParallelDriving
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Exam:
         Raises:
             ConfigError: If the scenario refuses a setting.
         """
-        from codriving.envs.parallel import ParallelDriving
+        from codriving.gym.parallel import ParallelDriving
 
         return ParallelDriving(self.scenario, rows=1, cavs=self.cavs, hdvs=list(self.hdvs), **self.settings)
 

@@ -19,7 +19,7 @@ def refused(*overrides: str, config_dir: Path | None = None) -> str:
 def test_defaults_are_plain_and_resolved() -> None:
     resolved = compose([])
     assert resolved["episodes"] == 20
-    assert resolved["scenario"]["_target_"] == "codriving.scenarios.intersection.Intersection"
+    assert resolved["scenario"]["_target_"] == "codriving.environment.scenarios.intersection.Intersection"
     assert resolved["method"]["cda"] == resolved["cda"]
     assert resolved["environment"]["scenario"] == resolved["scenario"]
     assert type(resolved["method"]["cda"]) is dict

@@ -10,11 +10,11 @@ from codriving.datatypes.road import Road
 from codriving.datatypes.scene import Scene, Start
 from codriving.environment.control import ControlGains
 from codriving.environment.corrections import Corrections
-from codriving.environment.driver_profile import DriverProfile
 from codriving.environment.environment import Environment
-from codriving.environment.human_driver import HumanDriver
-from codriving.scenarios.intersection import Intersection
-from codriving.scenarios.pace import Pace
+from codriving.environment.scenarios.intersection import Intersection
+from codriving.environment.scenarios.pace import Pace
+from codriving.environment.traffic.driver_profile import DriverProfile
+from codriving.environment.traffic.human_driver import HumanDriver
 
 GAINS = ControlGains(speed=1.6, heading=5.0, lateral=1 / 0.6)
 DRIVERS: dict[str, float] = {

@@ -13,8 +13,8 @@ from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
-from codriving.environment.human_driver import HumanDriver
-from codriving.environment.on_way import OnWay
+from codriving.environment.traffic.human_driver import HumanDriver
+from codriving.environment.traffic.on_way import OnWay
 
 Build = Callable[..., Environment]
 CAV, HDV = Kind.CAV, Kind.HDV

@@ -7,8 +7,8 @@ import pytest
 
 from codriving.datatypes.outcome import Collision
 from codriving.environment.environment import Environment
-from codriving.environment.human_driver import HumanDriver
 from codriving.environment.judge import Judge
+from codriving.environment.traffic.human_driver import HumanDriver
 
 Build = Callable[..., Environment]
 

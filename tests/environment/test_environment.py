@@ -14,10 +14,10 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.datatypes.world import WorldState
-from codriving.environment.body_ahead import BODY_MARGIN, body_ahead
-from codriving.environment.driver_profile import DriverProfile
 from codriving.environment.environment import Environment
-from codriving.environment.way import way
+from codriving.environment.traffic.body_ahead import BODY_MARGIN, body_ahead
+from codriving.environment.traffic.driver_profile import DriverProfile
+from codriving.environment.traffic.way import way
 from codriving.errors import ConfigError, EpisodeError, ScenarioError
 from codriving.geometry.road_map import road_map
 

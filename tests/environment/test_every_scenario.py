@@ -10,7 +10,7 @@ from codriving.config.choices import choices
 from codriving.datatypes.action import Action
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
-from codriving.environment.human_driver import HumanDriver
+from codriving.environment.traffic.human_driver import HumanDriver
 from codriving.geometry.road_map import road_map
 
 Build = Callable[..., Environment]

@@ -11,7 +11,7 @@ from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
-from codriving.environment.on_way import OnWay
+from codriving.environment.traffic.on_way import OnWay
 
 Build = Callable[..., Environment]
 

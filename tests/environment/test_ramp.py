@@ -12,8 +12,8 @@ from codriving.datatypes.road import Block, Road
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
-from codriving.environment.human_driver import GAP, HumanDriver
-from codriving.environment.on_way import OnWay
+from codriving.environment.traffic.human_driver import GAP, HumanDriver
+from codriving.environment.traffic.on_way import OnWay
 
 Build = Callable[..., Environment]
 CAV, HDV = Kind.CAV, Kind.HDV

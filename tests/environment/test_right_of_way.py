@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
-from codriving.environment.on_way import OnWay
-from codriving.environment.right_of_way import (
+from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.right_of_way import (
     HORIZON,
     OVERSHOOT,
     STARTING,

@@ -15,7 +15,7 @@ from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.control import ControlGains
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
-from codriving.prediction.rollout import rollout
+from codriving.reasoning.prediction.rollout import rollout
 
 Build = Callable[..., Environment]
 

@@ -18,8 +18,8 @@ from codriving.environment.corrections import Corrections
 from codriving.environment.environment import Environment
 from codriving.environment.network import build_network
 from codriving.environment.spawn import spawn
-from codriving.environment.traffic import Traffic
-from codriving.environment.way import way
+from codriving.environment.traffic.traffic import Traffic
+from codriving.environment.traffic.way import way
 
 OFF = tuple(field.name for field in fields(Corrections))
 SECONDS, SUBSTEPS, DT = 20, 5, 0.1

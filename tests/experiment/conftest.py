@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-HERE = str(Path(__file__).parents[1] / "episodes")
+HERE = str(Path(__file__).parent / "episodes")
 if HERE not in sys.path:
     sys.path.insert(0, HERE)
 sys.path.insert(0, str(Path(__file__).parent))

@@ -9,13 +9,13 @@ from codriving.config.choices import COMPARED, SINGLE_VEHICLE, TABLES, TAKING_PA
 from codriving.config.compose import compose
 from codriving.config.locate import experiments_dir
 from codriving.datatypes.vehicle import Kind
+from codriving.environment.scenarios.intersection import Intersection
+from codriving.environment.scenarios.roundabout import Roundabout
 from codriving.errors import ConfigError
 from codriving.experiment.compared import FURTHER
 from codriving.experiment.comparison import EXPERIMENT, comparison, setting
 from codriving.experiment.run import resume_command
 from codriving.reports.paper import read_paper
-from codriving.scenarios.intersection import Intersection
-from codriving.scenarios.roundabout import Roundabout
 
 YAML = "# Mine.\n_target_: my_methods.Mine\nplugins: [my_methods]\n"
 

@@ -7,9 +7,9 @@ import pytest
 
 import codriving.experiment.film
 from codriving.datatypes.outcome import Ending
-from codriving.episodes.unit import Unit
 from codriving.errors import FilmError
 from codriving.experiment import run_experiment
+from codriving.experiment.episodes.unit import Unit
 from codriving.experiment.film import FILM, FILM_ERROR, FilmEpisode
 
 

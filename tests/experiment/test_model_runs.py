@@ -17,17 +17,17 @@ from test_execute import all_files, deterministic
 from toy_models import CLIENTS, EPISODES, BuildAsking, ToyClient, asking_cell, asking_plan
 
 from codriving.datatypes.outcome import Ending
-from codriving.episodes.job import Job, Report
-from codriving.episodes.launcher import Processes, Serial
-from codriving.episodes.progress import Progress, show_progress
-from codriving.episodes.unit import Unit
 from codriving.errors import ModelError, ModelUnavailableError, SpendingLimitError
 from codriving.experiment import run
 from codriving.experiment.asking import model_of
+from codriving.experiment.episodes.job import Job, Report
+from codriving.experiment.episodes.launcher import Processes, Serial
+from codriving.experiment.episodes.progress import Progress, show_progress
+from codriving.experiment.episodes.unit import Unit
 from codriving.experiment.execute import execute
 from codriving.experiment.shares import side_by_side
 from codriving.experiment.stopping import HaltedError
-from codriving.storage.records import read_record
+from codriving.runs.records import read_record
 
 TOP = Path(__file__).parents[2]
 

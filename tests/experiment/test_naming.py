@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from toy_drive import LABELS
 from toy_plan import toy_cell
 
-from codriving.episodes.unit import Labels
 from codriving.experiment.cells import Cell
+from codriving.experiment.episodes.unit import Labels
 from codriving.experiment.naming import LONGEST, distinct, folder_name, repeated
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from codriving.config.sweep import expand
-from codriving.episodes.launcher import Processes
+from codriving.experiment.episodes.launcher import Processes
 from codriving.experiment.plan import make_plan
 
 

@@ -9,11 +9,11 @@ from toy_plan import toy as toy_objects
 from toy_plan import toy_cell, toy_plan
 
 from codriving.config.sweep import Point
-from codriving.episodes.unit import Labels
 from codriving.errors import ConfigError
 from codriving.experiment import run
 from codriving.experiment.ablation import ablation_points
 from codriving.experiment.cells import make_cell
+from codriving.experiment.episodes.unit import Labels
 from codriving.experiment.naming import folder_name
 from codriving.experiment.objects import modules_to_preload
 

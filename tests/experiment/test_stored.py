@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
+from codriving.environment.scenarios.intersection import Intersection
 from codriving.errors import RunFolderError
 from codriving.experiment import run_experiment
 from codriving.experiment.stored import find_episode, find_run, road_of, screening
-from codriving.scenarios.intersection import Intersection
-from codriving.storage.decisions_file import DECISIONS
-from codriving.storage.manifest import MANIFEST
-from codriving.storage.records import RECORD
-from codriving.storage.trajectory_file import TRAJECTORY
+from codriving.runs.decisions_file import DECISIONS
+from codriving.runs.manifest import MANIFEST
+from codriving.runs.records import RECORD
+from codriving.runs.trajectory_file import TRAJECTORY
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 """The swept keys that need a column: those that scenario, method, variant and reasoner do not show."""
 
-from codriving.episodes.unit import Labels
+from codriving.experiment.episodes.unit import Labels
 from codriving.experiment.swept import shown_apart, swept_values
 
 

@@ -7,16 +7,16 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "episodes"))
+sys.path.insert(0, str(Path(__file__).parent / "episodes"))
 
 from toy_drive import ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics
 
 from codriving.config.build import build
 from codriving.datatypes.world import WorldState
-from codriving.episodes.launcher import Launcher, Processes
-from codriving.episodes.unit import Labels, Objects
 from codriving.experiment import run
 from codriving.experiment.cells import Cell
+from codriving.experiment.episodes.launcher import Launcher, Processes
+from codriving.experiment.episodes.unit import Labels, Objects
 from codriving.experiment.naming import distinct, folder_name
 from codriving.experiment.plan import Plan
 

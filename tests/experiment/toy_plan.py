@@ -5,13 +5,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "episodes"))
+sys.path.insert(0, str(Path(__file__).parent / "episodes"))
 
 from toy_drive import LABELS, BuildToy
 
-from codriving.episodes.launcher import Processes
 from codriving.experiment import run
 from codriving.experiment.cells import Cell
+from codriving.experiment.episodes.launcher import Processes
 from codriving.experiment.naming import distinct, folder_name
 from codriving.experiment.plan import Plan
 

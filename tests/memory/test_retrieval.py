@@ -16,7 +16,7 @@ from codriving.memory.features import Features
 from codriving.memory.likeness import chance, precision_at, same_kind
 from codriving.memory.words import Words
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.cda import CdaLevel
+from codriving.reasoning.sharing.cda import CdaLevel
 
 KEPT, HELD_BACK = (10_001, 10_002, 10_003), (10_004, 10_005)
 

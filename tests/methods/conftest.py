@@ -8,7 +8,7 @@ from worlds import FULL, Junction
 
 from codriving.llm.offline import Offline
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.cda import CdaLevel
+from codriving.reasoning.sharing.cda import CdaLevel
 
 
 @pytest.fixture(scope="session")

@@ -14,8 +14,8 @@ from codriving.config.compose import compose
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.scene import Start
 from codriving.environment.environment import Environment
-from codriving.methods.alone import Alone
-from codriving.storage.decisions_file import decisions_text
+from codriving.methods.single_vehicle.alone import Alone
+from codriving.runs.decisions_file import decisions_text
 
 Make = Callable[..., Environment]
 

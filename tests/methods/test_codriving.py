@@ -14,12 +14,12 @@ from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
 from codriving.llm.offline import Offline
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.cda import CdaLevel
-from codriving.reasoning.intent_sharing import HiddenIntents, SharedIntents
-from codriving.reasoning.negotiation.negotiation import AgreedOrder
-from codriving.reasoning.negotiation.own_order import OwnOrders
+from codriving.reasoning.ordering.negotiation import AgreedOrder
+from codriving.reasoning.ordering.own_order import OwnOrders
 from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
-from codriving.reasoning.state_sharing import SensedStates, SharedStates
+from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.intent_sharing import HiddenIntents, SharedIntents
+from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates
 
 Make = Callable[..., CoDriving]
 

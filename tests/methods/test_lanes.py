@@ -15,7 +15,7 @@ from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
 from codriving.llm.offline import Offline
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.cda import CdaLevel
+from codriving.reasoning.sharing.cda import CdaLevel
 
 CHANGES = {Action.LANE_LEFT, Action.LANE_RIGHT}
 SENSED: dict[str, Any] = {"state_sharing": False, "negotiation": False}

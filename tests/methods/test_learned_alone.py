@@ -12,6 +12,7 @@ from driven import drive
 from hidden import scrambled
 from worlds import Junction, car
 
+from codriving.animation.deliberated import deliberated
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.config.sweep import expand
@@ -21,12 +22,11 @@ from codriving.datatypes.outcome import Ending
 from codriving.environment.environment import Environment
 from codriving.errors import WeightsError
 from codriving.experiment.plan import make_plan
-from codriving.learning.layout import FAMILIES
-from codriving.learning.weights import load, save, shipped
-from codriving.methods.learned import Learned
+from codriving.methods.learned.layout import FAMILIES
+from codriving.methods.learned.learned import Learned
+from codriving.methods.learned.weights import load, save, shipped
 from codriving.methods.ppo import Ppo
 from codriving.methods.tell import Tell
-from codriving.pictures.deliberated import deliberated
 from codriving.training.folder import fingerprint
 
 Make = Callable[..., Environment]

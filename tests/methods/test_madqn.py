@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from worlds import Car, Junction, car
 
+from codriving.animation.deliberated import deliberated
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.config.sweep import expand
@@ -19,10 +20,9 @@ from codriving.environment.environment import Environment
 from codriving.errors import WeightsError
 from codriving.experiment.plan import make_plan
 from codriving.geometry.road_map import road_map
-from codriving.learning.weights import load, save, shipped
-from codriving.methods.learned import Judged
+from codriving.methods.learned.learned import Judged
+from codriving.methods.learned.weights import load, save, shipped
 from codriving.methods.madqn import Madqn
-from codriving.pictures.deliberated import deliberated
 
 Make = Callable[..., Environment]
 SCENARIOS = ("intersection", "roundabout", "highway", "merge")

@@ -19,7 +19,7 @@ from codriving.memory.online import OnlineMemory
 from codriving.memory.protocol import CaseMemory
 from codriving.memory.recollection import open_recollection
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.cda import CdaLevel
+from codriving.reasoning.sharing.cda import CdaLevel
 
 NO_CHECK = {"safety_check": False}
 

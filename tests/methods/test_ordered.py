@@ -12,23 +12,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Junction, car
 
+from codriving.animation.deliberated import deliberated
+from codriving.animation.screening import Screening
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.action import Action
+from codriving.datatypes.ordering_problem import Instance
 from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
-from codriving.executors.planned import Planned
+from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.ordered import Ordered
-from codriving.ordering.fcfs import FirstComeFirstServed
-from codriving.ordering.instance import Instance
-from codriving.ordering.protocol import JointPlanner, Ordering
-from codriving.ordering.request import Request, in_order
-from codriving.ordering.schedule import repaired, timed
-from codriving.pictures.deliberated import deliberated
-from codriving.pictures.screening import Screening
-from codriving.storage.decisions_file import decisions_text
+from codriving.reasoning.execution.planned import Planned
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning.ordering.request import Request, in_order
+from codriving.reasoning.ordering.schedule import repaired, timed
+from codriving.runs.decisions_file import decisions_text
 
 Make = Callable[..., Environment]
 SCENARIOS = ("intersection", "roundabout", "highway", "merge")

@@ -9,11 +9,11 @@ from worlds import Junction
 from codriving.errors import ConfigError
 from codriving.llm.offline import Offline
 from codriving.llm.scripted import ScriptedChat
-from codriving.methods.ports import check_prompts, ports
-from codriving.reasoning.decision.model_decider import ModelDecider
+from codriving.methods.language_model.model_coordinator import ModelCoordinator
+from codriving.methods.language_model.model_decider import ModelDecider
+from codriving.methods.language_model.ports import check_prompts, ports
 from codriving.reasoning.decision.rules import RuleDecider
-from codriving.reasoning.negotiation.coordinator import RuleCoordinator
-from codriving.reasoning.negotiation.model_coordinator import ModelCoordinator
+from codriving.reasoning.ordering.coordinator import RuleCoordinator
 
 
 def test_rules_stand_there_without_a_model(junction: Junction) -> None:

@@ -14,15 +14,15 @@ from codriving.datatypes.experience import Effect, Verdict
 from codriving.errors import ConfigError, ModelUnavailableError
 from codriving.llm.ledger import Ledger
 from codriving.llm.offline import Offline
+from codriving.llm.prompts.render import Prompts
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
 from codriving.memory.features import Features
 from codriving.memory.recollection import open_recollection
 from codriving.memory.verdict import LESSONS
 from codriving.methods.codriving import CoDriving
-from codriving.methods.reflection import Reflection
-from codriving.reasoning.cda import CdaLevel
-from codriving.reasoning.prompts.render import Prompts
+from codriving.methods.language_model.reflection import Reflection
+from codriving.reasoning.sharing.cda import CdaLevel
 
 
 def teacher(question: Question) -> str:

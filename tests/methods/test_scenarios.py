@@ -9,7 +9,7 @@ from codriving.datatypes.outcome import Ending
 from codriving.environment.environment import Environment
 from codriving.llm.offline import Offline
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.cda import CdaLevel
+from codriving.reasoning.sharing.cda import CdaLevel
 
 Make = Callable[..., Environment]
 CHANGES = {Action.LANE_LEFT, Action.LANE_RIGHT}

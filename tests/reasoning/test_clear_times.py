@@ -5,7 +5,7 @@ import math
 import pytest
 from worlds import Junction, car, order_of
 
-from codriving.reasoning.clear_times import clear_time
+from codriving.reasoning.decision.clear_times import clear_time
 
 CARS = car("CAV1", "south-north", 60.0, 6.0), car("CAV2", "west-east", 80.0, 9.0)
 

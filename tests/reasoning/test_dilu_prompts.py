@@ -17,7 +17,7 @@ from codriving.datatypes.experience import Memory, Verdict
 from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
-from codriving.methods.dilu import DiLu
+from codriving.methods.dilu.dilu import DiLu
 
 NEARER = {"intersection": 20.0, "roundabout": 20.0}
 """How much farther everybody is than on the other pages, since a vehicle on its own sees 50 m [m]."""

@@ -2,7 +2,7 @@
 
 from worlds import Junction, car
 
-from codriving.reasoning.intent_sharing import GuessedIntents, HiddenIntents, SharedIntents
+from codriving.reasoning.sharing.intent_sharing import GuessedIntents, HiddenIntents, SharedIntents
 
 
 def test_cavs_tell_route_and_target_and_human_drivers_nothing(junction: Junction) -> None:

@@ -15,11 +15,11 @@ from shown import GOLDEN, WORLDS, WRITE
 from worlds import Car, Junction, car
 
 from codriving.errors import ConfigError
+from codriving.llm.prompts.decision_view import decision_view
+from codriving.llm.prompts.example import example
+from codriving.llm.prompts.free_text import Names, one_line
+from codriving.llm.prompts.render import FILES, OURS, Prompts
 from codriving.llm.question import Question
-from codriving.reasoning.prompts.decision_view import decision_view
-from codriving.reasoning.prompts.example import example
-from codriving.reasoning.prompts.free_text import Names, one_line
-from codriving.reasoning.prompts.render import FILES, OURS, Prompts
 
 
 @pytest.fixture(scope="module")

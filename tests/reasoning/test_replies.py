@@ -6,7 +6,7 @@ import pytest
 from pydantic import ValidationError
 
 from codriving.llm.forms import schema_of
-from codriving.reasoning.replies import decision_reply, first_of_pairs, order_reply
+from codriving.llm.prompts.replies import decision_reply, first_of_pairs, order_reply
 
 PAIRS = {"p1": ("CAV1", "CAV2"), "p2": ("CAV2", "CAV3")}
 

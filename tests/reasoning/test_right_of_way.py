@@ -6,8 +6,8 @@ import pytest
 from worlds import Car, Junction, car
 
 from codriving.geometry.road_map import RoadMap, road_map
-from codriving.reasoning.movers import movers
-from codriving.reasoning.right_of_way import gives_way
+from codriving.reasoning.prediction.right_of_way import gives_way
+from codriving.reasoning.sharing.movers import movers
 
 PLACES = [60.0 + 0.5 * k for k in range(80)]
 

@@ -5,7 +5,7 @@ from dataclasses import asdict, replace
 from worlds import Car, Junction, car
 
 from codriving.datatypes.vehicle import Kind
-from codriving.reasoning.state_sharing import USUAL_LENGTH, SensedStates, SharedStates, WatchedStates
+from codriving.reasoning.sharing.state_sharing import USUAL_LENGTH, SensedStates, SharedStates, WatchedStates
 
 NOT_SENSED = {"kind", "heading", "acceleration", "lane"}
 

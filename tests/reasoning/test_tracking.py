@@ -4,9 +4,9 @@ import pytest
 from worlds import Junction, car
 
 from codriving.datatypes.vehicle import Intent
-from codriving.reasoning.glimpse import Glimpse
-from codriving.reasoning.state_sharing import SensedStates, SharedStates
-from codriving.reasoning.tracking import Tracking
+from codriving.reasoning.sharing.detection import Glimpse
+from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates
+from codriving.reasoning.sharing.tracking import Tracking
 
 
 def seen(junction: Junction, route: str, place: float, speed: float = 6.0, full: bool = True) -> Glimpse:

@@ -18,7 +18,7 @@ from codriving.reports.paper import Paper
 from codriving.reports.run_tables import run_tables
 from codriving.reports.summary import summary_columns, summary_row
 from codriving.reports.timing_table import seconds_per_decision
-from codriving.storage.timing import timing_of
+from codriving.runs.timing import timing_of
 
 Make = Callable[..., EpisodeRecord]
 COUNTS = {

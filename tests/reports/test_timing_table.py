@@ -6,7 +6,7 @@ import pytest
 
 from codriving.datatypes.record import EpisodeRecord
 from codriving.reports.timing_table import cpu_per_decision, timing_columns, timing_rows
-from codriving.storage.timing import timing_of
+from codriving.runs.timing import timing_of
 
 
 def test_a_row_says_what_it_is_of_and_what_it_cost(make: Callable[..., EpisodeRecord]) -> None:

@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("torch")
 
 from codriving.errors import RunFolderError, TrainingError
-from codriving.learning.weights import load, sidecar
+from codriving.methods.learned.weights import load, sidecar
 from codriving.training.display import Display
 from codriving.training.folder import Stop, open_folder
 from codriving.training.run import train

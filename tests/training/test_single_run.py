@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("torch")
 pytest.importorskip("stable_baselines3")
 
-from codriving.learning.weights import load
+from codriving.methods.learned.weights import load
 from codriving.training.display import Display
 from codriving.training.folder import Stop, open_folder
 from codriving.training.run import train

@@ -5,7 +5,7 @@ import pytest
 from codriving.config.build import build
 from codriving.config.training import compose_training
 from codriving.errors import ConfigError
-from codriving.learning.layout import FAMILIES
+from codriving.methods.learned.layout import FAMILIES
 from codriving.training.single_settings import LEARNERS, SingleSettings
 
 

@@ -12,9 +12,9 @@ from codriving.config.build import build
 from codriving.config.training import compose_training
 from codriving.datatypes.action import Action
 from codriving.errors import ConfigError
-from codriving.learning.layout import JUNCTION, feature_count
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
+from codriving.methods.learned.layout import JUNCTION, feature_count
 from codriving.training.schedule import Linear
 from codriving.training.sight import Sight
 from codriving.training.teacher import Advisor, Guidance

@@ -2,7 +2,7 @@
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import Neighbour
-from codriving.reasoning.expectation import is_behind
+from codriving.reasoning.prediction.expectation import is_behind
 from codriving.reasoning.safety.beside import SIDES, beside
 from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.outlook import Outlook

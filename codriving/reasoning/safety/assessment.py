@@ -7,9 +7,16 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.situation import ActionAssessment
-from codriving.reasoning.clearance import first_overlap
-from codriving.reasoning.expectation import CLEARS, binding_zones, is_behind, keeps_order, progress_by_action, worth
-from codriving.reasoning.plans import PLANS
+from codriving.reasoning.prediction.clearance import first_overlap
+from codriving.reasoning.prediction.expectation import (
+    CLEARS,
+    binding_zones,
+    is_behind,
+    keeps_order,
+    progress_by_action,
+    worth,
+)
+from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
 from codriving.reasoning.safety.beside import beside
 from codriving.reasoning.safety.conflict_lane import check_conflicts

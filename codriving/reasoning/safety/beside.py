@@ -9,9 +9,9 @@ from codriving.datatypes.order import PassingOrder, Precedence
 from codriving.datatypes.road import LaneId
 from codriving.datatypes.scene_description import SceneDescription
 from codriving.reasoning.conflicts import find_conflicts
-from codriving.reasoning.movers import Mover
 from codriving.reasoning.safety.outlook import Outlook
-from codriving.reasoning.scenes import with_conflicts, with_roles
+from codriving.reasoning.sharing.movers import Mover
+from codriving.reasoning.sharing.scenes import with_conflicts, with_roles
 
 SIDES: Mapping[Action, int] = {Action.LANE_LEFT: -1, Action.LANE_RIGHT: 1}
 """By how much a lane change changes the index of the lane."""

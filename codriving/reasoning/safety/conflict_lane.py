@@ -9,10 +9,10 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict, Relation
 from codriving.geometry.box import TRUE, Footprint
 from codriving.geometry.zone import ConflictZone
-from codriving.reasoning.clearance import first_overlap, reacts, stays_ahead, stays_behind
-from codriving.reasoning.movers import Mover
-from codriving.reasoning.right_of_way import gives_way
+from codriving.reasoning.prediction.clearance import first_overlap, reacts, stays_ahead, stays_behind
+from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.outlook import Outlook
+from codriving.reasoning.sharing.movers import Mover
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -10,10 +10,10 @@ from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.scene_description import SceneDescription
 from codriving.geometry.road_map import RoadMap
-from codriving.prediction.forecast import Forecast
-from codriving.prediction.rollout import Plan
-from codriving.reasoning.expectation import Expected
-from codriving.reasoning.movers import Mover
+from codriving.reasoning.prediction.expectation import Expected
+from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.prediction.rollout import Plan
+from codriving.reasoning.sharing.movers import Mover
 
 Array = NDArray[np.float64]
 

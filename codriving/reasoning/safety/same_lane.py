@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import Neighbour, Role
-from codriving.reasoning.clearance import stays_behind
-from codriving.reasoning.expectation import CLEARS, is_behind
+from codriving.reasoning.prediction.clearance import stays_behind
+from codriving.reasoning.prediction.expectation import CLEARS, is_behind
 from codriving.reasoning.safety.outlook import Outlook
 
 Array = NDArray[np.float64]

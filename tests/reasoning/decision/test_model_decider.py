@@ -12,12 +12,12 @@ from worlds import Junction, car
 from codriving.datatypes.action import Action
 from codriving.datatypes.situation import ActionAssessment, Situation
 from codriving.llm.ledger import Ledger
+from codriving.llm.prompts.render import load_prompts
+from codriving.llm.prompts.replies import decision_reply
 from codriving.llm.question import Answer, Question
 from codriving.llm.scripted import Script, ScriptedChat
-from codriving.reasoning.decision.model_decider import ModelDecider, fallback
+from codriving.methods.language_model.model_decider import ModelDecider, fallback
 from codriving.reasoning.decision.rules import RuleDecider
-from codriving.reasoning.prompts.render import load_prompts
-from codriving.reasoning.replies import decision_reply
 
 CARS = (
     car("CAV1", "south-north", 60, 8, 9),

@@ -13,7 +13,7 @@ from codriving.reasoning.safety.adjacent_lane import HELD_UP, SIDE_GAP, check_ad
 from codriving.reasoning.safety.assessment import ThreeLayers, progress
 from codriving.reasoning.safety.outlook import Outlook
 from codriving.reasoning.safety.same_lane import check_ahead
-from codriving.reasoning.state_sharing import SensedStates
+from codriving.reasoning.sharing.state_sharing import SensedStates
 
 LENGTH, WIDTH, LANE = 5.0, 2.0, 4.0
 SIDES = {Action.LANE_LEFT: 0, Action.LANE_RIGHT: 2}

@@ -11,7 +11,7 @@ from codriving.datatypes.scene_description import Role
 from codriving.reasoning.safety.assessment import ThreeLayers
 from codriving.reasoning.safety.outlook import Outlook
 from codriving.reasoning.safety.same_lane import LANE_END_GAP, check_ahead, check_behind, forced_braking
-from codriving.reasoning.state_sharing import SensedStates, SharedStates
+from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates
 
 
 def follower(junction: Junction, gap: float, speed: float, leader: float, who: str = "HDV1") -> Outlook:

@@ -1,0 +1,89 @@
+"""Vehicles: CAVs filled and pointed, human drivers hollow and square, each with its name."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from codriving.animation.canvas import Canvas
+from codriving.animation.glyphs import action_glyph
+from codriving.animation.moment import Body, Moment
+from codriving.animation.space import Space, beside
+from codriving.animation.style import HALO, INK, KINDS, PAPER
+from codriving.animation.window import Area, Points, Window
+from codriving.datatypes.vehicle import Kind
+
+_SMALLEST = 15.0
+"""A vehicle is never drawn shorter [px]; far away it is a symbol."""
+
+_LETTERS = 12.0
+"""Size of a name [px]."""
+
+
+def draw_bodies(canvas: Canvas, window: Window, bodies: Sequence[Body]) -> None:
+    """Draw vehicles.
+
+    Args:
+        canvas: Where to draw.
+        window: What is seen where.
+        bodies: The vehicles.
+    """
+    for body in bodies:
+        if not window.sees([(body.x, body.y)], 40.0):
+            continue
+        colour = KINDS[body.kind]
+        if body.kind is Kind.CAV:
+            canvas.polygon(_outline(window, body, _CAV), colour, INK, 1.2)
+            canvas.polygon(_outline(window, body, _ROOF), "#ffffffd0")
+        else:
+            canvas.polygon(_outline(window, body, _HDV), PAPER, INK, 3.2)
+            canvas.polygon(_outline(window, body, _HDV), None, colour, 2.0)
+            canvas.line(_outline(window, body, _GLASS), INK, 1.8)
+
+
+_CAV = np.array([(0.5, 0.0), (0.28, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.28, -0.5)])
+_ROOF = np.array([(0.30, 0.0), (0.08, 0.26), (0.08, -0.26)])
+_HDV = np.array([(0.44, 0.36), (-0.44, 0.36), (-0.44, -0.36), (0.44, -0.36)])
+_GLASS = np.array([(0.22, 0.30), (0.22, -0.30)])
+"""Outlines in lengths and widths of the vehicle, its front to the right."""
+
+
+def _outline(window: Window, body: Body, shape: Points) -> Points:
+    grow = max(_SMALLEST / (body.length * window.zoom), 1.0)
+    along, across = (shape * (body.length, body.width) * grow).T
+    cos, sin = math.cos(body.heading), math.sin(body.heading)
+    return window.place(np.column_stack((body.x + along * cos - across * sin, body.y + along * sin + across * cos)))
+
+
+def draw_names(canvas: Canvas, window: Window, space: Space, moment: Moment) -> None:
+    """Write at each vehicle who it is, what it does and how fast; on the side where there is room.
+
+    Args:
+        canvas: Where to draw.
+        window: What is seen where.
+        space: Where there is room; the names take their part of it.
+        moment: Vehicles and actions.
+    """
+    shown = [body for body in moment.bodies if window.owns((body.x, body.y))]
+    boxes = [_bounds(_outline(window, body, _CAV)) for body in shown]
+    for box in boxes:
+        space.take(box)
+    for body, box in zip(shown, boxes, strict=True):
+        thought = moment.thoughts.get(body.id)
+        action = thought.action if thought else None
+        speed = f"{body.speed:.1f}"
+        name = canvas.width_of(body.id, _LETTERS, bold=True)
+        sign = 17.0 if action else 5.0
+        # As wide as with the widest digits, so that it does not hop about with the speed.
+        width = name + sign + canvas.width_of("00.0" if body.speed >= 9.95 else "0.0", _LETTERS - 1)
+        spot = space.find(beside(box, width + 2, _LETTERS + 3))
+        x, y = spot.left + 1, spot.centre[1]
+        canvas.text(x, y, body.id, _LETTERS, INK, bold=True, halo=HALO)
+        if action:
+            action_glyph(canvas, action, x + name + 8.5, y, 9.0)
+        canvas.text(x + name + sign, y, speed, _LETTERS - 1, INK, halo=HALO)
+
+
+def _bounds(placed: Points) -> Area:
+    low, high = placed.min(0), placed.max(0)
+    return Area(float(low[0]), float(low[1]), float(high[0] - low[0]), float(high[1] - low[1]))

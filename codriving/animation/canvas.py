@@ -1,0 +1,226 @@
+"""A sheet to draw on: smooth shapes by Matplotlib's Agg, letters by Pillow, and no display."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from matplotlib.backends import backend_agg
+from matplotlib.transforms import Affine2D, Bbox
+from numpy.typing import ArrayLike, NDArray
+
+from codriving.animation.colours import rgba
+from codriving.animation.lettering import stamp, text_width
+from codriving.animation.shape import Shape
+
+Pixels = NDArray[np.uint8]
+
+_RENDERER: Any = backend_agg.RendererAgg
+"""Its module has no annotations."""
+
+_DPI = 72
+"""At which Agg's points are pixels."""
+
+
+class Canvas:
+    """A sheet of `width` by `height` logical pixels; x grows to the right, y downwards.
+
+    Args:
+        width: Width [px].
+        height: Height [px].
+        scale: Real pixels a logical pixel.
+
+    Attributes:
+        width: Width [px].
+        height: Height [px].
+        scale: Real pixels a logical pixel.
+        pixels: What has been drawn (rows, columns, 4), RGBA; changes with every stroke.
+    """
+
+    def __init__(self, width: float, height: float, scale: float = 1.0) -> None:
+        self.width, self.height, self.scale = width, height, scale
+        columns, rows = round(width * scale), round(height * scale)
+        self._agg: Any = _RENDERER(columns, rows, _DPI)
+        self.pixels: Pixels = np.asarray(self._agg.buffer_rgba())
+        self._words = self.pixels.view(np.uint32)
+        self._pen: Any = self._agg.new_gc()
+        self._pen.set_snap(False)
+        self._pen.set_joinstyle("round")
+        # Agg's y grows upwards.
+        self._matrix = np.array([[scale, 0, 0], [0, -scale, rows], [0, 0, 1]], dtype=float)
+        self._place = Affine2D(self._matrix)
+        self._clip: Bbox | None = None
+
+    def fill(self, colour: str) -> None:
+        """Paint the whole sheet.
+
+        Args:
+            colour: ``#rrggbb``.
+        """
+        self._words[:] = np.array([round(part * 255) for part in rgba(colour)], dtype=np.uint8).view(np.uint32)
+
+    def polygon(
+        self, points: ArrayLike, fill: str | None = None, stroke: str | None = None, width: float = 1.0
+    ) -> None:
+        """Draw a closed shape.
+
+        Args:
+            points: Its corners (n, 2) [px].
+            fill: Colour inside, ``#rrggbb`` or ``#rrggbbaa``.
+            stroke: Colour of the outline.
+            width: Width of the outline [px].
+        """
+        self.shape(Shape([points], closed=True), None, fill, stroke, width)
+
+    def line(self, points: ArrayLike, colour: str, width: float, dash: Sequence[float] = ()) -> None:
+        """Draw a line through points.
+
+        Args:
+            points: Points (n, 2) [px].
+            colour: Its colour.
+            width: Its width [px].
+            dash: Lengths of dashes and gaps in turn [px]; none for a full line.
+        """
+        self.shape(Shape([points]), None, None, colour, width, dash)
+
+    def box(
+        self, left: float, top: float, width: float, height: float, fill: str | None, stroke: str | None = None
+    ) -> None:
+        """Draw an upright rectangle.
+
+        Args:
+            left: Left edge [px].
+            top: Upper edge [px].
+            width: Width [px].
+            height: Height [px].
+            fill: Colour inside.
+            stroke: Colour of the outline.
+        """
+        right, bottom = left + width, top + height
+        self.polygon([(left, top), (right, top), (right, bottom), (left, bottom)], fill, stroke)
+
+    def shape(
+        self,
+        shape: Shape,
+        matrix: NDArray[np.float64] | None,
+        fill: str | None = None,
+        stroke: str | None = None,
+        width: float = 1.0,
+        dash: Sequence[float] = (),
+    ) -> None:
+        """Draw a shape that was prepared before.
+
+        Args:
+            shape: The shape.
+            matrix: From its units to pixels (3, 3), for points as columns (x, y, 1); None if it is in pixels.
+            fill: Colour inside, ``#rrggbb`` or ``#rrggbbaa``.
+            stroke: Colour of its lines.
+            width: Width of its lines [px].
+            dash: Lengths of dashes and gaps in turn [px]; none for a full line.
+        """
+        pen = self._pen
+        pen.set_clip_rectangle(self._clip)
+        pen.set_linewidth(width * self.scale if stroke else 0.0)
+        if stroke:
+            pen.set_foreground(rgba(stroke), isRGBA=True)
+            pen.set_capstyle("butt" if dash else "round")
+            pen.set_dashes(0, [length * self.scale for length in dash] if dash else None)
+        place = self._place if matrix is None else Affine2D(self._matrix @ matrix)
+        self._agg.draw_path(pen, shape.outline, place, rgba(fill) if fill else None)
+
+    def text(
+        self,
+        x: float,
+        y: float,
+        words: str,
+        size: float,
+        colour: str,
+        bold: bool = False,
+        anchor: float = 0.0,
+        halo: str | None = None,
+    ) -> None:
+        """Write a line of text.
+
+        Args:
+            x: Where it stands [px].
+            y: Middle of its capitals [px].
+            words: What to write.
+            size: Size of the letters [px].
+            colour: Their colour.
+            bold: Whether they are bold.
+            anchor: Which part of the line is at `x`: 0 its beginning, 0.5 its middle, 1 its end.
+            halo: Colour of a rim around the letters, for words on the road.
+        """
+        words = " ".join(words.split())
+        size, rim = size * self.scale, round(1.8 * self.scale) if halo else 0
+        cut = stamp(words, size, bold, colour, halo, rim)
+        x0 = round(x * self.scale - anchor * text_width(words, size, bold)) + cut.dx
+        y0 = round(y * self.scale) + cut.dy
+        low_x, low_y, high_x, high_y = self._bounds()
+        x1, y1 = max(x0, low_x), max(y0, low_y)
+        x2, y2 = min(x0 + cut.keep.shape[1], high_x), min(y0 + cut.keep.shape[0], high_y)
+        if x1 < x2 and y1 < y2:
+            part = slice(y1 - y0, y2 - y0), slice(x1 - x0, x2 - x0)
+            there = self.pixels[y1:y2, x1:x2, :3]
+            there[:] = there * cut.keep[part] + cut.ink[part] + np.float32(0.5)
+
+    def width_of(self, words: str, size: float, bold: bool = False) -> float:
+        """Return the width of a line of text [px].
+
+        Args:
+            words: The text.
+            size: Size of the letters [px].
+            bold: Whether they are bold.
+        """
+        return text_width(" ".join(words.split()), size * self.scale, bold) / self.scale
+
+    def copy(self, left: float, top: float, width: float, height: float) -> Pixels:
+        """Return what has been drawn in a rectangle, to be put back later.
+
+        Args:
+            left: Left edge [px].
+            top: Upper edge [px].
+            width: Width [px].
+            height: Height [px].
+        """
+        return self._part(left, top, width, height).copy()
+
+    def paste(self, left: float, top: float, width: float, height: float, part: Pixels) -> None:
+        """Put back what was copied from the same rectangle.
+
+        Args:
+            left: Left edge [px].
+            top: Upper edge [px].
+            width: Width [px].
+            height: Height [px].
+            part: What was copied.
+        """
+        np.copyto(self._part(left, top, width, height), part)
+
+    def _part(self, left: float, top: float, width: float, height: float) -> Pixels:
+        s = self.scale
+        return self.pixels[round(top * s) : round((top + height) * s), round(left * s) : round((left + width) * s)]
+
+    def _bounds(self) -> tuple[int, int, int, int]:
+        rows, columns = self.pixels.shape[:2]
+        if self._clip is None:
+            return 0, 0, columns, rows
+        left, low, right, high = (round(v) for v in self._clip.extents)
+        return max(left, 0), max(rows - high, 0), min(right, columns), min(rows - low, rows)
+
+    @contextmanager
+    def within(self, left: float, top: float, width: float, height: float) -> Iterator[None]:
+        """Draw only inside a rectangle while the block lasts.
+
+        Args:
+            left: Left edge [px].
+            top: Upper edge [px].
+            width: Width [px].
+            height: Height [px].
+        """
+        before, rows, s = self._clip, self.pixels.shape[0], self.scale
+        self._clip = Bbox([[left * s, rows - (top + height) * s], [(left + width) * s, rows - top * s]])
+        try:
+            yield
+        finally:
+            self._clip = before

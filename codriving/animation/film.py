@@ -1,0 +1,137 @@
+"""Frames to a film: MP4 or GIF, by the ffmpeg that imageio-ffmpeg brings along."""
+
+import subprocess
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from codriving.animation import style
+from codriving.errors import FilmError
+
+MP4, GIF = "mp4", "gif"
+
+Frame = NDArray[np.uint8]
+
+# Players take colours of this size for those of BT.709 whether or not the file says so, so they are, and it says so.
+_COLOURS = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p"
+_SAID = "setparams=color_primaries=bt709:color_trc=bt709:colorspace=bt709:range=tv"
+_VIDEO = ("-codec:v", "libx264", "-preset", "veryfast", "-crf", "20", "-movflags", "+faststart", "-f", "mp4")
+_ANIMATION = ("-filter_complex", "[0:v][1:v]paletteuse=dither=none:diff_mode=rectangle", "-loop", "0", "-f", "gif")
+_SAME_BYTES = ("-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact")
+
+
+@dataclass(frozen=True, slots=True)
+class Reel:
+    """The shape of a film.
+
+    Attributes:
+        format: ``mp4`` or ``gif``.
+        rate: Frames a second.
+        rows: Height of a frame [px].
+        columns: Width of a frame [px].
+    """
+
+    format: str
+    rate: Fraction
+    rows: int
+    columns: int
+
+
+def write_film(path: Path, reel: Reel, frames: Iterator[Frame], samples: Sequence[Frame] = ()) -> int:
+    """Write a film; only one frame at a time is in memory.
+
+    Args:
+        path: The file; whatever its name ends in.
+        reel: The shape of the film.
+        frames: The frames (rows, columns, 4), RGBA.
+        samples: Some of them, which a GIF takes its 256 colours from.
+
+    Returns:
+        The number of frames.
+
+    Raises:
+        FilmError: If ffmpeg cannot be started or gives up.
+    """
+    with tempfile.TemporaryDirectory(prefix="codriving-") as folder:
+        palette = Path(folder, "palette.png")
+        if reel.format == GIF:
+            _palette(samples).save(palette)
+            options: tuple[str, ...] = ("-i", str(palette), *_ANIMATION)
+        else:
+            # Its colours are kept for two pixels by two, so both sides must be even.
+            even = "pad=ceil(iw/2)*2:ceil(ih/2)*2," if reel.rows % 2 or reel.columns % 2 else ""
+            options = ("-vf", f"{even}{_COLOURS},{_SAID}", *_VIDEO)
+        return _encode([*_raw(reel), *options, *_SAME_BYTES, "-y", str(path)], frames)
+
+
+def _raw(reel: Reel) -> tuple[str, ...]:
+    size = f"{reel.columns}x{reel.rows}"
+    return ("-f", "rawvideo", "-pixel_format", "rgba", "-video_size", size, "-framerate", str(reel.rate), "-i", "-")
+
+
+def _encode(arguments: Sequence[str], frames: Iterator[Frame]) -> int:
+    from imageio_ffmpeg import get_ffmpeg_exe
+
+    with tempfile.TemporaryFile() as said:
+        try:
+            command = [get_ffmpeg_exe(), "-hide_banner", "-loglevel", "error", *arguments]
+            # A session of its own: Ctrl-C is for us, and we end it.
+            process = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said, start_new_session=True
+            )
+        except (OSError, RuntimeError) as error:
+            raise FilmError(f"cannot start ffmpeg: {error}; install imageio-ffmpeg again") from error
+        try:
+            count = _feed(process, frames)
+        except BaseException:
+            process.kill()
+            process.wait()
+            raise
+        if code := process.wait():
+            said.seek(0)
+            words = " ".join(said.read().decode(errors="replace").split()) or f"exit code {code}"
+            raise FilmError(f"ffmpeg gave up: {words}")
+    return count
+
+
+def _feed(process: "subprocess.Popen[bytes]", frames: Iterator[Frame]) -> int:
+    """Hand over the frames; if ffmpeg is gone before the last one, its exit code tells."""
+    assert process.stdin is not None
+    count = 0
+    with suppress(BrokenPipeError), process.stdin as pipe:
+        for frame in frames:
+            pipe.write(np.ascontiguousarray(frame).data)
+            count += 1
+    return count
+
+
+def _palette(samples: Sequence[Frame]) -> Image.Image:
+    """The 256 colours of a GIF: those of the style for certain, the others as they are met most."""
+    named = [value for value in vars(style).values() if isinstance(value, str) and len(value) == 7 and value[0] == "#"]
+    named += [stroke.colour for stroke in style.SEVERITIES.values()]
+    fixed = [tuple(bytes.fromhex(colour[1:])) for colour in dict.fromkeys(named)]
+    tall = np.concatenate([frame[::2, ::2, :3] for frame in samples])
+    found = Image.fromarray(tall).quantize(256 - len(fixed), Image.Quantize.MEDIANCUT).getpalette() or []
+    colours = [*fixed, *zip(found[0::3], found[1::3], found[2::3], strict=True)][:256]
+    colours += [colours[0]] * (256 - len(colours))
+    return Image.fromarray(np.array(colours, dtype=np.uint8).reshape(16, 16, 3))
+
+
+def write_png(path: Path, frame: Frame) -> None:
+    """Write a single frame.
+
+    Args:
+        path: The file.
+        frame: The frame (rows, columns, 3 or 4).
+
+    Raises:
+        OSError: If it cannot be written.
+    """
+    Image.fromarray(frame).convert("RGB").save(path, format="PNG", optimize=True)

@@ -1,0 +1,143 @@
+"""A picture of a world while it is driven, as the ``render()`` of an environment wants it."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.animation.moment import Body, Moment, Thought
+from codriving.animation.sizes import check_size
+from codriving.datatypes.action import Action
+from codriving.datatypes.outcome import Outcome
+from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import WorldState
+from codriving.geometry.road_map import RoadMap
+
+if TYPE_CHECKING:
+    from codriving.animation.picture import Picture
+    from codriving.animation.window import Window
+
+
+class LivePicture:
+    """Draws world states as they come; needs no display, and keeps what does not move between two frames.
+
+    The same calls in the same order give the same pixels. Nothing heavy is imported before the first frame.
+
+    Args:
+        road_map: The road.
+        title: First line of the panel, for instance ``intersection, seed 3``.
+        width: Width of a frame at scale 1 [px]; the panel takes 384 of it.
+        height: Height of a frame at scale 1 [px].
+        scale: Pixels a pixel of the layout, 0.5 to 4; 2 for a screen of high resolution.
+        panel: Whether there is a panel with time, actions and speeds at the right; without it, road alone.
+
+    Raises:
+        ConfigError: If a size is out of range.
+
+    Example:
+        >>> picture = LivePicture(environment.road_map, "intersection, seed 3")  # doctest: +SKIP
+        >>> world = environment.reset(seed=3)  # doctest: +SKIP
+        >>> frame = picture.draw(world)  # (720, 1280, 3), uint8  # doctest: +SKIP
+        >>> world = environment.step(actions)  # doctest: +SKIP
+        >>> frame = picture.draw(world, actions, outcome=environment.outcome)  # doctest: +SKIP
+    """
+
+    def __init__(
+        self,
+        road_map: RoadMap,
+        title: str = "",
+        width: int = 1280,
+        height: int = 720,
+        scale: float = 1.0,
+        panel: bool = True,
+    ) -> None:
+        check_size(width, height, scale, panel)
+        self._road_map, self._title, self._size, self._panel = road_map, title, (width, height, scale), panel
+        self._time = np.inf
+        self._picture: Picture | None = None
+        self._windows: tuple[Window, ...] = ()
+
+    def draw(
+        self,
+        world: WorldState,
+        actions: Mapping[str, Action] | None = None,
+        deliberation: Mapping[str, Any] | None = None,
+        outcome: Outcome | None = None,
+        arrivals: Mapping[str, float] | None = None,
+        title: str | None = None,
+    ) -> NDArray[np.uint8]:
+        """Draw one frame.
+
+        The view is chosen anew whenever time goes back, as after a reset.
+
+        Args:
+            world: The vehicles on the road, and what the CAVs among them intend.
+            actions: The action in force of each CAV, by id; those that are missing are not shown.
+            deliberation: ``Deliberation.as_dict()`` of the method, if there is one: conflicts, order and reasons.
+            outcome: How the episode ended; draws the banner.
+            arrivals: Arrival time of each CAV that has arrived [s], by id; without it a CAV that has left the road
+                counts as arrived, and the outcome says when.
+            title: A new first line of the panel, as after a reset with another seed.
+
+        Returns:
+            The frame (height, width, 3), uint8, RGB; an array of its own that may be kept.
+        """
+        if title is not None and title != self._title:
+            self._title, self._picture = title, None
+        if self._picture is None or world.time < self._time:
+            self._begin(world)
+        self._time = world.time
+        assert self._picture is not None
+        return self._picture.rgb(self._moment(world, actions or {}, deliberation, outcome, arrivals), self._windows)
+
+    def _begin(self, world: WorldState) -> None:
+        """Choose a view from which the vehicles that are there and the places that they go to are seen."""
+        from codriving.animation.camera import overview
+        from codriving.animation.cards import natural
+        from codriving.animation.picture import Picture
+
+        cavs = tuple(sorted((vehicle.id for vehicle in world.cavs), key=natural))
+        width, height, scale = self._size
+        self._picture = Picture(self._road_map, cavs, (self._title, ""), width, height, scale, self._panel)
+        routes = {intent.route for intent in world.intents.values()} or set(self._road_map.routes)
+        places = [(v.x, v.y) for v in world.vehicles]
+        for route in sorted(routes):
+            x, y = self._road_map.paths[route].position(self._road_map.routes[route].goal)
+            places.append((float(x), float(y)))
+        self._windows = overview(np.array(places), self._road_map, self._picture.view)
+
+    def _moment(
+        self,
+        world: WorldState,
+        actions: Mapping[str, Action],
+        deliberation: Mapping[str, Any] | None,
+        outcome: Outcome | None,
+        arrivals: Mapping[str, float] | None,
+    ) -> Moment:
+        from codriving.animation.deliberated import Deliberated, deliberated
+
+        decided = deliberated(deliberation, self._road_map) if deliberation else Deliberated(world.time)
+        told = {name: Thought(Action(action)) for name, action in actions.items()}
+        bodies = []
+        for v in world.vehicles:
+            intent = world.intents.get(v.id) if v.kind is Kind.CAV else None
+            route = intent.route if intent else None
+            bodies.append(Body(v.id, v.kind, v.x, v.y, v.heading, v.speed, route, v.length, v.width))
+        return Moment(
+            time=world.time,
+            bodies=tuple(bodies),
+            thoughts={**told, **decided.thoughts},
+            meetings=decided.meetings,
+            order=decided.order,
+            order_title=decided.order_title,
+            arrived=arrivals if arrivals is not None else self._arrived(world, outcome),
+            outcome=outcome,
+        )
+
+    def _arrived(self, world: WorldState, outcome: Outcome | None) -> Mapping[str, float | None]:
+        """CAVs leave the road by arriving; a collision ends the episode with everybody in place."""
+        assert self._picture is not None
+        here = {vehicle.id for vehicle in world.cavs}
+        times: Mapping[str, float] = outcome.arrivals if outcome else {}
+        return {name: times.get(name) for name in self._picture.cavs if name not in here}

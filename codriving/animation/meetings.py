@@ -1,0 +1,172 @@
+"""Open conflicts: a mark where two vehicles would meet, and the ways of the two to it, by severity."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from codriving.animation.canvas import Canvas
+from codriving.animation.moment import Body, Meeting
+from codriving.animation.space import Space, beside
+from codriving.animation.style import BAND, HALO, PAPER, SEVERITIES
+from codriving.animation.window import Area, Points, Window
+from codriving.datatypes.conflict import Severity
+from codriving.datatypes.vehicle import Kind
+from codriving.geometry.path import Path
+from codriving.geometry.road_map import RoadMap
+
+_RANK = {severity: rank for rank, severity in enumerate(SEVERITIES)}
+
+
+def worst_first(meetings: Sequence[Meeting]) -> list[Meeting]:
+    """Return the conflicts that are drawn, the most severe first.
+
+    Args:
+        meetings: All conflicts.
+    """
+    shown = [m for m in meetings if m.severity in _RANK]
+    return sorted(shown, key=lambda m: (_RANK[m.severity], m.dttcp, m.one, m.other))
+
+
+def pressing(meetings: Sequence[Meeting], bodies: Mapping[str, Body]) -> list[Meeting]:
+    """Return the conflicts that get lines and words: the most severe of each CAV, or nobody would find a way through.
+
+    Args:
+        meetings: Conflicts, the most severe first.
+        bodies: The vehicles on the road, by id.
+    """
+    done, chosen = set[str](), []
+    for meeting in meetings:
+        cavs = {name for name in (meeting.one, meeting.other) if bodies[name].kind is Kind.CAV}
+        if cavs - done:
+            chosen.append(meeting)
+            done |= cavs
+    return chosen
+
+
+class Meetings:
+    """The conflicts of a frame.
+
+    Args:
+        meetings: All conflicts.
+        bodies: The vehicles on the road.
+        road_map: The road.
+    """
+
+    def __init__(self, meetings: Sequence[Meeting], bodies: Sequence[Body], road_map: RoadMap) -> None:
+        self._bodies = {body.id: body for body in bodies}
+        self._shown = worst_first([m for m in meetings if m.one in self._bodies and m.other in self._bodies])
+        self._pressing = pressing(self._shown, self._bodies)
+        self._shapes = {id(m): meeting_lines(m, self._bodies, road_map) for m in self._shown}
+
+    def lines(self, canvas: Canvas, window: Window) -> None:
+        """Draw the ways of the two to where they meet, for those conflicts that press, the most severe on top.
+
+        Args:
+            canvas: Where to draw.
+            window: What is seen where.
+        """
+        for meeting in reversed(self._pressing):
+            stroke = SEVERITIES[meeting.severity]
+            for line in self._shapes[id(meeting)][1]:
+                if window.sees(line, 5.0):
+                    canvas.line(window.place(line), stroke.colour + BAND, stroke.width, stroke.dash)
+
+    def marks(self, canvas: Canvas, window: Window) -> None:
+        """Draw a mark for each, the most severe on top.
+
+        Args:
+            canvas: Where to draw.
+            window: What is seen where.
+        """
+        for meeting in reversed(self._shown):
+            place = self._shapes[id(meeting)][0]
+            if window.sees([place], 20.0):
+                x, y = window.place(place)
+                mark(canvas, float(x), float(y), 1.0, meeting.severity, meeting.certain)
+
+    def claim(self, window: Window, space: Space) -> None:
+        """Keep words off the marks.
+
+        Args:
+            window: What is seen where.
+            space: Where there is room; the marks take their part of it.
+        """
+        for meeting in self._shown:
+            space.take(self._box(window, meeting))
+
+    def _box(self, window: Window, meeting: Meeting) -> Area:
+        x, y = (float(v) for v in window.place(self._shapes[id(meeting)][0]))
+        half = SEVERITIES[meeting.severity].mark
+        return Area(x - half, y - half, 2 * half, 2 * half)
+
+    def label(self, canvas: Canvas, window: Window, space: Space) -> None:
+        """Write at the marks of those that press how severe they are.
+
+        Args:
+            canvas: Where to draw.
+            window: What is seen where.
+            space: Where there is room; the words take their part of it.
+        """
+        for meeting in self._pressing:
+            place = self._shapes[id(meeting)][0]
+            if not window.owns(place):
+                continue
+            stroke = SEVERITIES[meeting.severity]
+            words = f"{stroke.word} {meeting.dttcp:.1f} s"
+            spot = space.find(beside(self._box(window, meeting), canvas.width_of(words, 11, bold=True) + 4, 15.0))
+            canvas.text(spot.left + 2, spot.centre[1], words, 11, stroke.colour, bold=True, halo=HALO)
+
+
+def meeting_lines(meeting: Meeting, bodies: Mapping[str, Body], road_map: RoadMap) -> tuple[Points, list[Points]]:
+    """Return where two vehicles would meet, and the ways of the two until there.
+
+    Args:
+        meeting: The conflict.
+        bodies: The vehicles on the road, by id.
+        road_map: The road.
+
+    Returns:
+        A point (2,) and lines (n, 2) [m]. Where one only follows the other, the point lies between them.
+    """
+    pair = bodies[meeting.one], bodies[meeting.other]
+    ends = np.array([(body.x, body.y) for body in pair])
+    middle = ends.mean(axis=0)
+    if meeting.ways is None:
+        return middle, [np.array([end, middle]) for end in ends]
+    paths = [road_map.paths[route] for route, _ in meeting.ways]
+    here = [path.project(body.x, body.y)[0] for path, body in zip(paths, pair, strict=True)]
+    goals = [s for _, s in meeting.ways]
+    if any(s < goal for s, goal in zip(here, goals, strict=True)):
+        lines = [
+            _stretch(path, s + body.length / 2, goal)
+            for path, s, goal, body in zip(paths, here, goals, pair, strict=True)
+            if s + body.length / 2 < goal
+        ]
+        return np.array(paths[0].position(goals[0]), dtype=float), lines
+    # Both have come together already: what is left is the way from the one to the other.
+    first, last = sorted((here[0], paths[0].project(*ends[1])[0]))
+    line = _stretch(paths[0], first, last)
+    return np.array(paths[0].position((first + last) / 2), dtype=float), [line]
+
+
+def _stretch(path: Path, start: float, end: float) -> Points:
+    return np.column_stack(path.position(np.linspace(start, end, max(2, round((end - start) / 2.0) + 1))))
+
+
+def mark(canvas: Canvas, x: float, y: float, size: float, severity: Severity, certain: bool) -> None:
+    """Draw a mark.
+
+    Args:
+        canvas: Where to draw.
+        x: Its middle [px].
+        y: Its middle [px].
+        size: How large, 1 on the road.
+        severity: What it stands for; serious ones have an exclamation mark.
+        certain: Whether both routes are known; else it is hollow.
+    """
+    colour = SEVERITIES[severity].colour
+    inside, rim = (colour, PAPER) if certain else (PAPER, colour)
+    half = size * SEVERITIES[severity].mark
+    canvas.polygon([(x, y - half), (x + half, y), (x, y + half), (x - half, y)], inside, rim, 1.5 * size)
+    if severity is Severity.SERIOUS:
+        canvas.text(x, y, "!", round(12 * size), rim, bold=True, anchor=0.5)

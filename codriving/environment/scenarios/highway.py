@@ -1,0 +1,101 @@
+"""The highway: parallel lanes one way, faster CAVs among slower human drivers, a finish to reach."""
+
+from functools import cached_property
+
+import numpy as np
+
+from codriving.datatypes.road import Lane, Line, Road, Route, Straight, Turn
+from codriving.datatypes.scene import Scene, Start
+from codriving.datatypes.vehicle import Kind
+from codriving.environment.scenarios.crowd import Crowd
+from codriving.environment.scenarios.pace import Pace, require_range
+from codriving.environment.scenarios.placement import place
+
+LANE_WIDTH = 4.0
+SPEED_LIMIT = 30.0
+"""Speed limit on every lane [m/s]."""
+
+BEYOND = 60.0
+"""Road past the finish [m]."""
+
+
+def _lines(index: int, lanes: int) -> tuple[Line, Line]:
+    left = Line.CONTINUOUS_LINE if index == 0 else Line.NONE
+    return left, Line.CONTINUOUS_LINE if index == lanes - 1 else Line.STRIPED
+
+
+class Highway:
+    """Several CAVs and human drivers on parallel lanes; everybody may change lanes.
+
+    Args:
+        cavs: Number of CAVs, 2 to 10.
+        hdvs: Smallest and largest number of HDVs; the number is drawn from the seed.
+        lanes: Number of lanes, 1 to 6.
+        finish: Distance after which a vehicle has arrived [m].
+        start: Nearest and farthest start along a lane [m].
+        cav_speed: Lowest and highest start speed of CAVs [m/s].
+        hdv_speed: Lowest and highest start speed of HDVs, which is also the speed they want [m/s].
+        spacing: Smallest distance between two starts on one lane [m].
+        simulation_frequency: Simulation steps per second [Hz].
+        decision_frequency: Decisions per second [Hz].
+        time_limit: Longest duration of an episode [s].
+        target_speeds: Speeds that FASTER and SLOWER step through [m/s].
+        detection_range: Radius of perception of a CAV [m].
+
+    Raises:
+        ConfigError: If a setting is out of range.
+        ScenarioError: If so many vehicles cannot be placed.
+    """
+
+    name = "highway"
+
+    def __init__(
+        self,
+        cavs: int,
+        hdvs: tuple[int, int],
+        lanes: int,
+        finish: float,
+        start: tuple[float, float],
+        cav_speed: tuple[float, float],
+        hdv_speed: tuple[float, float],
+        spacing: float,
+        simulation_frequency: float,
+        decision_frequency: float,
+        time_limit: float,
+        target_speeds: tuple[float, ...],
+        detection_range: float,
+    ) -> None:
+        require_range("lanes", lanes, 1, 6)
+        require_range("finish", finish, 200, 5000, " m")
+        self.crowd = Crowd(cavs, hdvs, start, cav_speed, hdv_speed, spacing)
+        self.crowd.check(10, 40, finish - 100, "100 m before the finish at the latest", SPEED_LIMIT)
+        self.crowd.require_room(lanes, f"{lanes} lanes")
+        self.lanes, self.finish = lanes, finish
+        self.pace = Pace(simulation_frequency, decision_frequency, time_limit, tuple(target_speeds), detection_range)
+
+    @cached_property
+    def road(self) -> Road:
+        """Parallel lanes, and a route along each; nobody has the right of way."""
+        lanes, routes = [], []
+        length = self.finish + BEYOND
+        for k in range(self.lanes):
+            shape = Straight((0.0, k * LANE_WIDTH), (length, k * LANE_WIDTH))
+            lanes.append(Lane(("begin", "end", k), shape, LANE_WIDTH, SPEED_LIMIT, 0, _lines(k, self.lanes)))
+            routes.append(Route(f"lane-{k}", (("begin", "end", k),), Turn.STRAIGHT, self.finish, self.finish))
+        return Road("highway", tuple(lanes), tuple(routes))
+
+    def scene(self, seed: int) -> Scene:
+        """Draw lane, place and speed of every vehicle.
+
+        Args:
+            seed: Seed of the episode.
+
+        Raises:
+            ScenarioError: If the vehicles do not fit.
+        """
+
+        def draw(rng: np.random.Generator, name: str, kind: Kind) -> Start:
+            route = f"lane-{int(rng.integers(self.lanes))}"
+            return self.crowd.start_on(rng, name, kind, route)
+
+        return place(seed, self.crowd, self.road, draw)

@@ -1,0 +1,152 @@
+"""The merge: a main road and a ramp whose vehicles must change onto it before their lane ends."""
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from codriving.datatypes.road import Block, Lane, LaneId, LaneShape, Line, Road, Route, Sine, Straight, Turn
+from codriving.datatypes.scene import Scene, Start
+from codriving.datatypes.vehicle import Kind
+from codriving.environment.scenarios.crowd import Crowd
+from codriving.environment.scenarios.pace import Pace, require_range
+from codriving.environment.scenarios.placement import place
+
+LANE_WIDTH = 4.0
+SPEED_LIMIT = 20.0
+"""Speed limit on every lane [m/s]."""
+
+SWAY = 3.25
+"""Half of what the ramp comes closer while it converges, as in highway-env [m]."""
+
+TAPER = 40.0
+"""Length of the last part of the ramp lane, in which whoever is still on it has to be changing [m]."""
+
+PAST_MERGE = 80.0
+"""Distance past the end of the ramp lane at which a vehicle has arrived [m]."""
+
+
+class Merge:
+    """Several CAVs on the main road and on the ramp, among human drivers.
+
+    Args:
+        cavs: Number of CAVs, 2 to 10; the second half of them starts on the ramp.
+        hdvs: Smallest and largest number of HDVs; the number is drawn from the seed.
+        ramp_hdvs: Share of HDVs that start on the ramp, 0 to 1.
+        lanes: Number of main lanes, 1 to 4.
+        before: Length of the road before the ramp begins to converge [m].
+        converge: Length over which it converges [m].
+        parallel: Length of the ramp lane beside the main road [m].
+        after: Length of the road past the end of the ramp lane [m].
+        start: Nearest and farthest start along the road [m].
+        cav_speed: Lowest and highest start speed of CAVs [m/s].
+        hdv_speed: Lowest and highest start speed of HDVs, which is also the speed they want [m/s].
+        spacing: Smallest distance between two starts on one lane [m].
+        simulation_frequency: Simulation steps per second [Hz].
+        decision_frequency: Decisions per second [Hz].
+        time_limit: Longest duration of an episode [s].
+        target_speeds: Speeds that FASTER and SLOWER step through [m/s].
+        detection_range: Radius of perception of a CAV [m].
+
+    Raises:
+        ConfigError: If a setting is out of range.
+        ScenarioError: If so many vehicles cannot be placed.
+    """
+
+    name = "merge"
+
+    def __init__(
+        self,
+        cavs: int,
+        hdvs: tuple[int, int],
+        ramp_hdvs: float,
+        lanes: int,
+        before: float,
+        converge: float,
+        parallel: float,
+        after: float,
+        start: tuple[float, float],
+        cav_speed: tuple[float, float],
+        hdv_speed: tuple[float, float],
+        spacing: float,
+        simulation_frequency: float,
+        decision_frequency: float,
+        time_limit: float,
+        target_speeds: tuple[float, ...],
+        detection_range: float,
+    ) -> None:
+        require_range("ramp_hdvs", ramp_hdvs, 0, 1)
+        require_range("lanes", lanes, 1, 4)
+        require_range("before", before, 60, 1000, " m")
+        require_range("converge", converge, 40, 500, " m")
+        require_range("parallel", parallel, TAPER + 20, 1000, " m")
+        require_range("after", after, PAST_MERGE + 20, 1000, " m")
+        self.crowd = Crowd(cavs, hdvs, start, cav_speed, hdv_speed, spacing)
+        self.crowd.check(10, 20, before - 10, "10 m before the ramp converges at the latest", SPEED_LIMIT)
+        self.crowd.require_room(1, "the ramp", cavs // 2, 0)
+        self.crowd.require_room(lanes, f"{lanes} main lanes", cavs - cavs // 2, 0)
+        self.crowd.require_room(lanes + 1, f"{lanes} main lanes and the ramp")
+        self.ramp_hdvs, self.lanes = ramp_hdvs, lanes
+        self.before, self.converge, self.parallel, self.after = before, converge, parallel, after
+        self.pace = Pace(simulation_frequency, decision_frequency, time_limit, tuple(target_speeds), detection_range)
+
+    @cached_property
+    def road(self) -> Road:
+        """The main lanes, the ramp beside them with highway-env's measures, and a block where its lane ends."""
+        opens = self.before + self.converge
+        ends = opens + self.parallel
+        far = ends + self.after
+        parts = (("a", "b", 0.0, opens), ("b", "c", opens, ends))
+        lanes = [self._main(*part, k) for part in parts for k in self._mains]
+        lanes += self._ramp(opens, ends)
+        lanes += [self._main("c", "d", ends, far, k) for k in self._mains]
+        goal = ends + PAST_MERGE
+        routes = []
+        for k in self._mains:
+            way: tuple[LaneId, ...] = (("a", "b", k), ("b", "c", k), ("c", "d", k))
+            routes.append(Route(f"main-{k}", way, Turn.STRAIGHT, opens, goal))
+        right = self.lanes - 1
+        way = (("j", "k", 0), ("k", "b", 0), ("b", "c", self.lanes), ("b", "c", right), ("c", "d", right))
+        routes.append(Route("ramp", way, Turn.STRAIGHT, opens, goal, TAPER))
+        return Road("merge", tuple(lanes), tuple(routes), blocks=(Block((ends, self.lanes * LANE_WIDTH)),))
+
+    @property
+    def _mains(self) -> range:
+        return range(self.lanes)
+
+    def _main(self, start: str, end: str, x: float, x2: float, k: int) -> Lane:
+        left = Line.CONTINUOUS_LINE if k == 0 else Line.NONE
+        open_side = k < self.lanes - 1 or start == "b"
+        lines = (left, Line.STRIPED if open_side else Line.CONTINUOUS_LINE)
+        shape = Straight((x, k * LANE_WIDTH), (x2, k * LANE_WIDTH))
+        return Lane((start, end, k), shape, LANE_WIDTH, SPEED_LIMIT, 1, lines)
+
+    def _ramp(self, opens: float, ends: float) -> list[Lane]:
+        side = self.lanes * LANE_WIDTH
+        far, near, middle = side + 2 * SWAY, side, side + SWAY
+        bend = Sine((self.before, middle), (opens, middle), SWAY, math.pi / self.converge, math.pi / 2)
+        cont, none = Line.CONTINUOUS_LINE, Line.NONE
+        shapes: list[tuple[LaneId, LaneShape, tuple[Line, Line]]] = [
+            (("j", "k", 0), Straight((0.0, far), (self.before, far)), (cont, cont)),
+            (("k", "b", 0), bend, (cont, cont)),
+            (("b", "c", self.lanes), Straight((opens, near), (ends, near)), (none, cont)),
+        ]
+        return [Lane(k, s, LANE_WIDTH, SPEED_LIMIT, 0, lines, forbidden=True) for k, s, lines in shapes]
+
+    def scene(self, seed: int) -> Scene:
+        """Draw lane, place and speed of every vehicle.
+
+        Args:
+            seed: Seed of the episode.
+
+        Raises:
+            ScenarioError: If the vehicles do not fit.
+        """
+        from_ramp = {f"CAV{k + 1}" for k in range(self.crowd.cavs - self.crowd.cavs // 2, self.crowd.cavs)}
+
+        def draw(rng: np.random.Generator, name: str, kind: Kind) -> Start:
+            on_ramp = name in from_ramp if kind is Kind.CAV else float(rng.random()) < self.ramp_hdvs
+            route = "ramp" if on_ramp else f"main-{int(rng.integers(self.lanes))}"
+            return self.crowd.start_on(rng, name, kind, route)
+
+        return place(seed, self.crowd, self.road, draw)

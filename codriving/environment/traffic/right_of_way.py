@@ -1,0 +1,138 @@
+"""Who meets whom at the junction, and who can still wait before it."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from highway_env.vehicle.behavior import IDMVehicle
+from numpy.typing import NDArray
+
+from codriving.datatypes.conflict import Relation
+from codriving.environment.traffic.on_way import OnWay
+from codriving.geometry.road_map import RoadMap
+
+Array = NDArray[np.float64]
+
+HORIZON = np.arange(0.25, 3.0, 0.25)
+"""Times at which the right of way looks for a conflict; highway-env looks as far [s]."""
+
+LAST = float(HORIZON[-1])
+
+SIGHT = 25.0
+"""How far ahead a driver minds who is in the junction [m]."""
+
+OVERSHOOT = 1.0
+"""How far a driver may come over the line or into a zone and still wait there; the bodies do not touch yet [m]."""
+
+STARTING = 4.0
+"""Speed that a driver who creeps or stands expects to have soon [m/s]."""
+
+GRID = 1.0
+"""More than what the tables of a zone reach beyond its ends [m]."""
+
+
+def will_meet(road_map: RoadMap, one: OnWay, other: OnWay) -> bool:
+    """Whether two vehicles would be in a conflict zone together within three seconds.
+
+    Vehicles that merely follow one another are left to the car-following model. A CAV is expected to keep its speed. A
+    human driver may also speed up: whoever has braked to wait would else be let go for its low speed, speed up, and be
+    in the way when it is too late to wait.
+
+    Args:
+        road_map: The precomputed road.
+        one: A vehicle.
+        other: Another vehicle.
+    """
+    return meet(road_map, one, other, motions(one), motions(other))
+
+
+def meet(road_map: RoadMap, one: OnWay, other: OnWay, ones: Array, others: Array) -> bool:
+    """Whether two vehicles would be in a conflict zone together, by where each may be soon.
+
+    Args:
+        road_map: The precomputed road.
+        one: A vehicle.
+        other: Another vehicle.
+        ones: The first one's ``motions``, handed over because they are the same against everybody.
+        others: Those of the other.
+    """
+    reach_one, reach_other = ones[-1, -1] + GRID, others[-1, -1] + GRID
+    for zone in road_map.zones(one.way.route.id, other.way.route.id):
+        if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
+            continue
+        if one.s > zone.exit_i or other.s > zone.exit_j or reach_one < zone.entry_i or reach_other < zone.entry_j:
+            continue
+        for places in others:
+            if np.any((ones >= zone.back(places)) & (ones <= zone.front(places))):
+                return True
+    return False
+
+
+def motions(vehicle: OnWay) -> Array:
+    """Where a vehicle may be on its route at the times of the horizon.
+
+    Args:
+        vehicle: A vehicle.
+
+    Returns:
+        Arc lengths at constant speed; for a human driver, in a second row, those of speeding up to the speed that it
+        wants, which is never behind the first row (1 or 2, n) [m].
+    """
+    steady: Array = vehicle.s + pace(vehicle) * HORIZON
+    if not isinstance(vehicle, IDMVehicle):
+        return steady[None]
+    gain = max(min(vehicle.target_speed, vehicle.lane.speed_limit) - vehicle.speed, 0.0)
+    rising = np.minimum(HORIZON, gain / vehicle.COMFORT_ACC_MAX)
+    faster = vehicle.s + vehicle.speed * HORIZON + vehicle.COMFORT_ACC_MAX * rising * (HORIZON - rising / 2)
+    return np.stack((steady, np.maximum(steady, faster)))
+
+
+def pace(vehicle: OnWay) -> float:
+    """Speed at which a vehicle is expected to go on: a driver who creeps or stands means to start.
+
+    Args:
+        vehicle: A vehicle.
+
+    Returns:
+        Speed [m/s].
+    """
+    return float(max(vehicle.speed, STARTING if isinstance(vehicle, IDMVehicle) else 0.0))
+
+
+def can_wait(driver: OnWay) -> bool:
+    """Whether a driver can still stop before the junction, its front over the line by a metre at most.
+
+    Args:
+        driver: A human driver.
+    """
+    room = driver.way.route.entry + OVERSHOOT - driver.s - driver.LENGTH / 2
+    return bool(room > 0 and driver.speed**2 / (2 * driver.ACC_MAX) <= room)
+
+
+def occupied_ahead(road_map: RoadMap, driver: OnWay, others: Iterable[OnWay]) -> float | None:
+    """Find the nearest conflict zone on a driver's way that somebody is in, if the driver can still stop before it.
+
+    Args:
+        road_map: The precomputed road.
+        driver: A human driver.
+        others: Vehicles on the road; the driver may be among them.
+
+    Returns:
+        Arc length of the driver's centre at which it must stand [m], or None.
+    """
+    stop = driver.s + driver.speed**2 / (2 * driver.ACC_MAX)
+    nearest: float | None = None
+    for other in others:
+        if other is driver:
+            continue
+        for zone in road_map.zones(driver.way.route.id, other.way.route.id):
+            if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
+                continue
+            inside = zone.entry_j < other.s < (zone.exit_j if zone.merge_j is None else zone.merge_j)
+            if (
+                inside
+                and stop < zone.entry_i + OVERSHOOT
+                and zone.entry_i < driver.s + SIGHT
+                and (nearest is None or zone.entry_i < nearest)
+            ):
+                nearest = zone.entry_i
+    return nearest

@@ -1,0 +1,159 @@
+"""The road of highway-env with its right of way, its neighbours and its collisions corrected."""
+
+import math
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from highway_env.road.lane import AbstractLane
+from highway_env.road.regulation import RegulatedRoad
+from highway_env.road.road import LaneIndex, RoadNetwork
+from highway_env.vehicle.kinematics import Vehicle
+from highway_env.vehicle.objects import Landmark, Obstacle, RoadObject
+
+from codriving.datatypes.road import Block
+from codriving.environment.connected_lanes import connected
+from codriving.environment.corrections import Corrections
+from codriving.environment.traffic.human_driver import HumanDriver
+from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.right_of_way import can_wait, meet, motions, occupied_ahead, will_meet
+from codriving.geometry.road_map import RoadMap
+
+ATTENTION = 5
+"""How often a driver looks who else is coming [Hz]."""
+
+
+class Traffic(RegulatedRoad):
+    """All bodies on the road, and the rules that human drivers obey.
+
+    Args:
+        network: The road network of highway-env.
+        np_random: Generator of the drivers' individual differences.
+        road_map: The precomputed road.
+        corrections: Which faults of the simulator are corrected.
+    """
+
+    def __init__(
+        self, network: RoadNetwork, np_random: np.random.Generator, road_map: RoadMap, corrections: Corrections
+    ) -> None:
+        super().__init__(network, np_random=np_random)
+        self.road_map, self.corrections = road_map, corrections
+        self.objects = [_obstacle(self, block) for block in road_map.road.blocks]
+        self._connected: dict[tuple[Any, ...], list[tuple[AbstractLane, float]]] = {}
+
+    def step(self, dt: float) -> None:
+        """Move everybody by one simulation step.
+
+        Args:
+            dt: Simulation step [s].
+        """
+        if not self.corrections.true_collisions:
+            super().step(dt)
+            return
+        self.steps += 1
+        # A driver who looks only twice a second is in the way before it can wait.
+        frequency = ATTENTION if self.corrections.yield_at_entry else self.REGULATION_FREQUENCY
+        if self.steps % max(int(1 / dt / frequency), 1) == 0:
+            self.enforce_road_rules()
+        for vehicle in self.vehicles:
+            vehicle.step(dt)
+
+    def enforce_road_rules(self) -> None:
+        """Tell drivers of lower priority to wait, at the entry of the junction only if that is corrected.
+
+        CAVs are never told anything, as in highway-env: they must treat the right of way by their own reasoning.
+        """
+        if not self.road_map.road.regulated:
+            return
+        if not self.corrections.yield_at_entry:
+            super().enforce_road_rules()
+            return
+        for vehicle in self.vehicles:
+            if isinstance(vehicle, HumanDriver):
+                if vehicle.waits_at is not None:
+                    vehicle.target_speed = vehicle.lane.speed_limit
+                vehicle.waits_at = None
+        # Where everybody may be soon is worked out once, since nothing below changes it.
+        soon = {vehicle: motions(vehicle) for vehicle in self.vehicles} if self.corrections.route_prediction else {}
+        for one, other in combinations(self.vehicles, 2):
+            if not (isinstance(one, HumanDriver) or isinstance(other, HumanDriver)):
+                continue
+            if soon:
+                if not meet(self.road_map, one, other, soon[one], soon[other]):
+                    continue
+            elif not self.is_conflict_possible(one, other):
+                continue
+            yielding = self.respect_priorities(one, other)
+            # Whoever is in the junction cannot give way any more; then the other one does.
+            for vehicle in (yielding, other if yielding is one else one):
+                if isinstance(vehicle, HumanDriver) and can_wait(vehicle):
+                    vehicle.waits_at = vehicle.way.route.entry
+                    break
+                if not isinstance(vehicle, HumanDriver) and vehicle.s < vehicle.way.route.entry:
+                    break
+        for vehicle in self.vehicles:
+            if isinstance(vehicle, HumanDriver) and vehicle.waits_at is None:
+                place = occupied_ahead(self.road_map, vehicle, self.vehicles)
+                if place is not None:
+                    vehicle.waits_at = place + vehicle.DISTANCE_WANTED - vehicle.LENGTH / 2
+
+    def is_conflict_possible(self, v1: OnWay, v2: OnWay) -> bool:
+        """Whether two vehicles would meet within three seconds at constant speed, along their routes if corrected.
+
+        Args:
+            v1: A vehicle.
+            v2: Another vehicle.
+        """
+        if self.corrections.route_prediction:
+            return will_meet(self.road_map, v1, v2)
+        return bool(RegulatedRoad.is_conflict_possible(v1, v2))
+
+    def neighbour_vehicles(
+        self, vehicle: Vehicle, lane_index: LaneIndex | None = None
+    ) -> tuple[RoadObject | None, RoadObject | None]:
+        """Find the vehicles ahead and behind on a lane and on the lanes physically connected to it.
+
+        Args:
+            vehicle: The vehicle whose neighbours are looked for.
+            lane_index: The lane to look on, instead of its own.
+
+        Returns:
+            The one ahead and the one behind, None where there is none.
+        """
+        index = lane_index or vehicle.lane_index
+        if not self.corrections.connected_lanes or not index:
+            return super().neighbour_vehicles(vehicle, lane_index)  # type: ignore[no-any-return]
+        lane = self.network.get_lane(index)
+        own = lane.local_coordinates(vehicle.position)[0]
+        stretch = [(lane, 0.0), *self._connections(index, vehicle)]
+        ahead: tuple[RoadObject | None, float] = (None, np.inf)
+        behind: tuple[RoadObject | None, float] = (None, -np.inf)
+        for other in self.vehicles + self.objects:
+            if other is vehicle or isinstance(other, Landmark):
+                continue
+            for piece, offset in stretch:
+                s, lateral = piece.local_coordinates(other.position)
+                if not piece.on_lane(other.position, s, lateral, margin=1):
+                    continue
+                distance = s + offset - own
+                if 0 <= distance <= ahead[1]:
+                    ahead = (other, distance)
+                elif distance < 0 and distance > behind[1]:
+                    behind = (other, distance)
+                break
+        return ahead[0], behind[0]
+
+    def _connections(self, index: LaneIndex, vehicle: Vehicle) -> list[tuple[AbstractLane, float]]:
+        """The lanes connected to a lane, on the branch that a vehicle takes; worked out once."""
+        planned = tuple(to for start, to, _ in getattr(vehicle, "route", None) or () if start == index[1])
+        key = (*index, *planned)
+        if key not in self._connected:
+            self._connected[key] = connected(self.network, index, planned)
+        return self._connected[key]
+
+
+def _obstacle(road: Traffic, block: Block) -> Obstacle:
+    obstacle = Obstacle(road, list(block.position), block.heading)
+    obstacle.LENGTH, obstacle.WIDTH = block.length, block.width
+    obstacle.diagonal = math.hypot(block.length, block.width)
+    return obstacle

@@ -1,0 +1,220 @@
+"""The only loop: look, decide, drive, until the episode has an outcome."""
+
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from time import perf_counter, thread_time
+from typing import Any
+
+from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.record import EpisodeRecord, Participant
+from codriving.datatypes.score import Score
+from codriving.datatypes.trajectory import Trajectory
+from codriving.errors import ModelError, ModelUnavailableError
+from codriving.experiment.episodes.protocols import Environment, Method, Metrics
+from codriving.experiment.episodes.unit import Labels
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeResult:
+    """Everything that one episode leaves.
+
+    Attributes:
+        record: What the tables are made from.
+        trajectory: What was driven, or None if it never began.
+        decisions: One line a decision step, for ``decisions.jsonl``.
+        seconds: Wall-clock time of the episode [s].
+        decision_seconds: Wall-clock time of each decision [s].
+        decision_cpu: CPU time of each decision, of the thread that decides [s].
+        traceback: Where it went wrong; empty if nothing did.
+        transcript: One line a question that a language model was asked, for ``transcript.jsonl``.
+    """
+
+    record: EpisodeRecord
+    trajectory: Trajectory | None
+    decisions: tuple[dict[str, Any], ...]
+    seconds: float
+    decision_seconds: tuple[float, ...]
+    decision_cpu: tuple[float, ...] = ()
+    traceback: str = ""
+    transcript: tuple[dict[str, Any], ...] = ()
+
+
+@dataclass(slots=True)
+class _Log:
+    """What has been noted so far; it outlives an exception in the loop."""
+
+    begun: bool = False
+    time: float = 0.0
+    decisions: list[dict[str, Any]] = field(default_factory=list)
+    transcript: list[dict[str, Any]] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
+    cpu: list[float] = field(default_factory=list)
+    counts: dict[str, int | float] = field(default_factory=dict)
+
+    def add(self, counts: Mapping[str, int | float], transcript: Sequence[Mapping[str, Any]]) -> None:
+        """Note what a step, or a part of one, counted and asked."""
+        for name, number in counts.items():
+            self.counts[name] = self.counts.get(name, 0) + number
+        self.transcript.extend(dict(line) for line in transcript)
+
+
+def run_episode(
+    environment: Environment,
+    method: Method,
+    metrics: Metrics,
+    seed: int,
+    labels: Labels,
+    go_on: Callable[[], None] = lambda: None,
+) -> EpisodeResult:
+    """Drive one episode and judge it.
+
+    Whatever goes wrong becomes a record that ends in ``error``. An interruption by the user passes through, and so does
+    a language model that must not be used any more: neither is this episode's fault.
+
+    Args:
+        environment: The world.
+        method: Who decides.
+        metrics: What is judged by.
+        seed: Seed of the episode; with the same objects it determines the result.
+        labels: What the record is labelled with.
+        go_on: Called before each decision; raises what is no ``Exception`` to give the episode up.
+
+    Returns:
+        Record, trajectory, decisions and timing.
+
+    Raises:
+        ModelError: If the language model must not be used any more.
+    """
+    log = _Log()
+    started = perf_counter()
+    trajectory: Trajectory | None = None
+    score: Score | None = None
+    trace = ""
+    try:
+        outcome = _drive(environment, method, seed, log, go_on)
+        trajectory = environment.trajectory()
+        if outcome.ending is not Ending.ERROR:
+            score = metrics.score(trajectory, outcome, environment.road_map)
+    except ModelError:
+        raise
+    except Exception as error:
+        score = None
+        outcome = failure(error, log.time)
+        _note_unfinished(method, log)
+        # Where a server's failure was noticed helps nobody, and what led to it may quote what the server said.
+        trace = f"{outcome.message}\n" if isinstance(error, ModelUnavailableError) else traceback.format_exc()
+        trajectory = _salvage(environment) if log.begun else None
+    record = EpisodeRecord(
+        scenario=labels.scenario,
+        method=labels.method,
+        variant=labels.variant,
+        reasoner=labels.reasoner,
+        seed=seed,
+        outcome=outcome,
+        score=score,
+        participants=_participants(trajectory),
+        decisions=len(log.seconds),
+        counts=dict(sorted(log.counts.items())),
+        memory=labels.memory,
+    )
+    return EpisodeResult(
+        record,
+        trajectory,
+        tuple(log.decisions),
+        perf_counter() - started,
+        tuple(log.seconds),
+        tuple(log.cpu),
+        traceback=trace,
+        transcript=tuple(log.transcript),
+    )
+
+
+def _drive(environment: Environment, method: Method, seed: int, log: _Log, go_on: Callable[[], None]) -> Outcome:
+    """The loop itself."""
+    world = environment.reset(seed)
+    log.begun = True
+    method.reset(environment.road_map, environment.driving_model, seed)
+    while (outcome := environment.outcome) is None:
+        go_on()
+        log.time = world.time
+        before, cpu_before = perf_counter(), thread_time()
+        deliberation = method.act(world)
+        log.cpu.append(thread_time() - cpu_before)
+        log.seconds.append(perf_counter() - before)
+        log.decisions.append(deliberation.as_dict())
+        log.add(deliberation.counts, getattr(deliberation, "transcript", ()))
+        world = environment.step(deliberation.actions)
+    conclude = getattr(method, "conclude", None)
+    if conclude is not None:
+        log.add(*conclude(world, outcome))
+    return outcome
+
+
+def failure(error: BaseException, time: float) -> Outcome:
+    """The outcome of an episode that could not go on.
+
+    Args:
+        error: What was raised.
+        time: Simulated time of the last decision [s].
+
+    Returns:
+        An outcome that ends in ``error``, with type and text of the error on one line.
+    """
+    # It may quote what a server said, and ends up in tables and on terminals.
+    text = " ".join("".join(c for c in str(error) if c.isprintable() or c.isspace()).split())
+    message = f"{type(error).__name__}: {text}" if text else type(error).__name__
+    return Outcome(ending=Ending.ERROR, time=time, arrivals={}, message=message)
+
+
+def failed_result(labels: Labels, seed: int, error: BaseException, trace: str = "") -> EpisodeResult:
+    """The result of an episode of which nothing but its failure is known.
+
+    Args:
+        labels: What the record is labelled with.
+        seed: Seed of the episode.
+        error: What was raised.
+        trace: Where it was raised.
+
+    Returns:
+        A result without trajectory and decisions.
+    """
+    record = EpisodeRecord(
+        scenario=labels.scenario,
+        method=labels.method,
+        variant=labels.variant,
+        reasoner=labels.reasoner,
+        seed=seed,
+        outcome=failure(error, 0.0),
+        score=None,
+        participants=(),
+        decisions=0,
+        counts={},
+        memory=labels.memory,
+    )
+    return EpisodeResult(record, None, (), 0.0, (), traceback=trace)
+
+
+def _note_unfinished(method: Method, log: _Log) -> None:
+    """Note what was asked in the step that broke off: it has been paid for. Only methods that ask a model have it."""
+    unfinished = getattr(method, "unfinished_step", None)
+    if unfinished is not None and log.begun:
+        with suppress(Exception):
+            log.add(*unfinished(log.time))
+
+
+def _salvage(environment: Environment) -> Trajectory | None:
+    """What was driven before it went wrong, for whoever looks for the cause; the broken world may refuse."""
+    try:
+        return environment.trajectory()
+    except Exception:
+        return None
+
+
+def _participants(trajectory: Trajectory | None) -> tuple[Participant, ...]:
+    """Who took part, in order of id."""
+    if trajectory is None:
+        return ()
+    tracks = sorted(trajectory.tracks, key=lambda track: track.id)
+    return tuple(Participant(track.id, track.kind.value, track.route, track.arrived) for track in tracks)

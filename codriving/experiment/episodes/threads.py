@@ -1,0 +1,154 @@
+"""Units over threads of this process: episodes side by side that wait for a language model nearly all the time."""
+
+from collections import deque
+from collections.abc import Generator, Sequence
+from dataclasses import replace
+from queue import Empty, SimpleQueue
+from threading import Event, Lock, Thread
+
+from codriving.experiment.episodes.episode import EpisodeResult
+from codriving.experiment.episodes.job import Job, Report, Worker
+from codriving.experiment.episodes.launcher import worker_count
+from codriving.experiment.episodes.unit import Objects, Unit
+
+POLL = 0.5
+"""How long to wait before looking again [s]; where Ctrl-C does not end a wait, it is noticed after this."""
+
+
+class Threads:
+    """In several threads of this process, which share one client of the language model and its limits."""
+
+    def prepare(self, workers: int | str, units: int, preload: Sequence[str]) -> None:
+        """Do nothing; what is imported is imported here."""
+
+    def launch(
+        self, units: Sequence[Unit], job: Job, workers: int | str, preload: Sequence[str]
+    ) -> Generator[Report, None, None]:
+        """Drive units.
+
+        Args:
+            units: What to drive.
+            job: What to do with each.
+            workers: Number of threads, or ``auto`` for one a core.
+            preload: Not used.
+
+        Yields:
+            A report a unit, as they end.
+
+        Raises:
+            UserError: If the batch has to stop.
+        """
+        yield from run_threads(units, job, worker_count(workers, len(units)))
+
+
+class Abandoned(BaseException):
+    """Raised in a thread whose batch has stopped: its episode is neither finished nor failed."""
+
+
+def run_threads(units: Sequence[Unit], job: Job, threads: int) -> Generator[Report, None, None]:
+    """Drive units in several threads, each with objects of its own.
+
+    When the iterator is closed, by an exception or otherwise, nothing more is saved: an episode in flight ends before
+    its next decision and is lost. Nobody waits for that, since it may be waiting for a server.
+
+    Args:
+        units: What to drive.
+        job: What to do with each; what comes after saving is done here, where Ctrl-C ends it.
+        threads: Number of threads.
+
+    Yields:
+        A report a unit, as they end.
+
+    Raises:
+        UserError: If the batch has to stop.
+    """
+    after = job.after
+    saved = {unit: None for unit in units if after and after.kept(unit) is not None}
+    crew = _Crew([unit for unit in units if unit not in saved], job)
+    try:
+        crew.start(threads)
+        here = Worker(job)
+        for unit in saved:
+            yield here.run(unit)
+        for _ in range(crew.units):
+            report = crew.take()
+            if after:
+                after.finish(report.unit)
+            yield report
+        crew.join()
+    finally:
+        crew.stop()
+
+
+class _Crew:
+    """The threads of one batch and what they share."""
+
+    def __init__(self, units: Sequence[Unit], job: Job) -> None:
+        self.units = len(units)
+        self._job = job
+        self._waiting = deque(units)
+        self._news: SimpleQueue[Report | BaseException] = SimpleQueue()
+        self._building, self._saving, self._stopped = Lock(), Lock(), Event()
+        self._threads: list[Thread] = []
+
+    def start(self, threads: int) -> None:
+        """Begin; a process that ends does not wait for them."""
+        own = replace(self._job, build=self._build, save=self._save, after=None)
+        for number in range(min(threads, self.units)):
+            worker = Worker(own, self._go_on)
+            thread = Thread(target=self._work, args=(worker,), daemon=True, name=f"codriving-episode-{number}")
+            self._threads.append(thread)
+            thread.start()
+
+    def take(self) -> Report:
+        """Wait for the next report."""
+        while True:
+            try:
+                news = self._news.get(timeout=POLL)
+            except Empty:
+                continue
+            if isinstance(news, BaseException):
+                raise news
+            return news
+
+    def join(self) -> None:
+        """Wait for the threads once every report is there."""
+        for thread in self._threads:
+            thread.join()
+
+    def stop(self) -> None:
+        """Let nothing more be saved; what is being saved is saved whole."""
+        with self._saving:
+            self._stopped.set()
+
+    def _work(self, worker: Worker) -> None:
+        try:
+            while (unit := self._next()) is not None:
+                self._news.put(worker.run(unit))
+        except Abandoned:
+            return
+        except BaseException as error:
+            self._news.put(error)
+
+    def _next(self) -> Unit | None:
+        """Take the next unit; None if there is none, also for whoever has just been overtaken by another thread."""
+        self._go_on()
+        try:
+            return self._waiting.popleft()
+        except IndexError:
+            return None
+
+    def _go_on(self) -> None:
+        if self._stopped.is_set():
+            raise Abandoned
+
+    def _build(self, cell: str) -> Objects:
+        # One at a time: they import modules, and work out a road that they then share.
+        with self._building:
+            self._go_on()
+            return self._job.build(cell)
+
+    def _save(self, unit: Unit, result: EpisodeResult) -> None:
+        with self._saving:
+            self._go_on()
+            self._job.save(unit, result)

@@ -1,0 +1,83 @@
+"""Overrides and settings by keyword to an environment and a CDA level, by the same configs as `codriving run`."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from codriving.config.build import build
+from codriving.config.choices import check_config_dir, choices
+from codriving.config.compose import compose
+from codriving.environment.environment import Environment
+from codriving.errors import ConfigError
+from codriving.reasoning.sharing.cda import CdaLevel
+
+READ = ("scenario", "environment", "cda", "plugins")
+"""Keys of the root that make a difference here."""
+
+CHOSEN = ("scenario", "cda")
+"""Groups that are chosen by an argument, and not by an override."""
+
+
+def configured(
+    name: str, overrides: Sequence[str], cda: str, config_dir: str | Path | None, settings: Mapping[str, Any]
+) -> tuple[Environment, CdaLevel]:
+    """Build the environment of a scenario.
+
+    Args:
+        name: Name of the scenario's YAML.
+        overrides: ``key=value`` tokens.
+        cda: Name of the preset.
+        config_dir: A folder with YAML files of the user's own.
+        settings: Keys of the scenario and their values.
+
+    Raises:
+        ConfigError: If anything cannot be used, with the key and the rule.
+    """
+    folder = None if config_dir is None else Path(config_dir)
+    if folder is not None:
+        check_config_dir(folder)
+    for group, choice in (("scenario", name), ("cda", cda)):
+        known = choices(group, folder)
+        if choice not in known:
+            raise ConfigError(f"unknown {group} {choice!r}; choices: {', '.join(known)}")
+    for token in overrides:
+        _check_read(token)
+    tokens = [f"{key}={_written(f'scenario.{key}', value)}" for key, value in settings.items()]
+    config = compose([f"scenario={name}", f"cda={cda}", *overrides, *(f"scenario.{token}" for token in tokens)], folder)
+    plugins = config["plugins"]
+    scenario = build(config["scenario"], plugins, "scenario")
+    environment: Environment = build({**config["environment"], "scenario": scenario}, plugins, "environment")
+    level: CdaLevel = build(config["cda"], plugins, "cda")
+    return environment, level
+
+
+def _check_read(token: str) -> None:
+    """Refuse what would have no effect, as a key that nobody reads."""
+    if not isinstance(token, str):
+        raise ConfigError(f"an override is a text such as 'environment.drivers.headway=1.2', got {token!r}")
+    key = token.lstrip("+").partition("=")[0]
+    if key in CHOSEN:
+        way = "the first argument" if key == "scenario" else "cda='<preset>'"
+        raise ConfigError(f"{token!r}: {key} is chosen by {way} here")
+    if key.partition(".")[0] not in READ:
+        raise ConfigError(f"{token!r} has no effect on an environment; keys with one begin with {', '.join(READ)}")
+
+
+def _written(key: str, value: object) -> str:
+    """Write a value in the grammar of overrides."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace("'", "\\'")
+        return f"'{escaped}'"
+    if isinstance(value, list | tuple):
+        return "[" + ",".join(_written(key, inner) for inner in value) + "]"
+    raise ConfigError(f"{key} must be a number, a text, a list, True, False or None, got {value!r}")

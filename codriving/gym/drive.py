@@ -1,0 +1,173 @@
+"""One episode after another as its CAVs live through it: what they observe, what they do, what it is worth."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import WorldState
+from codriving.environment.environment import Environment
+from codriving.errors import EpisodeError, ScenarioError
+from codriving.gym.actions import action_mask, action_of
+from codriving.gym.layout import FloatArray
+from codriving.gym.reward import Driven, RewardWeights, rewards
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """What one decision step brought each CAV that was on the road, by id.
+
+    Attributes:
+        rewards: Reward.
+        terminated: Whether it has arrived, or the episode has ended otherwise than by the time limit.
+        truncated: Whether the time limit has ended the episode before it arrived.
+    """
+
+    rewards: dict[str, float]
+    terminated: dict[str, bool]
+    truncated: dict[str, bool]
+
+
+class Eyes(Protocol):
+    """What CAVs observe."""
+
+    def observe(self, world: WorldState) -> dict[str, FloatArray]:
+        """Return what each CAV on the road observes, by id.
+
+        Args:
+            world: The world; once a step.
+        """
+        ...
+
+    def nothing(self) -> FloatArray:
+        """Return what is observed by a CAV that has left the road."""
+        ...
+
+
+class Drive:
+    """An environment with eyes and rewards.
+
+    Args:
+        environment: What is driven.
+        observer: What is seen of it.
+        weights: What is rewarded.
+
+    Attributes:
+        cavs: Ids of all CAVs, the same for every seed.
+        driving: Ids of those on the road while an episode goes on, in the same order.
+        world: The world as it is now; None before the first episode.
+        actions: What each CAV carried out last, by id.
+        seed: Seed of the episode.
+    """
+
+    def __init__(self, environment: Environment, observer: Eyes, weights: RewardWeights) -> None:
+        self.environment, self.observer, self.weights = environment, observer, weights
+        self.cavs = [start.id for start in environment.scenario.scene(0).starts if start.kind is Kind.CAV]
+        self.driving: list[str] = []
+        self.world: WorldState | None = None
+        self.actions: dict[str, Action] = {}
+        self.seed = 0
+        self._refused: dict[str, int] = {}
+        self._views: dict[str, FloatArray] = {}
+
+    def begin(self, seed: int) -> None:
+        """Begin an episode.
+
+        Args:
+            seed: Its seed.
+
+        Raises:
+            ScenarioError: If the vehicles cannot be placed, or the CAVs are not those of every other seed.
+        """
+        self.world, self.driving, self.actions = None, [], {}
+        world = self.environment.reset(seed)
+        if sorted(world.available) != sorted(self.cavs):
+            raise ScenarioError(
+                f"{self.environment.scenario.name} must have the same CAVs for every seed, since agents and spaces are "
+                f"fixed; it has {', '.join(self.cavs)} with seed 0 and {', '.join(world.available)} with seed {seed}"
+            )
+        self.world, self.driving, self.seed = world, list(self.cavs), seed
+        self._refused = dict.fromkeys(self.cavs, 0)
+        self._views = self.observer.observe(world)
+
+    def step(self, actions: Mapping[str, object]) -> Turn:
+        """Carry out one decision of every CAV on the road.
+
+        Args:
+            actions: Number of an action for each of them, by id; those of CAVs that have left are ignored.
+
+        Raises:
+            EpisodeError: If no episode is going on, or an action is missing, for nobody, or no action.
+        """
+        before = self.world
+        if before is None or not self.driving:
+            raise EpisodeError("no episode is going on; call reset() before step(actions)")
+        driving = self.driving
+        self.actions = self._decide(actions, before)
+        world = self.world = self.environment.step(self.actions)
+        self._views = self.observer.observe(world)
+        on_road = [name for name in driving if name in world.available]
+        outcome = self.environment.outcome
+        late = on_road if outcome is not None and outcome.ending is Ending.TIMEOUT else []
+        self.driving = on_road if outcome is None else []
+        return Turn(
+            rewards=dict(zip(driving, self._rewards(before, world), strict=True)),
+            terminated={name: name not in self.driving and name not in late for name in driving},
+            truncated={name: name in late for name in driving},
+        )
+
+    def observations(self, names: Sequence[str]) -> dict[str, FloatArray]:
+        """Return what CAVs observe now; zeros for those that have left the road.
+
+        Args:
+            names: Ids of CAVs.
+
+        Returns:
+            A matrix (rows, 6) of its own each, by id.
+        """
+        views, nothing = self._views, self.observer.nothing
+        return {name: views[name].copy() if name in views else nothing() for name in names}
+
+    def info(self, name: str) -> dict[str, Any]:
+        """Return what is to be said of a CAV besides.
+
+        Args:
+            name: Its id.
+        """
+        assert self.world is not None
+        outcome = self.environment.outcome
+        return {
+            "action_mask": action_mask(self.world.available.get(name, ())),
+            "refused": self._refused[name],
+            "arrived": name not in self.world.available,
+            "outcome": "" if outcome is None else str(outcome.ending),
+            "seed": self.seed,
+        }
+
+    def _decide(self, actions: Mapping[str, object], world: WorldState) -> dict[str, Action]:
+        """Return what each CAV carries out: IDLE instead of what the road does not allow, as in highway-env."""
+        missing = [name for name in self.driving if name not in actions]
+        unknown = [str(name) for name in actions if name not in self.cavs]
+        if missing or unknown:
+            fault = f"none for {', '.join(missing)}" if missing else f"one for {', '.join(unknown)}"
+            raise EpisodeError(f"one action for each of {', '.join(self.driving)} is needed, got {fault}")
+        wanted = {name: action_of(name, actions[name]) for name in self.driving}
+        for name, action in wanted.items():
+            if action not in world.available[name]:
+                wanted[name] = Action.IDLE
+                self._refused[name] += 1
+        return wanted
+
+    def _rewards(self, before: WorldState, after: WorldState) -> list[float]:
+        """Reward everybody who decided, in the same order."""
+        outcome = self.environment.outcome
+        failed: tuple[str, ...] = ()
+        if outcome is not None:
+            crash = outcome.collision
+            failed = outcome.off_road if crash is None else (crash.striker, crash.struck)
+        then, now = ({v.id: v for v in world.cavs} for world in (before, after))
+        driven = [Driven(then[name], now.get(name), done, name in failed) for name, done in self.actions.items()]
+        top = self.environment.driving_model.target_speeds[-1]
+        return rewards(self.weights, driven, after.time - before.time, top)

@@ -1,0 +1,117 @@
+"""All CAVs in one hand: our environment as a Gymnasium `Env`."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.spaces import MultiDiscrete
+from numpy.typing import NDArray
+
+from codriving.errors import EpisodeError
+from codriving.gym.actions import ACTIONS
+from codriving.gym.layout import FloatArray
+from codriving.gym.parallel import METADATA, ParallelDriving
+from codriving.gym.seeding import check_seed, draw_seed
+
+
+class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
+    """One agent that decides for all CAVs: observations and actions are the products of theirs (paper Section II).
+
+    Args:
+        name: Name of the scenario.
+        overrides: ``key=value`` tokens, as for ``codriving.parallel_env``.
+        **settings: The other arguments of ``codriving.parallel_env``.
+
+    Attributes:
+        parallel: The same environment with an agent a CAV.
+
+    Raises:
+        ConfigError: If a setting cannot be used.
+    """
+
+    metadata = METADATA
+
+    def __init__(self, name: str, overrides: Sequence[str] = (), **settings: Any) -> None:  # noqa: ANN401
+        self.parallel = ParallelDriving(name, *overrides, **settings)
+        self.render_mode = self.parallel.render_mode
+        self.metadata = self.parallel.metadata
+        self.observation_space = self.parallel.state_space
+        self.action_space = MultiDiscrete([len(ACTIONS)] * len(self.parallel.possible_agents))
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[FloatArray, dict[str, Any]]:
+        """Begin an episode.
+
+        Args:
+            seed: Begins exactly the episode that `codriving run` drives with this seed, and seeds the generator from
+                which later episodes are drawn; None draws one.
+            options: Not used.
+
+        Returns:
+            Joint observation (cavs, rows, 6) and info.
+
+        Raises:
+            EpisodeError: If the seed is not a whole number of at least 0.
+            ScenarioError: If the vehicles cannot be placed.
+        """
+        given = None if seed is None else check_seed(seed)
+        super().reset(seed=given)
+        self.parallel.reset(draw_seed(self.np_random) if given is None else given)
+        return self.parallel.state(), self._info()
+
+    def step(self, action: NDArray[np.int64]) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
+        """Carry out one decision of every CAV.
+
+        Args:
+            action: A number of ``ACTIONS`` for each CAV (cavs,); those of CAVs that have arrived are ignored.
+
+        Returns:
+            Joint observation (cavs, rows, 6), mean reward of all CAVs, terminated, truncated, info.
+
+        Raises:
+            EpisodeError: If no episode is going on, or there is not one action for each CAV.
+        """
+        agents = self.parallel.possible_agents
+        numbers = np.asarray(action).tolist()
+        if not isinstance(numbers, list) or len(numbers) != len(agents):
+            raise EpisodeError(f"one action for each of {', '.join(agents)} is needed, got {action!r}")
+        _, rewards, _, truncated, _ = self.parallel.step(dict(zip(agents, numbers, strict=True)))
+        late = any(truncated.values())
+        terminated = not late and not self.parallel.agents
+        # Whoever has arrived is rewarded no more, so that the return is the mean of the returns of the CAVs.
+        reward = sum(rewards.values()) / len(agents)
+        return self.parallel.state(), reward, terminated, late, self._info()
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Draw the world as it is now.
+
+        Returns:
+            A picture (height, width, 3), RGB; None without a render mode.
+
+        Raises:
+            EpisodeError: If no episode has begun.
+        """
+        return self.parallel.render()
+
+    def close(self) -> None:
+        """Let go of the picture; there is nothing else to close."""
+        self.parallel.close()
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Return the masks of all CAVs one after another (5 x cavs,), as MaskablePPO of sb3-contrib wants them."""
+        return np.concatenate([info["action_mask"] for info in self._infos()]).astype(np.bool_)
+
+    def _info(self) -> dict[str, Any]:
+        infos = self._infos()
+        return {
+            "action_mask": np.stack([info["action_mask"] for info in infos]),
+            "arrived": np.array([info["arrived"] for info in infos]),
+            "refused": sum(info["refused"] for info in infos),
+            "outcome": infos[0]["outcome"],
+            "seed": infos[0]["seed"],
+        }
+
+    def _infos(self) -> list[dict[str, Any]]:
+        return list(self.parallel.infos(self.parallel.possible_agents).values())

@@ -1,0 +1,202 @@
+"""Every CAV an agent: our environment as a PettingZoo `ParallelEnv`."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from gymnasium.spaces import Box, Discrete
+from numpy.typing import NDArray
+from pettingzoo import ParallelEnv
+
+from codriving.animation.live import LivePicture
+from codriving.datatypes.world import WorldState
+from codriving.errors import ConfigError, EpisodeError
+from codriving.gym.actions import ACTIONS
+from codriving.gym.configured import configured
+from codriving.gym.drive import Drive
+from codriving.gym.layout import FloatArray, Layout
+from codriving.gym.observation import Observer
+from codriving.gym.reward import RewardWeights, reward_weights
+from codriving.gym.seeding import check_seed, draw_seed
+
+RENDER_MODES = ("rgb_array",)
+METADATA: dict[str, Any] = {"render_modes": list(RENDER_MODES), "is_parallelizable": True}
+
+Infos = dict[str, dict[str, Any]]
+
+
+class ParallelDriving(ParallelEnv):
+    """Several CAVs among human drivers; all decide at once.
+
+    Args:
+        name: Name of the scenario, for instance ``roundabout``.
+        *overrides: ``key=value`` tokens that begin with ``scenario``, ``environment``, ``cda`` or ``plugins``.
+        cda: How far the CAVs cooperate, which decides what they observe; a preset such as ``status_sharing``.
+        rows: Vehicles that an observation has room for, the CAV itself among them.
+        coordinates: ``relative`` or ``absolute`` places of the other vehicles.
+        normalise: Whether the features are divided by their largest magnitudes.
+        reward: Weights of the reward, or some of them by name.
+        render_mode: ``rgb_array``, or None for no pictures.
+        config_dir: A folder with YAML files of your own, in the same groups.
+        **settings: Keys of the scenario, for instance ``cavs=4``.
+
+    Attributes:
+        environment: What is driven; it knows the outcome, the trajectory and the road.
+        agents: Ids of the CAVs on the road.
+        possible_agents: Ids of all CAVs.
+        lanes: Number of each lane in an observation.
+
+    Raises:
+        ConfigError: If a setting cannot be used.
+    """
+
+    metadata = METADATA
+
+    def __init__(
+        self,
+        name: str,
+        *overrides: str,
+        cda: str = "full",
+        rows: int = 8,
+        coordinates: str = "relative",
+        normalise: bool = False,
+        reward: RewardWeights | Mapping[str, float] | None = None,
+        render_mode: str | None = None,
+        config_dir: str | Path | None = None,
+        **settings: Any,  # noqa: ANN401 - whatever the scenario's keys take
+    ) -> None:
+        if render_mode is not None and render_mode not in RENDER_MODES:
+            raise ConfigError(f"render_mode must be {' or '.join(RENDER_MODES)} or None, got {render_mode!r}")
+        layout, weights = Layout(rows, coordinates, normalise), reward_weights(reward)
+        self.environment, level = configured(name, overrides, cda, config_dir, settings)
+        model = self.environment.driving_model
+        observer = Observer(self.environment.road_map, model, level, layout)
+        self._drive = Drive(self.environment, observer, weights)
+        self.name, self.render_mode, self.lanes = name, render_mode, observer.lanes
+        about = {"name": f"codriving_{name}_v0", "render_fps": 1 / model.decision_interval}
+        self.metadata = {**METADATA, **about}
+        self.possible_agents = list(self._drive.cavs)
+        self.observation_spaces = {agent: observer.space() for agent in self.possible_agents}
+        self.action_spaces = {agent: Discrete(len(ACTIONS)) for agent in self.possible_agents}
+        spaces = self.observation_spaces.values()
+        self.state_space = Box(np.stack([s.low for s in spaces]), np.stack([s.high for s in spaces]), dtype=np.float32)
+        self._rng: np.random.Generator | None = None
+        self._picture: LivePicture | None = None
+
+    @property
+    def agents(self) -> list[str]:
+        """Ids of the CAVs on the road while an episode goes on."""
+        return list(self._drive.driving)
+
+    @property
+    def world(self) -> WorldState:
+        """The world as it is now, as a method is handed it.
+
+        Raises:
+            EpisodeError: If no episode has begun.
+        """
+        if self._drive.world is None:
+            raise EpisodeError("no episode has begun; call reset() first")
+        return self._drive.world
+
+    def observation_space(self, agent: str) -> Box:
+        """Return the space of an agent's observations.
+
+        Args:
+            agent: Id of a CAV.
+        """
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> Discrete:
+        """Return the space of an agent's actions.
+
+        Args:
+            agent: Id of a CAV.
+        """
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[dict[str, FloatArray], Infos]:
+        """Begin an episode.
+
+        Args:
+            seed: Begins exactly the episode that `codriving run` drives with this seed, and seeds the generator from
+                which later episodes are drawn; None draws one.
+            options: Not used.
+
+        Returns:
+            Observations and infos by agent.
+
+        Raises:
+            EpisodeError: If the seed is not a whole number of at least 0.
+            ScenarioError: If the vehicles cannot be placed.
+        """
+        given = None if seed is None else check_seed(seed)
+        if given is not None or self._rng is None:
+            self._rng = np.random.default_rng(given)
+        self._drive.begin(draw_seed(self._rng) if given is None else given)
+        return self._drive.observations(self.possible_agents), self.infos(self.possible_agents)
+
+    def step(
+        self, actions: Mapping[str, Any]
+    ) -> tuple[dict[str, FloatArray], dict[str, float], dict[str, bool], dict[str, bool], Infos]:
+        """Carry out one decision of every CAV on the road.
+
+        Args:
+            actions: A number of ``ACTIONS`` for each of ``agents``; those of agents that have left are ignored. One
+                that the road does not allow is carried out as IDLE and counted.
+
+        Returns:
+            Observations, rewards, terminations, truncations and infos of all who were on the road.
+
+        Raises:
+            EpisodeError: If no episode is going on, or an action is missing, for nobody, or no action.
+        """
+        driving = self.agents
+        turn = self._drive.step(actions)
+        observations = self._drive.observations(driving)
+        return observations, turn.rewards, turn.terminated, turn.truncated, self.infos(driving)
+
+    def state(self) -> FloatArray:
+        """Return the observations of all CAVs in the order of ``possible_agents``; zeros for those that have left.
+
+        Returns:
+            The joint observation (cavs, rows, 6), which lies in ``state_space``.
+
+        Raises:
+            EpisodeError: If no episode has begun.
+        """
+        assert self.world
+        return np.stack(list(self._drive.observations(self.possible_agents).values()))
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Draw the world as it is now.
+
+        Returns:
+            A picture (height, width, 3), RGB; None without a render mode.
+
+        Raises:
+            EpisodeError: If no episode has begun.
+        """
+        if self.render_mode is None:
+            return None
+        world, title = self.world, f"{self.name}, seed {self._drive.seed}"
+        if self._picture is None:
+            self._picture = LivePicture(self.environment.road_map, title)
+        arrivals = {t.id: t.arrived for t in self.environment.trajectory().tracks if t.arrived is not None}
+        outcome = self.environment.outcome
+        return self._picture.draw(world, self._drive.actions, outcome=outcome, arrivals=arrivals, title=title)
+
+    def close(self) -> None:
+        """Let go of the picture; there is nothing else to close."""
+        self._picture = None
+
+    def infos(self, agents: Sequence[str]) -> Infos:
+        """Return what there is to say besides, also of agents that have left.
+
+        Args:
+            agents: Ids of CAVs.
+        """
+        return {agent: self._drive.info(agent) for agent in agents}

@@ -1,0 +1,177 @@
+"""The variables of the decision prompt: one situation, lane by lane and vehicle by vehicle."""
+
+from collections.abc import Sequence
+from math import cos, hypot, inf, sin
+from typing import Any
+
+from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.road import LaneId
+from codriving.datatypes.scene_description import Neighbour, Role, SceneDescription
+from codriving.datatypes.situation import ActionAssessment, Situation
+from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for
+from codriving.llm.prompts.views import (
+    ActionView,
+    ConflictView,
+    IntentView,
+    LaneView,
+    OrderView,
+    OtherView,
+    VehicleView,
+)
+
+DRIVERS = {"CAV": "CAV", "HDV": "human", None: "unknown driver"}
+"""Who drives, in words."""
+
+OTHERS = 4
+"""Vehicles at most that are mentioned though it is not known which lane they are on."""
+
+
+def vehicles_by_distance(situation: Situation) -> list[str]:
+    """Return the ids of everybody that a CAV knows of, nearest first.
+
+    Args:
+        situation: What the CAV is told.
+    """
+    ego = situation.scene.ego
+    return [n.id for n in sorted(situation.scene.neighbours, key=lambda n: (hypot(n.x - ego.x, n.y - ego.y), n.id))]
+
+
+def decision_view(situation: Situation, nearest: int | None = None, with_memories: bool = True) -> dict[str, Any]:
+    """Return the variables of the decision prompt.
+
+    Args:
+        situation: What the CAV is told.
+        nearest: Number of vehicles, nearest first, that are mentioned; None for all.
+        with_memories: Whether memories are mentioned.
+    """
+    scene, names = situation.scene, names_for(situation)
+    mentioned = set(vehicles_by_distance(situation)[:nearest])
+    neighbours = [n for n in scene.neighbours if n.id in mentioned]
+    groups: dict[str, list[int]] = {}
+    for k, c in enumerate(situation.conflicts):
+        if c.other in mentioned:
+            groups.setdefault(c.other, []).append(k)
+    ego = scene.ego.id
+    seen = {n.id for n in scene.neighbours}
+    pairs = [p for p in situation.order.precedences if ego in (p.first, p.second)]
+    pairs = [p for p in pairs if not seen & {p.first, p.second} - mentioned]
+    return {
+        "ego": names(ego),
+        "speed": scene.ego.speed,
+        "lane": lane_name(scene.ego.lane),
+        "route": scene.intent.route,
+        "target_speed": scene.intent.target_speed,
+        "between_lanes": bool(scene.covers),
+        "must_change": None if scene.must_change is None else side_name(scene, scene.must_change.lane),
+        "room": 0.0 if scene.must_change is None else scene.must_change.room,
+        "lanes": lane_views(scene, neighbours, names),
+        "others": _others(scene, neighbours, names),
+        "conflict_lanes": [lane_name(lane) for lane in scene.conflict_lanes],
+        "conflicts": [_conflict(situation, neighbours, ks, names) for ks in groups.values()],
+        "intents": [
+            IntentView(names(n.id), n.intent.route, n.intent.target_speed)
+            for n in neighbours
+            if n.intent is not None and n.role is not Role.OTHER
+        ],
+        "no_intents": [names(n.id) for n in neighbours if n.intent is None and n.role is not Role.OTHER],
+        "binding": situation.order.binding,
+        "before": [OrderView(names(p.first), names.sentence(p.reason)) for p in pairs if p.second == ego],
+        "after": [OrderView(names(p.second), names.sentence(p.reason)) for p in pairs if p.first == ego],
+        "actions": _actions(situation.assessments, list(groups.values()), names),
+        "memories": [names.sentence(m.text, LONGEST_MEMORY) for m in situation.memories] if with_memories else [],
+        "allowed": [str(action) for action in situation.allowed],
+    }
+
+
+def lane_name(lane: LaneId) -> str:
+    """Return a lane as text, for instance ``a-b/1``.
+
+    Args:
+        lane: Start node, end node and index from the left.
+    """
+    start, end, index = lane
+    return f"{start}-{end}/{index}"
+
+
+def side_name(scene: SceneDescription, lane: LaneId) -> str:
+    """Return the action that leads towards a lane.
+
+    Args:
+        scene: What the CAV knows.
+        lane: The lane.
+    """
+    return "LANE_LEFT" if lane[2] < scene.ego.lane[2] else "LANE_RIGHT"
+
+
+def lane_views(scene: SceneDescription, neighbours: Sequence[Neighbour], names: Names) -> list[LaneView]:
+    """Return the ego lane and those beside it, each with whoever is next ahead and next behind.
+
+    Args:
+        scene: What the CAV knows.
+        neighbours: The vehicles that are mentioned.
+        names: What they are called.
+    """
+    own = {n.role: VehicleView(names(n.id), DRIVERS[n.kind], n.gap or 0.0, n.speed) for n in neighbours}
+    lanes = [LaneView("ego lane", own.get(Role.LEADING), own.get(Role.REARING))]
+    for lane in scene.adjacent_lanes:
+        ahead: list[VehicleView] = []
+        behind: list[VehicleView] = []
+        for n in (n for n in neighbours if n.lane == lane):
+            along, _ = _offset(scene, n)
+            gap = max(abs(along) - (n.length + scene.ego.length) / 2, 0.0)
+            view = VehicleView(names(n.id), DRIVERS[n.kind], gap, n.speed)
+            (ahead if along > 0 else behind).append(view)
+        name = "left lane" if lane[2] < scene.ego.lane[2] else "right lane"
+        nearest = [min(side, key=lambda v: (v.gap, v.id), default=None) for side in (ahead, behind)]
+        lanes.append(LaneView(name, nearest[0], nearest[1]))
+    return lanes
+
+
+def _others(scene: SceneDescription, neighbours: Sequence[Neighbour], names: Names) -> list[OtherView]:
+    """List those nearest whose lane is not known."""
+    unplaced = [n for n in neighbours if n.lane is None and n.role is Role.OTHER]
+    unplaced.sort(key=lambda n: (hypot(n.x - scene.ego.x, n.y - scene.ego.y), n.id))
+    return [OtherView(names(n.id), DRIVERS[n.kind], *_offset(scene, n), n.speed) for n in unplaced[:OTHERS]]
+
+
+def _offset(scene: SceneDescription, n: Neighbour) -> tuple[float, float]:
+    """Return how far ahead and how far to the right of the CAV a vehicle is [m]."""
+    dx, dy, along, across = n.x - scene.ego.x, n.y - scene.ego.y, cos(scene.ego.heading), sin(scene.ego.heading)
+    return along * dx + across * dy, along * dy - across * dx
+
+
+def _conflict(situation: Situation, neighbours: Sequence[Neighbour], ks: Sequence[int], names: Names) -> ConflictView:
+    c: Conflict = situation.conflicts[ks[0]]
+    n = next(n for n in neighbours if n.id == c.other)
+    return ConflictView(
+        id=names(n.id),
+        driver=DRIVERS[n.kind],
+        lane="" if n.lane is None else lane_name(n.lane),
+        speed=n.speed,
+        relation=str(c.relation),
+        mine=c.distances[0],
+        its=c.distances[1],
+        my_ttcp=c.ttcp[0],
+        its_ttcp=c.ttcp[1],
+        dttcp=c.dttcp,
+        severity=str(c.severity),
+        zones=len(ks),
+        free=max(situation.clear_times[k] for k in ks),
+    )
+
+
+def _actions(
+    assessments: Sequence[ActionAssessment], groups: Sequence[Sequence[int]], names: Names
+) -> list[ActionView]:
+    """Put actions together of which a reader would be told the same."""
+    views: dict[tuple[object, ...], ActionView] = {}
+    for a in assessments:
+        arrivals = tuple(
+            round(min((a.arrivals[k] for k in ks if k < len(a.arrivals)), default=inf), 1) for ks in groups
+        )
+        progress = None if a.progress is None else round(a.progress)
+        key = (a.safe, a.reasons, progress, arrivals)
+        before = views[key].names if key in views else ()
+        reasons = tuple(names.sentence(reason) for reason in a.reasons)
+        views[key] = ActionView((*before, str(a.action)), a.safe, reasons, progress, arrivals)
+    return list(views.values())

@@ -1,0 +1,110 @@
+"""The forms of the answers, made for each question: what may be said is part of the form.
+
+They take in a little more than they ask for, so that an answer which only names a vehicle wrongly is not lost as a
+whole; whoever reads them says what is wrong.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, Field, create_model
+
+from codriving.llm.prompts.free_text import one_line
+
+
+def _short(value: Any) -> Any:  # noqa: ANN401 - whatever the model put there
+    return one_line(value) if isinstance(value, str) else "" if value is None else value
+
+
+Reason = Annotated[str, BeforeValidator(_short)]
+"""A reason: on one line, and capped."""
+
+
+class DecisionReply(BaseModel):
+    """A decision: the reason first, since what is written first shapes what follows."""
+
+    reason: Reason = ""
+    action: str
+
+
+class PairReply(BaseModel):
+    """Who goes first in one pair."""
+
+    pair: str
+    first: str
+    reason: Reason = ""
+
+
+class OrderReply(BaseModel):
+    """Who goes first in every pair."""
+
+    orders: Sequence[PairReply]
+
+
+class LessonReply(BaseModel):
+    """What is to be learnt from one decision."""
+
+    lesson: Reason = ""
+
+
+def decision_reply(allowed: Sequence[str]) -> type[DecisionReply]:
+    """Return the form of a decision.
+
+    Args:
+        allowed: The actions that may be chosen.
+    """
+    return _decision_reply(tuple(allowed))
+
+
+@lru_cache(maxsize=64)
+def _decision_reply(allowed: tuple[str, ...]) -> type[DecisionReply]:
+    made: type[DecisionReply] = create_model(
+        "Decision", __base__=DecisionReply, action=(Annotated[str, BeforeValidator(_upper)], _one_of(allowed))
+    )
+    return made
+
+
+def order_reply(pairs: Mapping[str, tuple[str, str]]) -> type[OrderReply]:
+    """Return the form of a passing order.
+
+    Args:
+        pairs: What the two vehicles of each pair are called, by the name of the pair.
+    """
+    vehicles = sorted({name for pair in pairs.values() for name in pair})
+    entry = create_model("Pair", __base__=PairReply, pair=(str, _one_of(list(pairs))), first=(str, _one_of(vehicles)))
+    made: type[OrderReply] = create_model("Order", __base__=OrderReply, orders=(list[entry], ...))  # type: ignore[valid-type]
+    return made
+
+
+def first_of_pairs(reply: OrderReply, pairs: Mapping[str, tuple[str, str]]) -> dict[str, tuple[str, str]]:
+    """Return what can be used of an order: pairs that exist, of which one of the two goes first.
+
+    A pair that is named twice with different answers is left out.
+
+    Args:
+        reply: The answer.
+        pairs: What the two vehicles of each pair are called, by the name of the pair.
+
+    Returns:
+        Who goes first and why, by the name of the pair.
+    """
+    found: dict[str, tuple[str, str]] = {}
+    torn: set[str] = set()
+    for entry in reply.orders:
+        name, first = entry.pair.strip(), entry.first.strip()
+        if name not in pairs or first not in pairs[name]:
+            continue
+        if name in found and found[name][0] != first:
+            torn.add(name)
+        found.setdefault(name, (first, entry.reason))
+    return {name: said for name, said in found.items() if name not in torn}
+
+
+def _one_of(words: Sequence[str]) -> Any:  # noqa: ANN401 - pydantic's own type is not public
+    """Ask for one of some words; that it is one of them is checked by whoever reads the answer."""
+    return Field(json_schema_extra={"enum": list(words)})
+
+
+def _upper(value: Any) -> Any:  # noqa: ANN401 - whatever the model put there
+    return value.strip().upper() if isinstance(value, str) else value

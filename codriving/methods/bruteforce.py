@@ -1,0 +1,87 @@
+"""The best order of all, by branch and bound: the reference that no search can beat."""
+
+from collections.abc import Mapping, Sequence
+
+from codriving.datatypes.ordering_problem import Instance
+from codriving.errors import EpisodeError
+from codriving.methods.order_search.coded import Coded, Prefix
+from codriving.methods.order_search.searched import SearchedOrder
+from codriving.methods.order_search.tree_search import Found
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+
+MOST = 10
+"""Vehicles that are ordered at most."""
+
+LESS = 1e-9
+"""An order is better only if it saves more than this [s]."""
+
+
+class BruteForce(SearchedOrder):
+    """Goes through all orders that what is physically fixed allows, except those that cannot be better.
+
+    Args:
+        hysteresis: J that another order must save to be taken, 0 to 10 [s].
+        evacuation_weight: Weight of the evacuation time in J, 0 to 10.
+        fairness: Weight of a vehicle's delay in J, by id; 1 for whoever is not named.
+
+    Raises:
+        ConfigError: If a value is out of range.
+    """
+
+    name = "bruteforce"
+
+    def __init__(
+        self,
+        hysteresis: float = 0.3,
+        evacuation_weight: float = 0.0,
+        fairness: Mapping[str, float] | None = None,
+    ) -> None:
+        super().__init__(hysteresis, evacuation_weight, fairness)
+
+    def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
+        """Return the best order.
+
+        Args:
+            instance: The problem of this moment.
+            planner: Not used; orders are judged by their schedules.
+
+        Raises:
+            EpisodeError: If more than ten vehicles are to be ordered.
+        """
+        if len(instance.entrants) > MOST:
+            raise EpisodeError(
+                f"bruteforce orders at most {MOST} vehicles, got {len(instance.entrants)}; "
+                "take method=mcts or fewer vehicles"
+            )
+        return super().order(instance, planner)
+
+    def search(self, problem: Coded, seeds: Sequence[Sequence[str]]) -> Found:
+        """Go through the tree of orders, whoever can pass first before the others.
+
+        Args:
+            problem: The instance and what a good order is.
+            seeds: Orders to begin with.
+        """
+        runs = [problem.run(seed) for seed in seeds]
+        best = min(runs, key=problem.cost)
+        least, tried = problem.cost(best), 0
+
+        def descend(prefix: Prefix) -> None:
+            nonlocal best, least, tried
+            if not prefix.waiting:
+                tried += 1
+                best, least = prefix, problem.cost(prefix)
+                return
+            options = []
+            for k in problem.candidates(prefix):
+                longer = prefix.copy()
+                problem.place(longer, k)
+                bound = problem.bound(longer)
+                if bound < least - LESS:
+                    options.append((problem.start(prefix, k), problem.eta[k], k, bound, longer))
+            for *_, bound, longer in sorted(options, key=lambda o: o[:3]):
+                if bound < least - LESS:
+                    descend(longer)
+
+        descend(problem.root())
+        return Found(tuple(problem.named(best.order)), least, tried, True)

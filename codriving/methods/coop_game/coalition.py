@@ -1,0 +1,159 @@
+"""The orders of one moment on which all vehicles may agree, each judged by what everybody would do in it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from codriving.datatypes.ordering_problem import Instance
+from codriving.methods.coop_game.levels import Allocation, Levels
+from codriving.methods.coop_game.payoff import Payoff
+from codriving.methods.coop_game.streams import Streams, is_free
+from codriving.reasoning.ordering.objective import Objective
+from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
+from codriving.reasoning.ordering.schedule import repaired, timed
+
+TOLERANCE = 1e-9
+"""Values that differ by less are equal."""
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """An order and what it is worth.
+
+    Attributes:
+        instance: The problem.
+        order: Everybody, first to last.
+        levels: Level of each stream; empty if everybody goes as they came, or as before.
+        plan: What everybody would do.
+        payoffs: What that is worth to each vehicle, by id; empty if no joint plan keeps the order.
+    """
+
+    instance: Instance
+    order: tuple[str, ...]
+    levels: Allocation
+    plan: JointPlan
+    payoffs: dict[str, float]
+
+    @cached_property
+    def value(self) -> float:
+        """What it is worth to all together; -inf if somebody has no plan that touches nobody."""
+        return sum(self.payoffs.values()) if self.plan.feasible else float("-inf")
+
+    @cached_property
+    def delay(self) -> float:
+        """Time that everybody loses together, as scheduled [s]."""
+        return Objective().value(self.instance, timed(self.instance, self.order))
+
+    def better_than(self, other: "Agreement") -> bool:
+        """Whether it is worth more; if both are worth the same, whether less time is lost, or the levels are lower.
+
+        What everybody can keep is better than anything else; of two that somebody cannot keep, the one with fewer such.
+
+        Args:
+            other: Another one.
+        """
+        if not self.plan.feasible or not other.plan.feasible:
+            return self.plan.feasible or (not other.plan.feasible and self.plan.stuck < other.plan.stuck)
+        if abs(self.value - other.value) > TOLERANCE * max(1.0, abs(other.value)):
+            return self.value > other.value
+        if self.delay == other.delay:
+            return self.levels < other.levels
+        return self.delay < other.delay
+
+    def worse_off(self, other: "Agreement") -> list[str]:
+        """Return those who would rather have another agreement, by id.
+
+        Args:
+            other: The other one; if it cannot be kept, nobody would.
+        """
+        return [n for n, was in sorted(other.payoffs.items()) if self.payoffs.get(n, was) < was - TOLERANCE]
+
+
+class Coalition:
+    """Judges orders, each of them once.
+
+    Args:
+        instance: The problem.
+        planner: What everybody would do in an order.
+        payoff: What that is worth.
+        streams: The streams of the instance.
+        arrived: Everybody, in the order in which they came.
+        limit: Orders that are judged at most.
+
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        planner: JointPlanner,
+        payoff: Payoff,
+        streams: Streams,
+        arrived: Sequence[str],
+        limit: int,
+    ) -> None:
+        self.instance, self.planner, self.payoff = instance, planner, payoff
+        self.streams, self.arrived, self.limit = streams, tuple(arrived), limit
+        self._free = [(a, b) for k, a in enumerate(arrived) for b in arrived[:k] if is_free(instance, a, b)]
+        self._known: dict[tuple[bool, ...], Agreement] = {}
+
+    @property
+    def judged(self) -> tuple[Agreement, ...]:
+        """Everything that has been judged, in that order."""
+        return tuple(self._known.values())
+
+    def judge(self, ranking: Sequence[str], levels: Allocation = ()) -> Agreement | None:
+        """Judge a ranking of everybody.
+
+        Orders in which the same vehicle of each pair goes first, wherever that is open, are one order.
+
+        Args:
+            ranking: Everybody, the one who should go first at the front.
+            levels: Level of each stream, if the ranking follows from that.
+
+        Returns:
+            The agreement; None if it is a new one and no more may be judged.
+        """
+        order = tuple(repaired(self.instance, ranking))
+        place = {name: k for k, name in enumerate(order)}
+        key = tuple([place[a] < place[b] for a, b in self._free])
+        if key not in self._known:
+            if len(self._known) >= self.limit:
+                return None
+            plan = self.planner.plan(order)
+            payoffs = self.payoff.of(self.instance, plan, self.planner) if plan.feasible else {}
+            self._known[key] = Agreement(self.instance, order, levels, plan, payoffs)
+        return self._known[key]
+
+    def allocate(self, levels: Allocation) -> Agreement | None:
+        """Judge an allocation of levels.
+
+        Args:
+            levels: Level of each stream.
+
+        Returns:
+            The agreement; None if it is a new one and no more may be judged.
+        """
+        return self.judge(self.streams.ranked(levels, self.arrived), levels)
+
+    def ascend(self, starts: Sequence[Allocation], levels: Levels) -> None:
+        """Give one stream after another the level that is best for all, until nothing improves or the limit is reached.
+
+        Args:
+            starts: Allocations of which the best one is begun with.
+            levels: Levels that streams may have.
+        """
+        current: Agreement | None = None
+        for start in starts:
+            found = self.allocate(start)
+            if found is not None and (current is None or found.better_than(current)):
+                current, allocation = found, start
+        improved = current is not None
+        while improved and current is not None:
+            improved = False
+            for stream in range(len(self.streams.names)):
+                for moved in levels.moves(allocation, stream):
+                    found = self.allocate(moved)
+                    if found is None:
+                        return
+                    if found.better_than(current):
+                        current, allocation, improved = found, moved, True

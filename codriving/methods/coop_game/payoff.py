@@ -1,0 +1,132 @@
+"""What a joint plan is worth to each vehicle: how near it gets to its destination, or a utility of three terms."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from codriving.datatypes.ordering_problem import Entrant, Instance
+from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
+
+SLOPE, OFFSET = 1.44, 25.4
+"""Drivers are indifferent about who goes first if the distance of the one who turns is 1.44 times that of the one who
+goes straight, less 25.4 m (fit of the source)."""
+
+NEAREST = 1.0
+"""Distance to the destination below which a vehicle counts as being there [m]."""
+
+
+class Goal(StrEnum):
+    """What is summed up over all vehicles."""
+
+    INVERSE_DISTANCE = "inverse_distance"
+    UTILITY = "utility"
+
+
+class Scale(StrEnum):
+    """Whose distance is put on the scale of the others before they are added."""
+
+    TURNING = "turning"
+    STRAIGHT = "straight"
+    NONE = "none"
+
+
+def on_one_scale(distance: float, turning: bool, scale: Scale) -> float:
+    """Return a distance on the common scale of vehicles that turn and vehicles that go straight [m].
+
+    Args:
+        distance: Distance to the destination [m].
+        turning: Whether the vehicle turns.
+        scale: Whose distance is changed.
+    """
+    if scale is Scale.TURNING and turning:
+        return max((distance + OFFSET) / SLOPE, NEAREST)
+    if scale is Scale.STRAIGHT and not turning:
+        return max(SLOPE * distance - OFFSET, NEAREST)
+    return max(distance, NEAREST)
+
+
+@dataclass(frozen=True, slots=True)
+class Payoff:
+    """What a joint plan is worth to each vehicle.
+
+    Attributes:
+        objective: What counts.
+        scale: Whose distance is put on the scale of the others.
+        efficiency: Weight of the way covered, in the utility.
+        comfort: Weight of the acceleration, in the utility.
+        safety: Weight of the risk, in the utility.
+        reference_acceleration: Acceleration that costs the whole weight of comfort [m/s2].
+        risk_time: Gap in time at which the risk has fallen to 1/e [s].
+    """
+
+    objective: Goal
+    scale: Scale
+    efficiency: float
+    comfort: float
+    safety: float
+    reference_acceleration: float
+    risk_time: float
+
+    def of(self, instance: Instance, plan: JointPlan, planner: JointPlanner, ahead: float = 0.0) -> dict[str, float]:
+        """Return what a plan is worth to each vehicle, by id.
+
+        Args:
+            instance: The problem.
+            plan: What everybody does.
+            planner: Knows the gaps in time of the plan.
+            ahead: Time by which everybody is taken to be farther along its plan [s].
+        """
+        scale = self._scale(instance)
+        found = {}
+        for name, entrant in instance.entrants.items():
+            left = self._left(entrant, plan, ahead)
+            if self.objective is Goal.INVERSE_DISTANCE:
+                found[name] = 1 / on_one_scale(left, entrant.turning, scale)
+            else:
+                found[name] = self._utility(instance, entrant, left, plan, planner)
+        return found
+
+    def gain(
+        self, instance: Instance, plan: JointPlan, planner: JointPlanner, payoffs: Mapping[str, float], time: float
+    ) -> float:
+        """Return what a vehicle gains on average by being farther along its plan.
+
+        Args:
+            instance: The problem.
+            plan: What everybody does.
+            planner: Knows the gaps in time of the plan.
+            payoffs: What the plan is worth to each vehicle, by id.
+            time: Time by which one vehicle is ahead [s].
+        """
+        later = self.of(instance, plan, planner, time)
+        return sum(later[name] - payoffs[name] for name in later) / len(later)
+
+    def _scale(self, instance: Instance) -> Scale:
+        """Distances are only changed where some turn and others do not."""
+        kinds = {entrant.turning for entrant in instance.entrants.values()}
+        return self.scale if len(kinds) == 2 else Scale.NONE
+
+    def _left(self, entrant: Entrant, plan: JointPlan, ahead: float) -> float:
+        """Mean distance to the destination within the horizon [m]."""
+        travel = plan.travels[entrant.id]
+        if ahead:
+            travel = travel + float(travel[-1]) / (plan.sample * (len(travel) - 1)) * ahead
+        return float(np.maximum(entrant.remaining - travel, 0.0).mean())
+
+    def _utility(
+        self, instance: Instance, entrant: Entrant, left: float, plan: JointPlan, planner: JointPlanner
+    ) -> float:
+        distance = max(entrant.remaining, NEAREST)
+        acceleration = np.diff(plan.speed(entrant.id)) / plan.sample
+        partners = [name for name in instance.entrants if name != entrant.id and instance.conflict(name, entrant.id)]
+        gaps = [max(planner.gap_time(plan, entrant.id, name), 0.0) for name in partners]
+        risk = sum(math.exp(-gap / self.risk_time) for gap in gaps) / len(gaps) if gaps else 0.0
+        terms = (
+            self.efficiency * (distance - left) / distance
+            - self.comfort * float((acceleration**2).mean()) / self.reference_acceleration**2
+            - self.safety * risk
+        )
+        return terms / (self.efficiency + self.comfort + self.safety)

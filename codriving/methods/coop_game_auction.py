@@ -1,0 +1,128 @@
+"""The auction: whoever has waited longest, is nearest and would be there soonest bids most and goes first."""
+
+from collections.abc import Mapping, Sequence
+
+from codriving.datatypes.ordering_problem import Entrant, Instance
+from codriving.errors import ConfigError
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning.ordering.reasons import reasons
+from codriving.reasoning.ordering.request import Request, best_subset
+from codriving.reasoning.ordering.schedule import repaired, timed
+
+STANDING = 0.5
+"""Speed below which a vehicle waits; no time to the conflict zone is worked out with a smaller one either [m/s]."""
+
+WAITED, NEAR, SOON = 0.1, 3.0, 1.0
+"""What a bid counts: each second of waiting [1/s], nearness [m], and soonness [s]."""
+
+NEAR_OFFSET, SOON_OFFSET = 2.0, 0.5
+"""What is added to the distance [m] and to the time [s], so that nobody bids without end."""
+
+
+def bid(entrant: Entrant, waited: float) -> float:
+    """Return what a vehicle bids for going first.
+
+    Args:
+        entrant: The vehicle.
+        waited: How long it has been waiting [s].
+    """
+    soon = entrant.distance / max(entrant.speed, STANDING)
+    return WAITED * waited + NEAR / (entrant.distance + NEAR_OFFSET) + SOON / (soon + SOON_OFFSET)
+
+
+class Auction:
+    """Vehicles go by decreasing bid.
+
+    Args:
+        hysteresis: Of two vehicles the one that went first in the step before goes first unless the other one bids
+            more than this above it, 0 to 10.
+
+    Raises:
+        ConfigError: If the hysteresis is out of range.
+    """
+
+    name = "coop_game"
+    variant = "auction"
+
+    def __init__(self, hysteresis: float) -> None:
+        if not 0 <= hysteresis <= 10:
+            raise ConfigError(f"hysteresis must be 0 to 10, got {hysteresis:g}")
+        self.hysteresis = hysteresis
+        self.reset(0)
+
+    def reset(self, seed: int) -> None:
+        """Begin an episode; nothing is remembered from the one before.
+
+        Args:
+            seed: Not used; nothing is drawn.
+        """
+        self._stopped: dict[str, float] = {}
+        self._agreed: tuple[str, ...] = ()
+
+    def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
+        """Return everybody by decreasing bid, as far as what is physically fixed allows.
+
+        Args:
+            instance: The problem of this moment.
+            planner: Tells whether the order of the step before can still be kept.
+        """
+        waited = self._wait(instance)
+        bids = {name: bid(entrant, waited[name]) for name, entrant in instance.entrants.items()}
+        fresh = repaired(instance, sorted(bids, key=lambda name: (-bids[name], name)))
+        steady = repaired(instance, overtaken(self._as_before(fresh), bids, self.hysteresis))
+        # Where the two agree there is nothing to ask the planner.
+        kept = steady != fresh and planner.plan(steady).feasible
+        self._agreed = tuple(steady if kept else fresh)
+
+        def reason(one: str, other: str) -> str:
+            stands = "went first before and " if kept and bids[one] < bids[other] else ""
+            return f"{one} {stands}bids {bids[one]:.2f} against {bids[other]:.2f}"
+
+        return Ordering(
+            self._agreed,
+            timed(instance, self._agreed),
+            reasons(instance, self._agreed, reason),
+            {"kept": int(kept)},
+        )
+
+    def grant(self, requests: Sequence[Request]) -> frozenset[str]:
+        """Grant the requests that do not overlap and gain most together.
+
+        Args:
+            requests: Lane changes that are wanted, in the order in which they were first asked for.
+        """
+        return best_subset(requests)
+
+    def _wait(self, instance: Instance) -> dict[str, float]:
+        """Return how long everybody has been waiting [s]."""
+        slow = {name for name, entrant in instance.entrants.items() if entrant.speed < STANDING}
+        self._stopped = {name: self._stopped.get(name, instance.time) for name in sorted(slow)}
+        return {name: instance.time - self._stopped.get(name, instance.time) for name in instance.entrants}
+
+    def _as_before(self, fresh: Sequence[str]) -> list[str]:
+        """Rank everybody as in the step before; each newcomer right behind the one that it follows by its bid."""
+        ranking = [name for name in self._agreed if name in fresh]
+        known = set(ranking)
+        for k, name in enumerate(fresh):
+            if name not in known:
+                ranking.insert(ranking.index(fresh[k - 1]) + 1 if k else 0, name)
+        return ranking
+
+
+def overtaken(ranking: Sequence[str], bids: Mapping[str, float], by: float) -> list[str]:
+    """Let whoever bids enough more than the one right before it go first, until nobody does.
+
+    Args:
+        ranking: Everybody, the one who went first at the front.
+        bids: Bid of each, by id.
+        by: How much more has to be bid.
+    """
+    order = list(ranking)
+    moved = True
+    while moved:
+        moved = False
+        for k in range(len(order) - 1):
+            if bids[order[k + 1]] > bids[order[k]] + by:
+                order[k], order[k + 1] = order[k + 1], order[k]
+                moved = True
+    return order

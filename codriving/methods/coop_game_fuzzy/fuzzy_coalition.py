@@ -1,0 +1,189 @@
+"""The fuzzy coalition: all CAVs choose actions together, each taking part to a degree (after Hang et al., 2022)."""
+
+from collections.abc import Sequence
+
+from codriving.datatypes.action import Action
+from codriving.errors import ConfigError
+from codriving.methods.coop_game_fuzzy.joint_choice import Costs, Joint, settle
+from codriving.methods.coop_game_fuzzy.joint_costs import Weights, joint_costs
+from codriving.methods.coop_game_fuzzy.shapley import MOST, shapley
+from codriving.reasoning.execution.protocol import Drive
+from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering
+from codriving.reasoning.prediction.expectation import Expected
+from codriving.reasoning.prediction.rollout import Plan
+from codriving.reasoning.safety.outlook import then_stop
+from codriving.reasoning.safety.same_lane import LANE_END_GAP
+from codriving.reasoning.sharing.movers import Mover
+
+OPTIONS = (Action.FASTER, Action.IDLE, Action.SLOWER)
+"""What each CAV chooses from; the first one wins where all cost the same."""
+
+LONGEST = 20
+"""Decisions for which an action can be held."""
+
+LIBRARY: tuple[Plan, ...] = tuple(
+    dict.fromkeys(
+        (
+            *((*(action,) * held, Action.FASTER) for held in range(1, LONGEST + 1) for action in OPTIONS),
+            *(then_stop(action) for action in OPTIONS),
+        )
+    )
+)
+"""Every plan that is asked for: an action held for a while, and then going; and an action, and then stopping."""
+
+
+class FuzzyCoalition:
+    """Joint actions instead of orders: whatever costs least, by risk, loss of speed and acceleration.
+
+    Args:
+        gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules that are only
+            shown, 0 to 5 [s].
+        participation: How much the mean cost of all counts for each vehicle against its own, 0 to 1.
+        risk: Weight of the risk, 0 to 1.
+        efficiency: Weight of the loss of speed, 0 to 1.
+        comfort: Weight of the acceleration, 0 to 1.
+        reference_acceleration: Acceleration that costs the whole weight of comfort, 0.1 to 20 [m/s2].
+        hold: Time for which an action is held before everybody goes, 0.2 to 4 [s].
+        horizon: Time within which risk, loss of speed and acceleration count, 1 to 10 [s].
+        shares: Whether each vehicle's share of what acting together saves is put into its reason.
+
+    Raises:
+        ConfigError: If a setting is out of range.
+    """
+
+    name = "fuzzy_coalition"
+    library = LIBRARY
+
+    def __init__(
+        self,
+        gap: float,
+        participation: float,
+        risk: float,
+        efficiency: float,
+        comfort: float,
+        reference_acceleration: float,
+        hold: float,
+        horizon: float,
+        shares: bool,
+    ) -> None:
+        for key, value, least, most, unit in (
+            ("gap", gap, 0, 5, " s"),
+            ("participation", participation, 0, 1, ""),
+            ("risk", risk, 0, 1, ""),
+            ("efficiency", efficiency, 0, 1, ""),
+            ("comfort", comfort, 0, 1, ""),
+            ("reference_acceleration", reference_acceleration, 0.1, 20, " m/s2"),
+            ("hold", hold, 0.2, 4, " s"),
+            ("horizon", horizon, 1, 10, " s"),
+        ):
+            if not least <= value <= most:
+                raise ConfigError(f"{key} must be {least:g} to {most:g}{unit}, got {value:g}")
+        self.gap = self.margin = gap
+        self.participation, self.shares = participation, shares
+        self.weights = Weights(risk, efficiency, comfort, reference_acceleration)
+        self.hold, self.horizon = hold, horizon
+
+    def reset(self) -> None:
+        """Begin an episode; nothing is remembered from one step to the next."""
+
+    def planner(self, stage: Stage) -> JointPlanner:
+        """Return a planner that has no plan for any order, since nobody asks which one it is.
+
+        Args:
+            stage: The moment.
+        """
+        return NoPlans(stage.forecast.sample)
+
+    def drive(self, stage: Stage, ordering: Ordering) -> Drive:
+        """Return the joint action on which all settle.
+
+        Args:
+            stage: The moment.
+            ordering: Not used: who goes first follows from the actions.
+        """
+        vehicles = {name: known[name] for name, known in sorted(stage.known.items())}
+        if not vehicles:
+            return Drive({}, {}, {}, {})
+        plans = self._plans(stage)
+        travels = {v.id: stage.forecast.travel(v.speed, v.target, plans) for v in vehicles.values()}
+        samples = round(self.horizon / stage.forecast.sample) + 1
+        costs = joint_costs(stage, vehicles, travels, samples, self.weights)
+        allowed = [self._allowed(stage, v) for v in vehicles.values()]
+        joint = settle(costs, allowed, self.participation)
+        shares = self._shares(costs, allowed, joint, list(vehicles)) if self.shares and len(vehicles) <= MOST else {}
+        actions, reasons, expected, progress = {}, {}, {}, {}
+        for (name, v), k, cost in zip(vehicles.items(), joint, costs.of([joint])[0], strict=True):
+            actions[name] = OPTIONS[k]
+            share = f", its share of what that saves is {shares[name]:.2f}" if name in shares else ""
+            reasons[name] = f"{OPTIONS[k]} goes best with what the others do, it costs {cost:.2f}{share}"
+            progress[name] = {a: float(travels[name][i, -1]) for i, a in enumerate(OPTIONS)}
+            expected[name] = tuple(
+                Expected(route, place + travels[name][k], k == 0, progress[name] if r == 0 else {})
+                for r, (route, place) in enumerate(v.routes)
+            )
+        return Drive(actions, reasons, self._humans(stage) | expected, progress)
+
+    def _allowed(self, stage: Stage, v: Mover) -> list[int]:
+        """Return the options that the road allows a CAV: where its lane ends it must still be able to stop."""
+        found = [k for k, action in enumerate(OPTIONS) if action in stage.available[v.id]] or [0]
+        change = stage.scenes[v.id].must_change
+        if change is None:
+            return found
+        stops = stage.forecast.travel(v.speed, v.target, [then_stop(action) for action in OPTIONS])[:, -1]
+        return [k for k in found if stops[k] <= change.room - LANE_END_GAP] or found[-1:]
+
+    def _plans(self, stage: Stage) -> list[Plan]:
+        held = min(max(round(self.hold / stage.forecast.model.decision_interval), 1), LONGEST)
+        return [(*(action,) * held, Action.FASTER) for action in OPTIONS]
+
+    def _shares(
+        self, costs: Costs, allowed: Sequence[Sequence[int]], joint: Joint, names: list[str]
+    ) -> dict[str, float]:
+        """Share out what all save against everybody's looking after itself."""
+        alone = settle(costs, allowed, 0.0)
+
+        def saved(members: frozenset[str]) -> float:
+            mixed = tuple(j if name in members else a for name, j, a in zip(names, joint, alone, strict=True))
+            before, after = costs.of([alone, mixed]).sum(axis=1)
+            return float(before - after)
+
+        return shapley(names, saved)
+
+    def _humans(self, stage: Stage) -> dict[str, tuple[Expected, ...]]:
+        found = {}
+        for known in stage.known.values():
+            for v in known.values():
+                if not v.is_cav:
+                    steady = stage.forecast.reach(v.speed, False).steady
+                    found[v.id] = tuple(Expected(route, place + steady, True, {}) for route, place in v.routes)
+        return dict(sorted(found.items()))
+
+
+class NoPlans:
+    """A planner that has no plan for any order.
+
+    Args:
+        sample: Time between two samples of a plan [s].
+    """
+
+    def __init__(self, sample: float) -> None:
+        self.sample = sample
+
+    def plan(self, order: Sequence[str]) -> JointPlan:
+        """Say that there is no plan.
+
+        Args:
+            order: Not used.
+        """
+        return JointPlan(False, {}, self.sample)
+
+    def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
+        """Return inf, since nobody is anywhere.
+
+        Args:
+            plan: Not used.
+            one: Not used.
+            other: Not used.
+        """
+        return float("inf")

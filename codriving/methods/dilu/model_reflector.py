@@ -1,0 +1,106 @@
+"""Reflection by a language model: what the mistake was, what it teaches, and what would have been right."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Annotated, Any, cast
+
+from pydantic import BaseModel, BeforeValidator, Field, create_model
+
+from codriving.datatypes.action import Action
+from codriving.llm.ledger import Ledger
+from codriving.llm.prompts.free_text import one_line
+from codriving.llm.prompts.render import Prompts
+from codriving.llm.prompts.replies import Reason
+from codriving.llm.prompts.seen_names import seen_names
+from codriving.llm.question import Answer, Chat, Question
+from codriving.methods.dilu.prompt_view import seen_view
+from codriving.methods.dilu.reflection import Correction, Mistake, correct_one
+
+
+class ReflectionReply(BaseModel):
+    """A correction: the mistake first, since what is written first shapes what follows."""
+
+    mistake: Reason = ""
+    lesson: Reason = ""
+    action: str
+
+
+class ModelReflector:
+    """Asks a model about every mistake of an episode, all in one go.
+
+    Args:
+        chat: The model.
+        prompts: The templates.
+        ledger: Where answers are noted.
+    """
+
+    def __init__(self, chat: Chat, prompts: Prompts, ledger: Ledger) -> None:
+        self.chat, self.prompts, self.ledger = chat, prompts, ledger
+
+    def correct(self, mistakes: Sequence[Mistake]) -> list[Correction]:
+        """Return one correction a mistake, in the same order; by rule where the model has no usable answer.
+
+        Args:
+            mistakes: The mistakes.
+
+        Raises:
+            ModelUnavailableError: If the model does not answer.
+            SpendingLimitError: If the tokens or the money that may be spent are used up.
+        """
+        questions = [self.question(mistake) for mistake in mistakes]
+        answers = self.chat.ask(questions) if questions else []
+        for question, answer in zip(questions, answers, strict=True):
+            self.ledger.note(question, answer)
+        return [_correction(mistake, answer) for mistake, answer in zip(mistakes, answers, strict=True)]
+
+    def question(self, mistake: Mistake) -> Question:
+        """Return what the model is asked about one mistake.
+
+        Args:
+            mistake: The mistake.
+        """
+        situation, done = mistake.told.situation, mistake.decision.action
+        names = seen_names(situation.scene)
+        right = [str(action) for action in situation.allowed if action is not done]
+        values = {
+            **seen_view(mistake.told),
+            "action": str(done),
+            "reason": names.sentence(mistake.decision.reason),
+            "struck": mistake.struck,
+            "other": names(mistake.other) if situation.scene.neighbour(mistake.other) else "another vehicle",
+            "later": mistake.later,
+        }
+
+        def check(reply: object) -> str:
+            said = cast(ReflectionReply, reply)
+            if said.action not in right:
+                return f"{one_line(said.action)} cannot have been right; choose one of: {', '.join(right)}"
+            return "" if said.lesson else "the lesson is missing"
+
+        return Question(
+            purpose="reflect",
+            subject=situation.scene.ego.id,
+            messages=self.prompts.messages("dilu_reflect", values),
+            schema=_reply(tuple(right)),
+            check=check,
+        )
+
+
+@lru_cache(maxsize=64)
+def _reply(right: tuple[str, ...]) -> type[ReflectionReply]:
+    words: Any = Field(json_schema_extra={"enum": list(right)})
+    made: type[ReflectionReply] = create_model(
+        "Reflection", __base__=ReflectionReply, action=(Annotated[str, BeforeValidator(_upper)], words)
+    )
+    return made
+
+
+def _upper(value: object) -> object:
+    return value.strip().upper() if isinstance(value, str) else value
+
+
+def _correction(mistake: Mistake, answer: Answer) -> Correction:
+    if answer.value is None:
+        return correct_one(mistake)
+    said = cast(ReflectionReply, answer.value)
+    return Correction(Action(said.action), said.mistake or correct_one(mistake).mistake, said.lesson)

@@ -1,0 +1,97 @@
+"""The variables of DiLu's prompts: what one CAV sees, lane by lane and vehicle by vehicle."""
+
+from math import atan2, cos, degrees, hypot, sin
+from typing import Any
+
+from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.scene_description import Neighbour, SceneDescription
+from codriving.llm.prompts.decision_view import lane_views, side_name
+from codriving.llm.prompts.free_text import Names
+from codriving.llm.prompts.seen_names import seen_names
+from codriving.llm.prompts.seen_views import MeaningView, SeenView, WayView
+from codriving.methods.dilu.told import Told
+
+MOST = 6
+"""Vehicles at most of which it is told where they are and which ways they may take."""
+
+DIRECTIONS = (
+    "ahead",
+    "ahead right",
+    "to the right",
+    "behind right",
+    "behind",
+    "behind left",
+    "to the left",
+    "ahead left",
+)
+"""Words for eighths of a turn, clockwise from straight ahead."""
+
+
+def seen_view(told: Told, nearest: int | None = None) -> dict[str, Any]:
+    """Return the variables that all of DiLu's prompts have.
+
+    Args:
+        told: What the CAV is told.
+        nearest: Number of vehicles, nearest first, that are mentioned; None for all.
+    """
+    scene, names = told.situation.scene, seen_names(told.situation.scene)
+    mentioned = sorted(scene.neighbours, key=lambda n: (_distance(scene, n), n.id))[:nearest]
+    lanes = lane_views(scene, mentioned, names)
+    placed = {v.id for lane in lanes for v in (lane.leading, lane.rear) if v is not None}
+    meets = {c.other: k for k, c in reversed(list(enumerate(told.situation.conflicts)))}
+    # Those whose ways may meet come first, the most urgent of them before the others; the rest by distance.
+    ranked = sorted(mentioned, key=lambda n: (meets.get(n.id, len(meets) + len(told.situation.conflicts)),))
+    shown = [n for n in ranked if n.id in meets or names(n.id) not in placed][:MOST]
+    return {
+        "speed": scene.ego.speed,
+        "target_speed": scene.intent.target_speed,
+        "route": scene.intent.route,
+        "lane_rank": told.lane[0],
+        "lane_count": told.lane[1],
+        "between_lanes": bool(scene.covers),
+        "must_change": None if scene.must_change is None else side_name(scene, scene.must_change.lane),
+        "room": 0.0 if scene.must_change is None else scene.must_change.room,
+        "lanes": lanes,
+        "vehicles": [_seen(told, n, names) for n in shown],
+        "actions": [MeaningView(str(a), told.targets.get(a)) for a in told.situation.allowed],
+        "allowed": [str(a) for a in told.situation.allowed],
+    }
+
+
+def _distance(scene: SceneDescription, n: Neighbour) -> float:
+    return hypot(n.x - scene.ego.x, n.y - scene.ego.y)
+
+
+def _seen(told: Told, n: Neighbour, names: Names) -> SeenView:
+    """Describe one vehicle; of each way that it may take, the most urgent place where that meets the CAV's."""
+    scene = told.situation.scene
+    ways: dict[str, Conflict] = {}
+    for c in told.situation.conflicts:
+        if c.other == n.id:
+            ways.setdefault(c.routes[1], c)
+    return SeenView(
+        id=names(n.id),
+        where=_direction(scene, n),
+        distance=_distance(scene, n),
+        speed=n.speed,
+        standing=n.standing,
+        ways=_apart([_way(c) for c in ways.values()]),
+        elsewhere=sum(route not in ways for route, _ in n.routes),
+    )
+
+
+def _apart(ways: list[WayView]) -> tuple[WayView, ...]:
+    """Leave out ways that would read the same."""
+    apart = {(w.relation, round(w.mine), round(w.its), round(w.dttcp, 1)): w for w in reversed(ways)}
+    return tuple(w for w in ways if w in apart.values())
+
+
+def _direction(scene: SceneDescription, n: Neighbour) -> str:
+    dx, dy, along, across = n.x - scene.ego.x, n.y - scene.ego.y, cos(scene.ego.heading), sin(scene.ego.heading)
+    # The y axis points to the right of the x axis, so that angles grow clockwise.
+    angle = degrees(atan2(along * dy - across * dx, along * dx + across * dy))
+    return DIRECTIONS[round(angle / 45) % len(DIRECTIONS)]
+
+
+def _way(c: Conflict) -> WayView:
+    return WayView(str(c.relation), c.distances[0], c.distances[1], c.ttcp[0], c.ttcp[1], c.dttcp, str(c.severity))

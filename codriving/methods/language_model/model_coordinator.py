@@ -1,0 +1,173 @@
+"""The conflict coordinator by a language model: asked about CAVs in conflict, if something changed."""
+
+from collections.abc import Iterable, Mapping
+from itertools import pairwise
+from typing import cast
+
+from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.ordering_problem import Pair
+from codriving.geometry.road_map import RoadMap
+from codriving.llm.ledger import Ledger
+from codriving.llm.prompts.free_text import Names
+from codriving.llm.prompts.negotiation_view import negotiation_view
+from codriving.llm.prompts.render import Prompts
+from codriving.llm.prompts.replies import OrderReply, first_of_pairs, order_reply
+from codriving.llm.question import Chat, Question
+from codriving.reasoning.ordering.coordinator import RuleCoordinator
+from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
+from codriving.reasoning.ordering.problem import Conflicts, Problem, Scenes
+from codriving.reasoning.prediction.forecast import Forecast
+
+Told = dict[Pair, str]
+"""Who goes before whom, and why."""
+
+Asked = Mapping[str, Conflict]
+"""The pairs of a question: the most urgent conflict of each, by the name of the pair."""
+
+
+class ModelCoordinator:
+    """Asks a model who goes first in each pair of CAVs; the rules do the rest.
+
+    The rules settle what cannot be negotiated: pairs that are physically fixed, and pairs with human drivers, who
+    answer nobody. From the model's pairs they work out when each CAV passes, as for an order of their own.
+
+    An answer is kept as long as its premise holds, see ``Premise``, and nothing that it says has become impossible.
+
+    What an answer leaves out or gets wrong is decided by the rules, and the least severe link of a circle is dropped;
+    both count as a repaired order. Without an answer, the rules decide everything, and the ledger counts a fallback.
+
+    Args:
+        chat: The model.
+        prompts: The templates.
+        ledger: Where answers are noted.
+        road_map: The precomputed road.
+        forecast: Predictions of the present step.
+        binding: Whether the order is an instruction (CDA class D).
+    """
+
+    def __init__(
+        self, chat: Chat, prompts: Prompts, ledger: Ledger, road_map: RoadMap, forecast: Forecast, binding: bool
+    ) -> None:
+        self.chat, self.prompts, self.ledger = chat, prompts, ledger
+        self.rules = RuleCoordinator(road_map, forecast, binding)
+        self._agreed: tuple[Premise, Told] | None = None
+
+    def negotiate(self, scenes: Scenes, conflicts: Conflicts) -> PassingOrder:
+        """Return an order without cycles for all conflicts.
+
+        Args:
+            scenes: What each CAV knows, by id.
+            conflicts: Conflicts of each CAV, by id.
+
+        Raises:
+            ModelUnavailableError: If the model does not answer.
+            SpendingLimitError: If the tokens or the money that may be spent are used up.
+        """
+        problem = self.rules.problems.pose(scenes, conflicts, 0.0)
+        urgent = _most_urgent(problem, conflicts)
+        asked = open_pairs(problem.instance, urgent)
+        if not asked:
+            self._agreed = None
+            return self.rules.settle(problem, conflicts, {})
+        now = premise(problem.instance, asked)
+        told = self._kept(problem, now)
+        if told is not None:
+            self.ledger.count("kept_orders")
+            return self.rules.settle(problem, conflicts, told)
+        told = self._ask(scenes, problem, [urgent[pair] for pair in asked])
+        order = self.rules.settle(problem, conflicts, told or {})
+        # Without an answer nothing has been agreed on, and the next step asks again.
+        self._agreed = None if told is None else (now, _decided(order, asked))
+        return order
+
+    def _kept(self, problem: Problem, now: Premise) -> Told | None:
+        """Return the pairs of the last answer that are still open if the answer can be kept."""
+        if self._agreed is None or not self._agreed[0].still_holds(now):
+            return None
+        told = self._agreed[1]
+        if find_circle({*told, *problem.instance.before}) is not None:
+            return None
+        return {pair: why for pair, why in told.items() if pair in now.leads or pair[::-1] in now.leads}
+
+    def _ask(self, scenes: Scenes, problem: Problem, conflicts: Iterable[Conflict]) -> Told | None:
+        """Ask the model, and repair what it says; None if there is no answer."""
+        by_urgency = sorted(conflicts, key=lambda c: (c.dttcp + 0.2 * min(c.ttcp), c.ego, c.other))
+        pairs = {f"p{k + 1}": c for k, c in enumerate(by_urgency)}
+        names = Names(problem.instance.entrants)
+        question = self._question(scenes, problem, pairs, names)
+        [answer] = self.chat.ask([question])
+        self.ledger.note(question, answer)
+        if answer.value is None:
+            return None
+        said = first_of_pairs(cast(OrderReply, answer.value), _shown(pairs, names))
+        told: Told = {}
+        for name, (first, reason) in said.items():
+            c = pairs[name]
+            pair = (c.ego, c.other) if first == names(c.ego) else (c.other, c.ego)
+            told[pair] = reason or f"{first} was told to go first"
+        acyclic = _without_circles(told, problem, {frozenset((c.ego, c.other)): c.dttcp for c in pairs.values()})
+        if len(acyclic) < len(pairs):
+            self.ledger.count("repaired_orders")
+        return acyclic
+
+    def _question(self, scenes: Scenes, problem: Problem, pairs: Asked, names: Names) -> Question:
+        shown = _shown(pairs, names)
+        values = negotiation_view(
+            scenes, problem.instance, list(pairs.items()), self.rules.previous, names, self.rules.binding
+        )
+
+        def check(reply: object) -> str:
+            if first_of_pairs(cast(OrderReply, reply), shown):
+                return ""
+            wanted = "; ".join(f"{name}: {one} or {other}" for name, (one, other) in shown.items())
+            return f"no pair was ordered; say who goes first in each pair ({wanted})"
+
+        def shorter() -> Question | None:
+            """Ask about the more urgent half; the rest is decided by the rules."""
+            half = dict(list(pairs.items())[: len(pairs) // 2])
+            return self._question(scenes, problem, half, names) if half else None
+
+        return Question(
+            purpose="negotiate",
+            subject="",
+            messages=self.prompts.messages("negotiate", values),
+            schema=order_reply(shown),
+            check=check,
+            shorter=shorter,
+        )
+
+
+def _most_urgent(problem: Problem, conflicts: Conflicts) -> dict[Pair, Conflict]:
+    """Return the most urgent conflict of each pair of CAVs, seen from the one with the lower id."""
+    entrants = problem.instance.entrants
+    found: dict[Pair, Conflict] = {}
+    for ego in sorted(entrants):
+        for c in conflicts[ego]:
+            if c.other in entrants and (c.other, ego) not in found:
+                found.setdefault((ego, c.other), c)
+    return found
+
+
+def _shown(pairs: Asked, names: Names) -> dict[str, tuple[str, str]]:
+    return {name: (names(c.ego), names(c.other)) for name, c in pairs.items()}
+
+
+def _without_circles(told: Told, problem: Problem, dttcp: Mapping[frozenset[str], float]) -> Told:
+    """Drop the least severe link of every circle, until there is none; what is physically fixed stays."""
+    kept, fixed = dict(told), set(problem.instance.before)
+    while (circle := find_circle({*kept, *fixed})) is not None:
+        links = list(pairwise(circle))
+        ours = [pair for pair in links if pair in kept]
+        if ours:
+            del kept[max(ours, key=lambda pair: (dttcp[frozenset(pair)], pair))]
+        else:
+            # Vehicles that overlap already can be fixed in a circle; that is none of the model's doing.
+            fixed -= set(links)
+    return kept
+
+
+def _decided(order: PassingOrder, asked: Iterable[Pair]) -> Told:
+    """Return what has become of the pairs that were asked about."""
+    wanted = {frozenset(pair) for pair in asked}
+    return {(p.first, p.second): p.reason for p in order.precedences if frozenset((p.first, p.second)) in wanted}

@@ -1,0 +1,90 @@
+"""What a learned driver observes: the road and the others in conflict coordinates, the same wherever it comes from."""
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.road import Turn
+from codriving.datatypes.vehicle import VehicleState
+from codriving.datatypes.world import WorldState
+from codriving.geometry.road_map import RoadMap
+from codriving.methods.learned.beside import Beside
+from codriving.methods.learned.known import Knowledge, Other
+from codriving.methods.learned.layout import FAR, JUNCTION, LANES
+from codriving.methods.learned.slots import Slot, conflict_slots, filled, leader_ahead, leader_slot
+from codriving.reasoning.conflicts import OPEN
+
+Observation: TypeAlias = NDArray[np.float32]
+"""Features (feature_count,), each within -1 and 1."""
+
+TURNS = (Turn.LEFT, Turn.STRAIGHT, Turn.RIGHT)
+
+
+class Features:
+    """Turns a world into what each CAV observes (baseline after Egorov, 2016; features of our own).
+
+    The same object goes through an episode from its beginning, since human drivers' routes are guessed by watching.
+
+    Args:
+        road_map: The precomputed road.
+        model: How CAVs answer to actions: the highest target speed and the detection range are used.
+        family: ``junction`` or ``lanes``.
+        shared: Whether CAVs share states and intents. Otherwise every other vehicle is a stranger, as for methods
+            that drive each CAV on its own.
+    """
+
+    def __init__(self, road_map: RoadMap, model: DrivingModel, family: str, shared: bool) -> None:
+        self._road_map, self._top, self._family = road_map, model.target_speeds[-1], family
+        self._range, self._shared = model.detection_range, shared
+        # Where no two routes have a zone in which the order is open, nobody's route matters.
+        self._meets = family == JUNCTION or _any_open(road_map)
+        self._beside = Beside(road_map, self._top) if family == LANES else None
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin an episode: forget whom one has watched."""
+        self._knowledge = Knowledge(self._road_map, self._range, self._shared, self._meets)
+
+    def observe(self, world: WorldState) -> dict[str, Observation]:
+        """Return what each CAV on the road observes.
+
+        Args:
+            world: The world; call once a decision, in their order.
+
+        Returns:
+            Features (feature_count,) by id of the CAV, each within -1 and 1.
+        """
+        others = self._knowledge.others(world)
+        return {cav.id: self._observation(cav, world, others[cav.id]) for cav in world.cavs}
+
+    def _observation(self, ego: VehicleState, world: WorldState, others: tuple[Other, ...]) -> Observation:
+        intent, top = world.intents[ego.id], self._top
+        if self._beside is None:
+            self._road_map.project_all(intent.route, [(ego.x, ego.y), *((other.x, other.y) for other in others)])
+        place, _ = self._road_map.project(intent.route, ego.x, ego.y)
+        route = self._road_map.routes[intent.route]
+        far = FAR * top
+        numbers = [ego.speed / top, intent.target_speed / top, (route.entry - place) / far, (route.goal - place) / far]
+        numbers += [float(route.turn is turn) for turn in TURNS]
+        numbers.append(1.0)
+        slots: list[Slot] = []
+        if self._meets:
+            rank = self._knowledge.priority(ego)
+            slots += conflict_slots(ego, route.id, place, others, self._road_map, top, rank)
+        beside: list[float] = []
+        if self._beside is None:
+            ahead = leader_ahead(ego, route.id, place, others, self._road_map)
+        else:
+            ahead, beside = self._beside.look(ego, intent, place, others, world.available[ego.id])
+        if ahead is not None:
+            slots.append(leader_slot(*ahead, top))
+        numbers += filled(slots)
+        return np.clip(np.array(numbers + beside, dtype=np.float32), -1.0, 1.0)
+
+
+def _any_open(road_map: RoadMap) -> bool:
+    names = sorted(road_map.routes)
+    pairs = ((one, other) for k, one in enumerate(names) for other in names[k + 1 :])
+    return any(zone.relation in OPEN for pair in pairs for zone in road_map.zones(*pair))

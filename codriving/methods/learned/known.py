@@ -1,0 +1,124 @@
+"""The others as a learned driver knows them: what is shared, or only what its own sensors and the map tell."""
+
+from dataclasses import dataclass
+from math import hypot
+
+from codriving.datatypes.vehicle import Kind, VehicleState
+from codriving.datatypes.world import WorldState
+from codriving.geometry.road_map import RoadMap
+from codriving.reasoning.sharing.detection import Glimpse
+from codriving.reasoning.sharing.tracking import Places, Tracking
+
+FORESIGHT = 1.0
+"""A human driver is expected to go on accelerating or braking for this long [s]."""
+
+EVERYBODY = ""
+"""In whose name the CAVs watch together when they share what they see."""
+
+
+@dataclass(frozen=True, slots=True)
+class Other:
+    """Another vehicle, as far as it is known.
+
+    Attributes:
+        id: Vehicle id.
+        is_cav: Whether it is known to be a CAV.
+        x: Position [m].
+        y: Position [m].
+        speed: Speed [m/s].
+        heading: Heading [rad].
+        target: Speed that it is bound for [m/s]; 0 where nothing is known of it.
+        length: Length [m].
+        places: Each route that it may be on, with its arc length there [m].
+        priority: Rank of its lane by the rules of the road; None where these do not count.
+    """
+
+    id: str
+    is_cav: bool
+    x: float
+    y: float
+    speed: float
+    heading: float
+    target: float
+    length: float
+    places: Places
+    priority: int | None = None
+
+
+class Knowledge:
+    """Watches the others from one decision to the next; nobody reads a human driver's mind.
+
+    Args:
+        road_map: The precomputed road.
+        detection_range: Radius of perception of a CAV [m].
+        shared: Whether CAVs tell one another states and intents. Otherwise a CAV takes everybody for a stranger: it
+            has position, speed and heading within range, and the routes that the map allows.
+        routes: Whether places on routes are needed at all.
+    """
+
+    def __init__(self, road_map: RoadMap, detection_range: float, shared: bool, routes: bool) -> None:
+        self._road_map, self._range, self._shared, self._routes = road_map, detection_range, shared, routes
+        self._tracking = Tracking(road_map)
+
+    def others(self, world: WorldState) -> dict[str, tuple[Other, ...]]:
+        """Return whom each CAV knows of, itself left out.
+
+        Args:
+            world: The world.
+
+        Returns:
+            The others in the order of their ids, by id of the CAV.
+        """
+        self._tracking.begin_step()
+        cavs = world.cavs
+        if not self._shared:
+            return {
+                cav.id: tuple(
+                    self._stranger(cav.id, v)
+                    for v in world.vehicles
+                    if v.id != cav.id and hypot(v.x - cav.x, v.y - cav.y) <= self._range
+                )
+                for cav in cavs
+            }
+        known = [
+            self._partner(v, world) if v.kind is Kind.CAV else self._human(v)
+            for v in world.vehicles
+            if v.kind is Kind.CAV or any(hypot(v.x - c.x, v.y - c.y) <= self._range for c in cavs)
+        ]
+        return {cav.id: tuple(other for other in known if other.id != cav.id) for cav in cavs}
+
+    def priority(self, v: VehicleState) -> int | None:
+        """Return the rank of a vehicle by the rules of the road, which those who share agree to mind.
+
+        Args:
+            v: The vehicle.
+
+        Returns:
+            Priority of its lane; None on roads without such rules, and for those who drive on their own.
+        """
+        return self._road_map.lanes[v.lane].priority if self._shared and self._road_map.road.regulated else None
+
+    def _partner(self, v: VehicleState, world: WorldState) -> Other:
+        """A CAV that has told its route and its target speed."""
+        intent = world.intents[v.id]
+        places: Places = ()
+        if self._routes:
+            s, _ = self._road_map.project(intent.route, v.x, v.y)
+            lane = self._road_map.lane_at(intent.route, s)
+            places = ((intent.route, s), *self._road_map.changes.covered(intent.route, lane, v.x, v.y))
+        return Other(v.id, True, v.x, v.y, v.speed, v.heading, intent.target_speed, v.length, places, self.priority(v))
+
+    def _human(self, v: VehicleState) -> Other:
+        """A human driver whom all CAVs watch together."""
+        target = max(v.speed + FORESIGHT * v.acceleration, 0.0)
+        places = self._watched(EVERYBODY, v)
+        return Other(v.id, False, v.x, v.y, v.speed, v.heading, target, v.length, places, self.priority(v))
+
+    def _stranger(self, ego: str, v: VehicleState) -> Other:
+        return Other(v.id, False, v.x, v.y, v.speed, v.heading, 0.0, v.length, self._watched(ego, v))
+
+    def _watched(self, watcher: str, v: VehicleState) -> Places:
+        if not self._routes:
+            return ()
+        seen = Glimpse(v.id, None, v.x, v.y, v.speed, v.heading, None, None, v.length)
+        return self._tracking.places(watcher, seen, None)

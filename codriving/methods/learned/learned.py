@@ -1,0 +1,179 @@
+"""Methods that have learned: every CAV asks the same trained network, and acts on what it observes."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.road import Road
+from codriving.datatypes.world import WorldState
+from codriving.errors import WeightsError
+from codriving.geometry.road_map import RoadMap
+from codriving.methods.learned.actions import ACTIONS, allowed
+from codriving.methods.learned.features import Features, Observation
+from codriving.methods.learned.layout import family_of, family_of_road, feature_names
+from codriving.methods.learned.network import FloatArray, greedy, shares
+from codriving.methods.learned.weights import Trained, load, shipped
+
+VALUES, PROBABILITIES = "values", "probabilities"
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """One decision step of a learned method.
+
+    Attributes:
+        time: Simulated time [s].
+        step: Number of decisions taken before.
+        family: Family of the road, which says what the numbers mean.
+        routes: Route of each CAV, by id.
+        observations: What each CAV observed, by id.
+        values: What the network says of each action that is allowed, by id.
+        actions: What each CAV decided, by id.
+        counts: Counters of the step.
+        meaning: What the values are, ``values`` or ``probabilities``.
+    """
+
+    time: float
+    step: int
+    family: str
+    routes: Mapping[str, str]
+    observations: Mapping[str, Observation]
+    values: Mapping[str, Mapping[Action, float]]
+    actions: Mapping[str, Action]
+    counts: Mapping[str, float]
+    meaning: str = VALUES
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the step as one JSON-ready line: what each CAV observed, by name, and what is said of each action."""
+        return {
+            "time": self.time,
+            "step": self.step,
+            "cavs": [self._entry(name, action) for name, action in self.actions.items()],
+        }
+
+    def _entry(self, name: str, action: Action) -> dict[str, Any]:
+        values = self.values[name]
+        numbers = zip(feature_names(self.family), self.observations[name].tolist(), strict=True)
+        # Empty slots are all zeros; what is not named is zero.
+        observed = {feature: round(value, 6) for feature, value in numbers if value}
+        return {
+            "id": name,
+            "action": str(action),
+            "reason": REASONS[self.meaning](action, values),
+            "scene": {"intent": {"route": self.routes[name]}},
+            "observed": observed,
+            self.meaning: {str(a): round(value, 6) for a, value in values.items()},
+        }
+
+
+def _expects(action: Action, values: Mapping[Action, float]) -> str:
+    others = [f"{other} {value:.2f}" for other, value in values.items() if other is not action]
+    return f"the network expects the most of {action}: {values[action]:.2f}, against {', '.join(others)}"
+
+
+def _prefers(action: Action, shares: Mapping[Action, float]) -> str:
+    others = [f"{other} {share:.0%}" for other, share in shares.items() if other is not action]
+    return f"the policy prefers {action}: {shares[action]:.0%}, against {', '.join(others)}"
+
+
+REASONS: dict[str, Callable[[Action, Mapping[Action, float]], str]] = {VALUES: _expects, PROBABILITIES: _prefers}
+
+
+class Learned:
+    """Drives with trained weights, those of the family of the road; the best action is taken, and nothing is drawn.
+
+    Attributes:
+        shared: Whether CAVs share states and intents; otherwise each sees the others as strangers.
+        meaning: What the network says of an action, ``values`` or ``probabilities``.
+
+    Args:
+        weights: File of weights of one's own; None takes those that are shipped for the family of the road.
+
+    Raises:
+        WeightsError: If the file is missing, damaged, or not of this method.
+    """
+
+    name: ClassVar[str]
+    shared: ClassVar[bool]
+    meaning: ClassVar[str]
+    reasoner = "none"
+
+    def __init__(self, weights: Path | None) -> None:
+        self._trained: dict[str, Trained] = {}
+        self._own: str | None = None
+        self.variant = ""
+        if weights is not None:
+            trained = load(weights)
+            if trained.purpose.method != self.name:
+                raise WeightsError(f"{weights} holds weights of {trained.purpose.method}, not of {self.name}")
+            self._own, self.variant = trained.purpose.family, "own weights"
+            self._trained[self._own] = trained
+
+    def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
+        """Refuse a road that no weights are for, before anything is driven.
+
+        Args:
+            road: The road.
+            target_speeds: Target speeds of its CAVs [m/s].
+            decision_interval: Time between two decisions [s].
+
+        Raises:
+            WeightsError: If something does not fit.
+        """
+        family = family_of_road(road)
+        self._weights(family).purpose.check(family, target_speeds, decision_interval)
+
+    def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
+        """Begin an episode; nothing is remembered from the one before.
+
+        Args:
+            road_map: The precomputed road.
+            model: How CAVs answer to actions.
+            seed: Seed of the episode; nothing is drawn.
+
+        Raises:
+            WeightsError: If no weights are for this road.
+        """
+        self._family = family_of(road_map)
+        trained = self._weights(self._family)
+        trained.purpose.check(self._family, model.target_speeds, model.decision_interval)
+        self._network = trained.network
+        self._features = Features(road_map, model, self._family, self.shared)
+
+    def act(self, world: WorldState) -> Judged:
+        """Decide for every CAV on the road.
+
+        Args:
+            world: The world.
+        """
+        observations = self._features.observe(world)
+        outputs = ACTIONS[self._family]
+        masks = np.array([allowed(self._family, world.available[name]) for name in observations])
+        chosen: list[int] = []
+        judged: FloatArray = np.empty((0, len(outputs)), np.float32)
+        if observations:
+            judged = self._network(np.stack(list(observations.values())))
+            chosen = greedy(judged, masks)
+        if self.meaning == PROBABILITIES:
+            judged = shares(judged, masks)
+        values = {
+            name: {a: float(q) for a, q, ok in zip(outputs, row, mask, strict=True) if ok}
+            for name, row, mask in zip(observations, judged, masks, strict=True)
+        }
+        actions = {name: outputs[k] for name, k in zip(observations, chosen, strict=True)}
+        routes = {name: world.intents[name].route for name in observations}
+        return Judged(world.time, world.step, self._family, routes, observations, values, actions, {}, self.meaning)
+
+    def _weights(self, family: str) -> Trained:
+        if family not in self._trained:
+            if self._own is not None:
+                raise WeightsError(
+                    f"the weights that were given are for roads of the family {self._own}, this road is one of {family}"
+                )
+            self._trained[family] = load(shipped(self.name, family))
+        return self._trained[family]

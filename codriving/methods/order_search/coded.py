@@ -1,0 +1,189 @@
+"""An instance in numbers: what a search that tries hundreds of orders needs, without any look-up by name."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import inf, isfinite
+
+from codriving.datatypes.ordering_problem import Instance
+from codriving.reasoning.ordering.objective import LONGEST_WAIT, Objective, left
+from codriving.reasoning.ordering.schedule import after_windows
+from codriving.reasoning.ordering.windows import joined
+
+
+@dataclass(slots=True)
+class Prefix:
+    """The first vehicles of an order, scheduled. It knows all that the rest of the order depends on.
+
+    Attributes:
+        order: Who has been placed, first to last.
+        waiting: Who has not.
+        mask: Those who wait, as bits.
+        earliest: When each vehicle can pass at the earliest after those placed, by number [s].
+        delay: Weighted delay of those placed [s].
+        finish: When the last of those placed has left its zones [s].
+    """
+
+    order: list[int]
+    waiting: list[int]
+    mask: int
+    earliest: list[float]
+    delay: float
+    finish: float
+
+    def copy(self) -> "Prefix":
+        """Return the same prefix, to be extended on its own."""
+        return Prefix(self.order[:], self.waiting[:], self.mask, self.earliest[:], self.delay, self.finish)
+
+
+class Coded:
+    """An instance with its objective; vehicles are numbered by id.
+
+    Attributes:
+        names: Ids, by number.
+        eta: Earliest arrival, by number [s].
+
+    Args:
+        instance: The problem.
+        objective: What a good order is.
+    """
+
+    def __init__(self, instance: Instance, objective: Objective) -> None:
+        self.names = sorted(instance.entrants)
+        self._number = {name: k for k, name in enumerate(self.names)}
+        self._entrants = [instance.entrants[name] for name in self.names]
+        self.eta = [e.eta for e in self._entrants]
+        self._base = [e.eta if isfinite(e.eta) else 0.0 for e in self._entrants]
+        self._weights = [objective.weight(e.id) if isfinite(e.eta) else 0.0 for e in self._entrants]
+        self._windows = [joined(e.windows, e.eta) for e in self._entrants]
+        self._share = objective.evacuation_weight
+        self._held = [0] * len(self.names)
+        self._followers: list[list[tuple[int, float]]] = [[] for _ in self.names]
+        for first, second in instance.before:
+            if first in self._number and second in self._number:
+                self._held[self._number[second]] |= 1 << self._number[first]
+        for (first, second), apart in instance.separation.items():
+            if first in self._number and second in self._number:
+                self._followers[self._number[first]].append((self._number[second], apart))
+
+    def root(self) -> Prefix:
+        """Return the prefix of nobody."""
+        everybody = range(len(self.names))
+        finish = max((left(e, e.eta) for e in self._entrants), default=0.0)
+        return Prefix([], list(everybody), (1 << len(self.names)) - 1, list(self.eta), 0.0, finish)
+
+    def candidates(self, prefix: Prefix) -> list[int]:
+        """Return who can be next: those who need not let anybody go who waits, and everybody if there are none.
+
+        Args:
+            prefix: Who has been placed.
+        """
+        held, mask = self._held, prefix.mask
+        return [k for k in prefix.waiting if not held[k] & mask] or prefix.waiting[:]
+
+    def start(self, prefix: Prefix, number: int) -> float:
+        """Return when a vehicle can pass at the earliest after those placed [s].
+
+        Args:
+            prefix: Who has been placed.
+            number: The vehicle.
+        """
+        windows = self._windows[number]
+        return after_windows(prefix.earliest[number], windows) if windows else prefix.earliest[number]
+
+    def place(self, prefix: Prefix, number: int) -> None:
+        """Let a vehicle be the next one of an order.
+
+        Args:
+            prefix: Who has been placed; changed.
+            number: The vehicle.
+        """
+        earliest = prefix.earliest
+        time = self.start(prefix, number)
+        prefix.order.append(number)
+        prefix.waiting.remove(number)
+        prefix.mask ^= 1 << number
+        late = time - self._base[number]
+        prefix.delay += self._weights[number] * (late if late < LONGEST_WAIT else LONGEST_WAIT)
+        if self._share:
+            prefix.finish = max(prefix.finish, left(self._entrants[number], time))
+        for other, apart in self._followers[number]:
+            if time + apart > earliest[other]:
+                earliest[other] = time + apart
+
+    def complete(self, prefix: Prefix, heuristic: float, draw: Callable[[], float]) -> tuple[Prefix, list[int]]:
+        """Complete an order by chance and rule of thumb; most of the time of a search is spent here.
+
+        Args:
+            prefix: Who has been placed.
+            heuristic: Share of the choices in which whoever can pass first goes next; of equals, who arrives first.
+            draw: Returns a random number from 0 to 1.
+
+        Returns:
+            The whole order, and who was chosen where there was a choice.
+        """
+        held, followers, windows, eta = self._held, self._followers, self._windows, self.eta
+        base, weights, share = self._base, self._weights, self._share
+        earliest, order, waiting, mask = prefix.earliest[:], prefix.order[:], prefix.waiting[:], prefix.mask
+        delay, finish, chosen = prefix.delay, prefix.finish, []
+        while waiting:
+            options = [k for k in waiting if not held[k] & mask] or waiting
+            number = options[0]
+            if len(options) > 1:
+                if draw() < heuristic:
+                    first = inf
+                    for k in options:
+                        time = after_windows(earliest[k], windows[k]) if windows[k] else earliest[k]
+                        if time < first or (time == first and eta[k] < eta[number]):
+                            number, first = k, time
+                else:
+                    number = options[int(draw() * len(options))]
+                chosen.append(number)
+            time = after_windows(earliest[number], windows[number]) if windows[number] else earliest[number]
+            order.append(number)
+            waiting.remove(number)
+            mask ^= 1 << number
+            late = time - base[number]
+            if late > 0:
+                delay += weights[number] * (late if late < LONGEST_WAIT else LONGEST_WAIT)
+            if share:
+                finish = max(finish, left(self._entrants[number], time))
+            for other, apart in followers[number]:
+                if time + apart > earliest[other]:
+                    earliest[other] = time + apart
+        return Prefix(order, waiting, mask, earliest, delay, finish), chosen
+
+    def cost(self, prefix: Prefix) -> float:
+        """Return J of those placed [s]; it only grows as the order does.
+
+        Args:
+            prefix: Who has been placed.
+        """
+        return prefix.delay + self._share * prefix.finish if self._share else prefix.delay
+
+    def bound(self, prefix: Prefix) -> float:
+        """Return what J of any order that begins so is at least [s].
+
+        Args:
+            prefix: Who has been placed.
+        """
+        base, weights, earliest = self._base, self._weights, prefix.earliest
+        return self.cost(prefix) + sum([weights[k] * min(earliest[k] - base[k], LONGEST_WAIT) for k in prefix.waiting])
+
+    def run(self, order: Sequence[str]) -> Prefix:
+        """Schedule a whole order.
+
+        Args:
+            order: Ids of everybody, first to last.
+        """
+        prefix = self.root()
+        for name in order:
+            self.place(prefix, self._number[name])
+        return prefix
+
+    def named(self, order: Sequence[int]) -> list[str]:
+        """Return the ids of an order.
+
+        Args:
+            order: Numbers, first to last.
+        """
+        return [self.names[k] for k in order]

@@ -1,0 +1,150 @@
+"""A careful driver: the fastest action that keeps its distance and meets nobody if all go on as they do now."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.order import Precedence
+from codriving.errors import ConfigError
+from codriving.methods.single_vehicle.encounters import Encounter, encounters
+from codriving.methods.single_vehicle.lane_choice import LaneChoice
+from codriving.methods.single_vehicle.leaders import leaders
+from codriving.methods.single_vehicle.protocol import Choice, View
+from codriving.reasoning.prediction.idm import IntelligentDriver
+from codriving.reasoning.prediction.rollout import rollout
+
+Array = NDArray[np.float64]
+
+PREFERRED = (Action.FASTER, Action.IDLE, Action.SLOWER)
+"""The actions in the order in which they are tried."""
+
+LIMITS = {"look": (0.5, 10.0), "headway": (0.0, 5.0), "standstill": (0.0, 20.0), "margin": (0.0, 5.0)}
+"""Least and largest value of each setting."""
+
+SLOW = 0.1
+"""Whoever is slower is taken to be so fast, so that times stay finite [m/s]."""
+
+FIRM = 4.0
+"""Braking beyond which nobody is expected to wait any more [m/s2]."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Motion:
+    """What an action that is held leads to.
+
+    Attributes:
+        times: Times from now (k,) [s].
+        travelled: Distance travelled (k,) [m].
+        speeds: Speed (k,) [m/s].
+    """
+
+    times: Array
+    travelled: Array
+    speeds: Array
+
+    def until(self, distance: float) -> float:
+        """Return when a distance has been covered, at the last speed beyond the horizon [s]; inf if never."""
+        if distance <= 0:
+            return 0.0
+        if self.travelled[-1] >= distance:
+            return float(np.interp(distance, self.travelled, self.times))
+        last = float(self.speeds[-1])
+        return float(self.times[-1]) + (distance - float(self.travelled[-1])) / last if last > 0.1 else float("inf")
+
+
+class Careful:
+    """Tries FASTER, IDLE and SLOWER in this order, each held for a while, and takes the first that is free of danger.
+
+    It is the rule that stands in for a language model where none is asked: it teaches TeLL (Xu et al., 2025), whose
+    own rules are not published. Lanes are changed as by the other drivers on their own.
+
+    Args:
+        look: How long an action is held and watched [s].
+        headway: Time gap to be kept to whoever drives ahead [s].
+        standstill: Distance to be kept to it at a standstill [m].
+        margin: Time between one vehicle's leaving a zone and the other's entering it [s].
+        lanes: Chooses lanes.
+
+    Raises:
+        ConfigError: If a setting is out of range.
+    """
+
+    name = "careful"
+    variant = ""
+
+    def __init__(self, look: float, headway: float, standstill: float, margin: float, lanes: LaneChoice) -> None:
+        for key, value in (("look", look), ("headway", headway), ("standstill", standstill), ("margin", margin)):
+            low, high = LIMITS[key]
+            if not low <= value <= high:
+                raise ConfigError(f"{key} must be {low:g} to {high:g}, got {value:g}")
+        self.look, self.headway, self.standstill, self.margin, self.lanes = look, headway, standstill, margin, lanes
+        self._idm = IntelligentDriver(gap=standstill, headway=headway)
+
+    def reset(self) -> None:
+        """Begin an episode; nothing is remembered from the one before."""
+        self.lanes.reset()
+
+    def decide(self, view: View) -> Choice:
+        """Decide for one CAV.
+
+        Args:
+            view: What it sees.
+        """
+        change, refused = self.lanes.choose(view, self._idm)
+        if change is not None:
+            return Choice(change.action, change.reason, (), refused)
+        found: dict[Action, tuple[float, str, tuple[Precedence, ...]]] = {}
+        for action in PREFERRED:
+            danger, why, order = found[action] = self._danger(view, action)
+            if not why:
+                return Choice(action, "nothing is in the way of it", order, refused)
+            refused[action] = f"{why} in {danger:.1f} s"
+        # Nothing is free of danger: put it off for as long as possible, and of two that are alike take the slower one.
+        latest = max(danger for danger, _, _ in found.values())
+        action = next(a for a in reversed(PREFERRED) if found[a][0] >= latest - 0.1)
+        del refused[action]
+        return Choice(action, f"{found[action][1]} whatever it does", found[action][2], refused, {"cornered": 1})
+
+    def _danger(self, view: View, action: Action) -> tuple[float, str, tuple[Precedence, ...]]:
+        """When an action becomes dangerous [s], why (nothing if it does not), and who would go first."""
+        motion = self._motion(view, action)
+        dangers: list[tuple[float, str]] = []
+        for ahead in leaders(view.scene, view.road_map):
+            gap = ahead.gap + ahead.speed * motion.times - motion.travelled
+            close = gap < self.standstill + self.headway * motion.speeds
+            if close.any():
+                dangers.append((float(motion.times[int(close.argmax())]), f"it comes too close to {ahead.id}"))
+        order: dict[str, Precedence] = {}
+        for e in encounters(view, float(view.forecast.reach(view.scene.ego.speed, True).least[-1]), FIRM):
+            own = motion.until(e.own_way), motion.until(e.conflict.exits[0])
+            entry = e.its_way / max(e.other.speed, SLOW)
+            first = own[0] <= entry
+            names = (view.scene.ego.id, e.conflict.other) if first else (e.conflict.other, view.scene.ego.id)
+            order.setdefault(e.conflict.other, Precedence(*names, "if both go on like this"))
+            # Whoever is not there within the look can decide anew.
+            if own[0] <= self.look and self._meets(e, own):
+                dangers.append((max(own[0], entry), f"it meets {e.conflict.other} where the ways cross"))
+        at, why = min(dangers, default=(float("inf"), ""))
+        return at, why, tuple(order.values())
+
+    def _meets(self, e: Encounter, own: tuple[float, float]) -> bool:
+        """Whether both are in a zone at once, or too soon one after the other, if the other one keeps its speed."""
+        if e.inside:
+            # Whoever is in the zone can only get out of it; who is ahead there does so first.
+            ahead = e.zone.point_i - e.conflict.places[0] <= e.zone.point_j - e.conflict.places[1]
+            return e.other_inside and not ahead and not e.merges()
+        its = e.its_way / max(e.other.speed, SLOW), e.conflict.exits[1] / max(e.other.speed, SLOW)
+        if e.merges():
+            # Both go on together, so that being ahead is enough; who stands there waits, or is met as a leader.
+            if e.other_inside and e.other.standing > 0:
+                return False
+            return abs(own[0] - max(its[0], 0.0)) < self.headway
+        return own[0] < its[1] + self.margin and its[0] < own[1] + self.margin
+
+    def _motion(self, view: View, action: Action) -> _Motion:
+        model, scene = view.forecast.model, view.scene
+        steps = round(self.look / model.step)
+        travelled, speeds = rollout(model, [scene.ego.speed], [scene.intent.target_speed], ((action,),), steps)
+        return _Motion(np.arange(steps + 1, dtype=np.float64) * model.step, travelled[0, 0], speeds[0, 0])

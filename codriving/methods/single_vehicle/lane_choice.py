@@ -1,0 +1,247 @@
+"""Which lane to be on: where the route asks for a change, and where MOBIL says that it pays."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.road import LaneId
+from codriving.datatypes.scene_description import Neighbour, Role, SceneDescription
+from codriving.errors import ConfigError
+from codriving.methods.single_vehicle.protocol import View
+from codriving.reasoning.prediction.idm import IntelligentDriver
+from codriving.reasoning.safety.beside import SIDES
+from codriving.reasoning.sharing.scenes import with_roles
+
+SLOWEST = 3.0
+"""Below this speed lanes are not changed just to get farther, since both would be blocked [m/s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A lane change that is safe and wanted.
+
+    Attributes:
+        action: LANE_LEFT or LANE_RIGHT.
+        reason: Why, in one sentence.
+        gain: What it is worth [m/s2].
+    """
+
+    action: Action
+    reason: str
+    gain: float
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """The lane beside, as seen from there.
+
+    Attributes:
+        lane: The lane.
+        ahead: Whoever would be next ahead there.
+        behind: Whoever would be next behind there.
+        far: Id of somebody two lanes away who might change onto the same lane, or nothing.
+    """
+
+    lane: LaneId
+    ahead: Neighbour | None
+    behind: Neighbour | None
+    far: str
+
+
+LetsIn = Callable[[View, Side, IntelligentDriver], str]
+"""Says why a change in front of the new follower is refused; nothing if it is not."""
+
+
+class LaneChoice:
+    """Changes lanes by MOBIL (Kesting, Treiber and Helbing, 2007), and where the route asks for it.
+
+    Args:
+        politeness: Weight of what those behind gain or lose, 0 to 1.
+        threshold: Gain below which nobody changes lanes [m/s2].
+        safe_braking: Hardest braking asked of oneself and of the new follower [m/s2].
+        least_gap: Smallest free distance to either neighbour on the new lane [m].
+        alongside: Distance along the road within which somebody two lanes away could change to the same lane [m].
+        cool_down: Time between two lane changes [s].
+
+    Raises:
+        ConfigError: If a setting is out of range.
+    """
+
+    def __init__(
+        self,
+        politeness: float,
+        threshold: float,
+        safe_braking: float,
+        least_gap: float,
+        alongside: float,
+        cool_down: float,
+    ) -> None:
+        for key, value, most in (
+            ("politeness", politeness, 1),
+            ("threshold", threshold, 5),
+            ("safe_braking", safe_braking, 10),
+            ("least_gap", least_gap, 50),
+            ("alongside", alongside, 50),
+            ("cool_down", cool_down, 60),
+        ):
+            if not 0 <= value <= most:
+                raise ConfigError(f"{key} must be 0 to {most}, got {value:g}")
+        self.politeness, self.threshold, self.safe_braking = politeness, threshold, safe_braking
+        self.least_gap, self.alongside, self.cool_down = least_gap, alongside, cool_down
+        self._changed: dict[str, float] = {}
+
+    def reset(self) -> None:
+        """Begin an episode; nobody has changed lanes yet."""
+        self._changed.clear()
+
+    def choose(
+        self, view: View, idm: IntelligentDriver, lets_in: LetsIn | None = None
+    ) -> tuple[Change | None, dict[Action, str]]:
+        """Return the lane change that is worth most, and why others are left out.
+
+        Args:
+            view: What the vehicle sees.
+            idm: How it, and as far as it knows everybody else, follows.
+            lets_in: Says why a change in front of the new follower is refused; by default for its braking.
+        """
+        refused: dict[Action, str] = {}
+        options = []
+        for action in (a for a in SIDES if a in view.actions):
+            said = self._idle(view, action)
+            side = None if said else look(view, action, self.alongside)
+            if side is None:
+                refused[action] = said or "the lane does not lead where the vehicle goes"
+                continue
+            must = view.scene.must_change is not None
+            gain = self.gain(view, side, idm)
+            if not must and gain <= self.threshold:
+                refused[action] = f"MOBIL: it gains {gain:.1f} m/s2, less than {self.threshold:g}"
+                continue
+            unsafe = self.unsafe(view, side, idm, must) or (lets_in or self.braked_for)(view, side, idm)
+            if unsafe:
+                refused[action] = unsafe
+            elif must:
+                options.append(Change(action, "the route asks for the lane change, and the gap is large enough", gain))
+            else:
+                options.append(Change(action, f"MOBIL: the lane change gains {gain:.1f} m/s2", gain))
+        if not options:
+            return None, refused
+        best = max(options, key=lambda change: (change.gain, change.action is Action.LANE_LEFT))
+        refused.update({o.action: "the other side is better" for o in options if o is not best})
+        self._changed[view.scene.ego.id] = view.time
+        return best, refused
+
+    def _idle(self, view: View, action: Action) -> str:
+        """Why a lane change is not looked at."""
+        scene = view.scene
+        if scene.must_change is not None:
+            asked = scene.ego.lane[2] + SIDES[action] == scene.must_change.lane[2]
+            return "" if asked else "the route asks for the other side"
+        if scene.covers:
+            return "a lane change is under way"
+        if scene.ego.speed < SLOWEST:
+            return "too slow to change lanes just to get farther"
+        if view.time - self._changed.get(scene.ego.id, -self.cool_down) < self.cool_down:
+            return "lanes have just been changed"
+        return ""
+
+    def unsafe(self, view: View, side: Side, idm: IntelligentDriver, must: bool) -> str:
+        """Say why a lane change is not safe, whatever the new follower does; nothing if it is.
+
+        Args:
+            view: What the vehicle sees.
+            side: The lane beside.
+            idm: How everybody follows.
+            must: Whether the route asks for it.
+        """
+        if side.far and not must:
+            return f"{side.far} is alongside on the other side and might change there, too"
+        ahead, behind = side.ahead, side.behind
+        if ahead is not None and ahead.gap is not None:
+            braking = -idm.accelerate(view.scene.ego.speed, view.top, ahead.gap, ahead.speed)
+            if ahead.gap < self.least_gap or braking > self.safe_braking:
+                return f"{ahead.id} is {max(ahead.gap, 0.0):.0f} m ahead there"
+        if behind is not None and behind.gap is not None and behind.gap < self.least_gap:
+            return f"{behind.id} is {max(behind.gap, 0.0):.0f} m behind there"
+        return ""
+
+    def braked_for(self, view: View, side: Side, idm: IntelligentDriver) -> str:
+        """Say that the new follower would have to brake too hard, if it would.
+
+        Args:
+            view: What the vehicle sees.
+            side: The lane beside.
+            idm: How everybody follows.
+        """
+        behind = side.behind
+        if behind is None or behind.gap is None:
+            return ""
+        braking = -idm.accelerate(behind.speed, view.top, behind.gap, view.scene.ego.speed)
+        return f"{behind.id} behind would have to brake at {braking:.1f} m/s2" if braking > self.safe_braking else ""
+
+    def gain(self, view: View, side: Side, idm: IntelligentDriver) -> float:
+        """Return MOBIL's incentive: what the vehicle gains, and politely what those behind it do [m/s2].
+
+        Args:
+            view: What the vehicle sees.
+            side: The lane beside.
+            idm: How everybody follows.
+        """
+        scene, top = view.scene, view.top
+        speed, bodies = scene.ego.speed, scene.ego.length
+        here_ahead, here_behind = role(scene, Role.LEADING), role(scene, Role.REARING)
+        own = _follow(idm, speed, top, side.ahead) - _follow(idm, speed, top, here_ahead)
+        others = 0.0
+        if side.behind is not None and side.behind.gap is not None:
+            free = None if side.ahead is None else (side.ahead.gap or 0.0) + side.behind.gap + bodies
+            before = idm.accelerate(side.behind.speed, top, free, side.ahead.speed if side.ahead else 0.0)
+            others += idm.accelerate(side.behind.speed, top, side.behind.gap, speed) - before
+        if here_behind is not None and here_behind.gap is not None:
+            free = None if here_ahead is None else (here_ahead.gap or 0.0) + here_behind.gap + bodies
+            after = idm.accelerate(here_behind.speed, top, free, here_ahead.speed if here_ahead else 0.0)
+            others += after - idm.accelerate(here_behind.speed, top, here_behind.gap, speed)
+        return own + self.politeness * others
+
+
+def look(view: View, action: Action, alongside: float) -> Side | None:
+    """Return the lane beside; None if no route along it leads where the vehicle goes.
+
+    Args:
+        view: What the vehicle sees.
+        action: LANE_LEFT or LANE_RIGHT.
+        alongside: Distance along the road within which somebody two lanes away counts [m].
+    """
+    scene, changes = view.scene, view.road_map.changes
+    start, end, index = scene.intent.target_lane
+    lane = (start, end, index + SIDES[action])
+    routes = {side: name for name, side in changes.routes_beside(scene.intent.route, scene.intent.target_lane)}
+    if lane not in routes:
+        return None
+    route = routes[lane]
+    place, _ = view.road_map.project(route, scene.ego.x, scene.ego.y)
+    there = replace(scene, neighbours=with_roles(scene.neighbours, scene.ego, route, place, view.road_map))
+    beyond = (start, end, index + 2 * SIDES[action])
+    far = next((name for name, side in changes.routes_beside(route, lane) if side == beyond), None)
+    near = ""
+    if far is not None:
+        for n in scene.neighbours:
+            if any(way == far and abs(at - place) < alongside for way, at in n.routes):
+                near = n.id
+                break
+    return Side(lane, role(there, Role.LEADING), role(there, Role.REARING), near)
+
+
+def role(scene: SceneDescription, wanted: Role) -> Neighbour | None:
+    """Return who drives next ahead or behind.
+
+    Args:
+        scene: What the vehicle sees.
+        wanted: Which of the two.
+    """
+    return next((n for n in scene.neighbours if n.role is wanted), None)
+
+
+def _follow(idm: IntelligentDriver, speed: float, top: float, ahead: Neighbour | None) -> float:
+    if ahead is None or ahead.gap is None:
+        return idm.accelerate(speed, top)
+    return idm.accelerate(speed, top, ahead.gap, ahead.speed)

@@ -1,0 +1,25 @@
+"""Who passes first: orders, the schedules that follow from them, and the rules that choose one.
+
+What a rule of one's own needs is here by name; see docs/methods/README.md.
+"""
+
+from codriving.datatypes.ordering_problem import Entrant, Instance
+from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering, OrderRule
+from codriving.reasoning.ordering.request import Request, best_subset, in_order
+from codriving.reasoning.ordering.schedule import evacuation_time, repaired, schedule, total_delay
+
+__all__ = [
+    "Entrant",
+    "Instance",
+    "JointPlan",
+    "JointPlanner",
+    "OrderRule",
+    "Ordering",
+    "Request",
+    "best_subset",
+    "evacuation_time",
+    "in_order",
+    "repaired",
+    "schedule",
+    "total_delay",
+]

@@ -1,5 +1,0 @@
-"""Pictures of an episode: a frame at any moment, a film of the whole, and a live view of a world."""
-
-from codriving.pictures.live import LivePicture
-
-__all__ = ["LivePicture"]

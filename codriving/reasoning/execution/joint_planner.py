@@ -1,0 +1,227 @@
+"""Plans everybody one after another in an order; what two plans mean for one another is worked out once."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.reasoning.conflicts import is_open
+from codriving.reasoning.execution.humans import minds_humans
+from codriving.reasoning.execution.meeting import Meeting
+from codriving.reasoning.execution.planning_order import cavs, drives_ahead, planning_order
+from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.execution.violations import SIZES, Array, Steps, first_true
+from codriving.reasoning.ordering.protocol import JointPlan
+from codriving.reasoning.prediction.expectation import CLEARS, is_behind, worth
+from codriving.reasoning.prediction.plans import PLANS
+from codriving.reasoning.prediction.rollout import Plan
+from codriving.reasoning.safety.outlook import then_stop
+from codriving.reasoning.safety.same_lane import LANE_END_GAP
+
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """What everybody does in one order.
+
+    Attributes:
+        chosen: Index of each CAV's plan, by id, in the order of planning.
+        works: Which plans of each CAV would have worked (plans,), by id.
+        stuck: Those of whom no plan works; they do what works for longest.
+    """
+
+    chosen: Mapping[str, int]
+    works: Mapping[str, Flags]
+    stuck: tuple[str, ...]
+
+
+class JointPlans:
+    """The plans of one moment.
+
+    Args:
+        stage: The moment.
+        before: What each CAV planned a step ago and has not yet done, by id; it is a plan of its own.
+        margin: Time between one vehicle's leaving a zone and the next one's entering it [s].
+        pad: Additional room along the route [m].
+        headway: Time gap to whoever drives ahead [s].
+
+    Attributes:
+        stage: The moment.
+        vehicles: All CAVs as movers, by id.
+        travels: Distance of each plan over time, by id (plans, steps + 1) [m].
+        gains: What each plan is worth, by id (plans,) [m].
+    """
+
+    def __init__(self, stage: Stage, before: Mapping[str, Plan], margin: float, pad: float, headway: float) -> None:
+        self.stage, self.pad = stage, pad
+        self.vehicles = cavs(stage)
+        sample = stage.forecast.sample
+        self._lag, self._following = round(margin / sample), round(min(margin, headway) / sample)
+        self._continued = {name: before[name] for name in self.vehicles if name in before}
+        self._ahead = drives_ahead(stage, self.vehicles)
+        own = self._continuations()
+        self.travels: dict[str, Array] = {}
+        self._alone: dict[str, Steps] = {}
+        for v in self.vehicles.values():
+            travels = stage.forecast.travel(v.speed, v.target, PLANS)
+            self.travels[v.id] = np.concatenate([travels, own[v.id]]) if v.id in own else travels
+        self.gains = {name: worth(travels) for name, travels in self.travels.items()}
+        self._met: dict[tuple[str, str], list[Meeting]] = {}
+        self._pairs: dict[tuple[str, int, str], Steps] = {}
+        self._joint: dict[tuple[tuple[str, ...], tuple[tuple[str, float], ...]], Joint] = {}
+
+    def _continuations(self) -> dict[str, Array]:
+        """Predict what everybody planned a step ago (1, steps + 1)."""
+        names = list(self._continued)
+        if not names:
+            return {}
+        movers = [self.vehicles[name] for name in names]
+        states, plans = [(v.speed, v.target) for v in movers], [self._continued[name] for name in names]
+        return dict(zip(names, self.stage.forecast.travel_each(states, plans)[:, None], strict=True))
+
+    def plan_of(self, name: str, k: int) -> Plan:
+        """Return a plan of a CAV.
+
+        Args:
+            name: Id of the CAV.
+            k: Index of the plan.
+        """
+        return PLANS[k] if k < len(PLANS) else self._continued[name]
+
+    def joint(self, sequence: Sequence[str], not_before: Mapping[str, float] | None = None) -> Joint:
+        """Plan everybody.
+
+        Args:
+            sequence: The passing order of those who have a conflict ahead.
+            not_before: Earliest time at which some may reach their first zone, by id [s].
+        """
+        order = tuple(planning_order(sequence, self.vehicles, self._ahead))
+        held = tuple(sorted((not_before or {}).items()))
+        if (order, held) not in self._joint:
+            self._joint[order, held] = self._plan(order, dict(held))
+        return self._joint[order, held]
+
+    def _plan(self, order: Sequence[str], held: Mapping[str, float]) -> Joint:
+        chosen: dict[str, int] = {}
+        works: dict[str, Flags] = {}
+        stuck = []
+        for name in order:
+            steps = self._violations_alone(name)
+            if name in held:
+                steps = np.minimum(steps, self._too_early(name, held[name]))
+            for other, k in chosen.items():
+                against = self._against(other, k, name)
+                if against is not None:
+                    steps = np.minimum(steps, against)
+            works[name] = steps >= self.travels[name].shape[1]
+            if works[name].any():
+                chosen[name] = int(np.argmax(np.where(works[name], self.gains[name], -np.inf)))
+            else:
+                stuck.append(name)
+                # Of those that keep clear for longest the one that stops soonest.
+                latest = steps == steps.max()
+                chosen[name] = int(np.argmin(np.where(latest, self.travels[name][:, -1], np.inf)))
+        return Joint(chosen, works, tuple(stuck))
+
+    def _too_early(self, name: str, time: float) -> Steps:
+        """When each plan reaches the first zone, if that is before the method allows it."""
+        distance = min((c.distances[0] for c in self.stage.conflicts[name]), default=0.0)
+        travels = self.travels[name]
+        if distance <= 0:
+            return np.full(len(travels), travels.shape[1])
+        return first_true((travels >= distance) & (self.stage.forecast.times < time))
+
+    def _violations_alone(self, name: str) -> Steps:
+        """When each plan first comes too close to a human driver, or cannot stop before the lane ends any more."""
+        if name not in self._alone:
+            v, travels = self.vehicles[name], self.travels[name]
+            steps = minds_humans(self.stage, v, travels, self._lag, self._following, self.pad)
+            change = self.stage.scenes[name].must_change
+            if change is not None:
+                firsts = [self.plan_of(name, k)[0] for k in range(len(travels))]
+                kinds = sorted(set(firsts))
+                stops = self.stage.forecast.travel(v.speed, v.target, [then_stop(a) for a in kinds])[:, -1]
+                too_far = {a: stop > change.room - LANE_END_GAP for a, stop in zip(kinds, stops, strict=True)}
+                steps = np.where([too_far[a] for a in firsts], 0, steps)
+            self._alone[name] = steps
+        return self._alone[name]
+
+    def _against(self, first: str, k: int, second: str) -> Steps | None:
+        """When each plan of a vehicle first comes too close to another one that has been planned before it."""
+        meetings = self._meetings(first, second)
+        if not meetings:
+            return None
+        key = (first, k, second)
+        if key not in self._pairs:
+            n = self.travels[second].shape[1]
+            found: Steps = np.full(len(self.travels[second]), n)
+            for meeting in meetings:
+                found = np.minimum(found, meeting.steps(self.travels[second], self.travels[first][k]))
+            self._pairs[key] = found
+        return self._pairs[key]
+
+    def _meetings(self, first: str, second: str) -> list[Meeting]:
+        """Where one CAV has to mind another one that has been planned before it."""
+        if (first, second) not in self._met:
+            found = []
+            short = round(CLEARS / self.stage.forecast.sample) + 1
+            n = self.stage.forecast.steps + 1
+            for r, (route, place) in enumerate(self.vehicles[second].routes):
+                for way, there in self.vehicles[first].routes:
+                    for zone in self.stage.road_map.zones(route, way):
+                        if is_behind(zone, place, there):
+                            until = n if r == 0 else short
+                            found.append(Meeting((zone,), place, there, until, self._following, 0.0))
+                        elif r == 0 and is_open(zone, place, there):
+                            smaller = tuple(self.stage.road_map.zones(route, way, size) for size in SIZES[1:])
+                            found.append(Meeting((zone,), place, there, n, self._lag, self.pad, smaller))
+            self._met[first, second] = found
+        return self._met[first, second]
+
+    def shares_zone(self, first: str, second: str) -> bool:
+        """Whether one CAV has to mind another one that goes before it.
+
+        Args:
+            first: Id of the one that goes first.
+            second: Id of the other.
+        """
+        return bool(self._meetings(first, second))
+
+    def plan(self, order: Sequence[str]) -> JointPlan:
+        """Return what everybody would do.
+
+        Args:
+            order: Ids of all entrants, first to last.
+        """
+        joint = self.joint(order)
+        travels = {name: self.travels[name][k] for name, k in joint.chosen.items()}
+        return JointPlan(not joint.stuck, travels, self.stage.forecast.sample, len(joint.stuck))
+
+    def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
+        """Return the least time between one vehicle's leaving a shared zone and the other's entering it.
+
+        Args:
+            plan: What everybody does.
+            one: A vehicle.
+            other: Another one.
+
+        Returns:
+            Time [s]; inf if they share no zone or one of them does not come there within the horizon.
+        """
+        least = float("inf")
+        (route, place), (way, there) = self.vehicles[one].routes[0], self.vehicles[other].routes[0]
+        for zone in self.stage.road_map.zones(route, way):
+            if not is_open(zone, place, there):
+                continue
+            time = self.stage.forecast.time_to
+            mine, theirs = plan.travels[one], plan.travels[other]
+            gaps = (
+                time(zone.entry_j - there, theirs) - time(zone.exit_i - place, mine),
+                time(zone.entry_i - place, mine) - time(zone.exit_j - there, theirs),
+            )
+            finite = [gap for gap in gaps if np.isfinite(gap)]
+            if finite:
+                least = min(least, max(finite))
+        return least

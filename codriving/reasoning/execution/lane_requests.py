@@ -1,0 +1,177 @@
+"""Which CAVs ask for a lane change: where the route asks for it, and where MOBIL's incentive says that it pays."""
+
+from collections.abc import Mapping
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.scene_description import Neighbour, Role, SceneDescription
+from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.ordering.problem import Scenes
+from codriving.reasoning.ordering.protocol import Ordering
+from codriving.reasoning.ordering.request import Request
+from codriving.reasoning.prediction.expectation import Expected
+from codriving.reasoning.prediction.idm import IntelligentDriver
+from codriving.reasoning.safety.adjacent_lane import HEADWAY, MARGIN, check_adjacent
+from codriving.reasoning.safety.beside import SIDES, beside
+from codriving.reasoning.safety.outlook import Outlook, motions
+
+POLITENESS = 0.3
+"""Weight of what those behind gain or lose (MOBIL)."""
+
+THRESHOLD = 0.2
+"""Incentive below which nobody asks for a lane change [m/s2]."""
+
+COOL_DOWN = 2.0
+"""Time between two lane changes of one CAV [s]."""
+
+SLOWEST = 3.0
+"""Below this speed lanes are not changed just to get farther, since both would be blocked [m/s]."""
+
+BODY = 5.0
+"""Length of a vehicle [m]."""
+
+DRIVER = IntelligentDriver()
+
+
+class LaneRequests:
+    """Who wants to change lanes, and may by the gap test that all methods share; remembers who asked since when."""
+
+    def __init__(self) -> None:
+        self._asked: dict[tuple[str, Action], float] = {}
+        self._changed: dict[str, float] = {}
+
+    def ask(
+        self,
+        stage: Stage,
+        ordering: Ordering,
+        agreed: PassingOrder,
+        expected: Mapping[str, tuple[Expected, ...]],
+        lag: int,
+    ) -> list[Request]:
+        """Return the requests of this moment, first come first.
+
+        Args:
+            stage: The moment.
+            ordering: Who passes first.
+            agreed: The same as it was told to everybody.
+            expected: Motions that are expected, by id.
+            lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
+        """
+        wanted: dict[str, tuple[Action, float]] = {}
+        for name in sorted(stage.scenes):
+            found = self._wanted(stage, name, agreed, expected, lag)
+            if found is not None:
+                wanted[name] = found
+        self._asked = {
+            (name, action): self._asked.get((name, action), stage.time) for name, (action, _) in wanted.items()
+        }
+        requests = [
+            Request(name, action, incentive, self._asked[name, action], _overlaps(stage.scenes, name, wanted))
+            for name, (action, incentive) in wanted.items()
+        ]
+        return sorted(requests, key=lambda r: (r.since, r.ego))
+
+    def granted(self, names: frozenset[str], time: float) -> None:
+        """Note who changes lanes now.
+
+        Args:
+            names: Ids of the CAVs.
+            time: Simulated time [s].
+        """
+        for name in sorted(names):
+            self._changed[name] = time
+
+    def _wanted(
+        self,
+        stage: Stage,
+        name: str,
+        agreed: PassingOrder,
+        expected: Mapping[str, tuple[Expected, ...]],
+        lag: int,
+    ) -> tuple[Action, float] | None:
+        """The lane change that a CAV wants most among those that pass the gap test, and its incentive."""
+        scene, actions = stage.scenes[name], stage.available[name]
+        sides = [action for action in SIDES if action in actions]
+        must = scene.must_change
+        if not sides or (must is None and not self._may_choose(scene, stage.time)):
+            return None
+        if must is not None:
+            sides = [a for a in sides if scene.ego.lane[2] + SIDES[a] == must.lane[2]]
+        stops, goes = motions(scene, actions, stage.forecast)
+        outlook = Outlook(
+            scene, stage.conflicts[name], agreed, dict(stage.known[name]), dict(expected), actions, stops, goes,
+            stage.road_map, stage.forecast, lag, True,
+        )  # fmt: skip
+        unsafe = check_adjacent(outlook)
+        options = []
+        for action in sides:
+            there = beside(outlook, action)
+            if action in unsafe or there is None:
+                continue
+            gain = float("inf") if must is not None else incentive(scene, there.scene, stage)
+            if gain > THRESHOLD:
+                options.append((gain, -SIDES[action], action))
+        return (max(options)[2], max(options)[0]) if options else None
+
+    def _may_choose(self, scene: SceneDescription, time: float) -> bool:
+        rested = time - self._changed.get(scene.ego.id, -COOL_DOWN) >= COOL_DOWN
+        return rested and not scene.covers and scene.ego.speed >= SLOWEST
+
+
+def incentive(scene: SceneDescription, there: SceneDescription, stage: Stage) -> float:
+    """Return what a lane change gains: MOBIL's incentive (Kesting, Treiber and Helbing, 2007).
+
+    Args:
+        scene: What the CAV knows on its lane.
+        there: The same as seen from the lane beside.
+        stage: The moment.
+
+    Returns:
+        Gain of the CAV, and with the weight of politeness of those behind it on both lanes [m/s2].
+    """
+    top = stage.forecast.model.target_speeds[-1]
+    ahead, behind = _role(scene, Role.LEADING), _role(scene, Role.REARING)
+    new_ahead, new_behind = _role(there, Role.LEADING), _role(there, Role.REARING)
+    ego = scene.ego.speed
+    own = _behind(ego, top, new_ahead) - _behind(ego, top, ahead)
+    others = 0.0
+    if new_behind is not None and new_behind.gap is not None:
+        free = None if new_ahead is None or new_ahead.gap is None else new_ahead.gap + new_behind.gap + BODY
+        before = DRIVER.accelerate(new_behind.speed, top, free, new_ahead.speed if new_ahead else 0.0)
+        others += DRIVER.accelerate(new_behind.speed, top, new_behind.gap, ego) - before
+    if behind is not None and behind.gap is not None:
+        free = None if ahead is None or ahead.gap is None else ahead.gap + behind.gap + BODY
+        after = DRIVER.accelerate(behind.speed, top, free, ahead.speed if ahead else 0.0)
+        others += after - DRIVER.accelerate(behind.speed, top, behind.gap, ego)
+    return own + POLITENESS * others
+
+
+def _role(scene: SceneDescription, role: Role) -> Neighbour | None:
+    return next((n for n in scene.neighbours if n.role is role), None)
+
+
+def _behind(speed: float, top: float, ahead: Neighbour | None) -> float:
+    if ahead is None or ahead.gap is None:
+        return DRIVER.accelerate(speed, top)
+    return DRIVER.accelerate(speed, top, ahead.gap, ahead.speed)
+
+
+def _overlaps(scenes: Scenes, name: str, wanted: Mapping[str, tuple[Action, float]]) -> frozenset[str]:
+    """Those whose lane change needs the same piece of road at the same time."""
+    found = set()
+    mine = scenes[name]
+    lanes = _lanes(mine, wanted[name][0])
+    for other in wanted:
+        theirs = scenes[other]
+        if other == name or theirs.ego.lane[:2] != mine.ego.lane[:2]:
+            continue
+        room = BODY + MARGIN + HEADWAY * max(mine.ego.speed, theirs.ego.speed)
+        away = ((mine.ego.x - theirs.ego.x) ** 2 + (mine.ego.y - theirs.ego.y) ** 2) ** 0.5
+        if away < room and lanes & _lanes(theirs, wanted[other][0]):
+            found.add(other)
+    return frozenset(found)
+
+
+def _lanes(scene: SceneDescription, action: Action) -> frozenset[int]:
+    index = scene.ego.lane[2]
+    return frozenset((index, index + SIDES[action]))

@@ -1,0 +1,155 @@
+"""The layered executor, a reference: the first group accelerates, everybody else holds back and waits for its turn."""
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.scene_description import Role
+from codriving.errors import ConfigError
+from codriving.reasoning.execution.joint_planner import JointPlans
+from codriving.reasoning.execution.planned import drive_of
+from codriving.reasoning.execution.protocol import Drive
+from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.ordering.human_windows import window
+from codriving.reasoning.ordering.protocol import Ordering
+from codriving.reasoning.prediction.plans import PLANS
+from codriving.reasoning.prediction.rollout import Plan
+from codriving.reasoning.safety.outlook import then_stop
+from codriving.reasoning.safety.same_lane import LANE_END_GAP
+
+BODY = 5.0
+"""Length of a vehicle [m]."""
+
+LATE = 0.1
+"""Difference of times that does not count [s]."""
+
+ROOM = 1.0
+"""Room that is left to whoever is ahead [m]."""
+
+
+class Layered:
+    """Layers follow from the order; a layer goes when the one before it has left.
+
+    Kept to show how much of a result is owed to the executor and how little to the order.
+
+    Args:
+        gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
+        hold: Distance to the first zone within which a waiting vehicle slows down; farther away it keeps its speed [m].
+        brake_anywhere: Whether waiting vehicles slow down wherever they are.
+        headway: Time gap below which a vehicle slows down behind whoever drives ahead [s].
+
+    Raises:
+        ConfigError: If a setting is out of range.
+    """
+
+    name = "layered"
+    library: tuple[Plan, ...] = PLANS
+
+    def __init__(self, gap: float, hold: float, brake_anywhere: bool, headway: float) -> None:
+        for key, value, most in (("gap", gap, 5), ("hold", hold, 200), ("headway", headway, 5)):
+            if not 0 <= value <= most:
+                raise ConfigError(f"{key} must be 0 to {most}, got {value:g}")
+        self.gap = self.margin = gap
+        self.hold, self.brake_anywhere, self.headway = hold, brake_anywhere, headway
+
+    def reset(self) -> None:
+        """Begin an episode; nothing is remembered from the one before."""
+
+    def planner(self, stage: Stage) -> JointPlans:
+        """Return what plans for everybody in an order, for rules that look at plans.
+
+        Args:
+            stage: The moment.
+        """
+        return JointPlans(stage, {}, self.gap, 1.0, self.headway)
+
+    def drive(self, stage: Stage, ordering: Ordering) -> Drive:
+        """Let the first layer go and hold everybody else back.
+
+        Args:
+            stage: The moment.
+            ordering: Who passes first.
+        """
+        layers = layers_of(stage, ordering)
+        plans = self.planner(stage)
+        planned = drive_of(stage, plans, plans.joint(ordering.sequence), ordering)
+        actions, reasons = {}, {}
+        for name in stage.scenes:
+            actions[name], reasons[name] = self._decide(stage, name, layers.get(name, 0), ordering)
+        return Drive(actions, reasons, planned.expected, planned.progress, {"layers": max(layers.values(), default=0)})
+
+    def _decide(self, stage: Stage, name: str, layer: int, ordering: Ordering) -> tuple[Action, str]:
+        leader = _too_close(stage, name, self.headway, Action.IDLE)
+        if leader:
+            return Action.SLOWER, f"{leader} ahead is too close"
+        inside = _occupied(stage, name)
+        if inside:
+            return Action.SLOWER, f"{inside} is in the next zone"
+        who = _human_first(stage, name, ordering) or _held(stage, name, ordering)
+        if layer == 0 and not who:
+            leader = _too_close(stage, name, self.headway, Action.FASTER)
+            return (Action.IDLE, f"{leader} ahead is close") if leader else (Action.FASTER, "in the first group")
+        who = who or f"layer {layer - 1}"
+        if self.brake_anywhere or _distance(stage, name) <= self.hold:
+            return Action.SLOWER, f"waits for {who}"
+        return Action.IDLE, f"will have to wait for {who}, and is still far away"
+
+
+def layers_of(stage: Stage, ordering: Ordering) -> dict[str, int]:
+    """Return each entrant's layer: one more than the highest of those before it with whom it is in conflict.
+
+    Args:
+        stage: The moment.
+        ordering: Who passes first.
+    """
+    layers: dict[str, int] = {}
+    for name in ordering.sequence:
+        others = {c.other for c in stage.conflicts[name]}
+        below = [layer for other, layer in layers.items() if other in others]
+        layers[name] = 1 + max(below) if below else 0
+    return layers
+
+
+def _distance(stage: Stage, name: str) -> float:
+    return min((c.distances[0] for c in stage.conflicts[name]), default=float("inf"))
+
+
+def _too_close(stage: Stage, name: str, headway: float, action: Action) -> str:
+    """Whoever is so close ahead that after an action there is too little room to stop."""
+    scene, forecast = stage.scenes[name], stage.forecast
+    speed = scene.ego.speed
+    (later,) = forecast.travel(speed, scene.intent.target_speed, [then_stop(action)])[:, -1]
+    for n in scene.neighbours:
+        if n.role is Role.LEADING and n.gap is not None:
+            rolls = float(forecast.reach(n.speed, stage.known[name][n.id].is_cav).least[-1])
+            if n.gap < max(headway * speed, later - rolls) + ROOM:
+                return n.id
+    change = scene.must_change
+    return "the end of its lane" if change is not None and later > change.room - LANE_END_GAP - ROOM else ""
+
+
+def _occupied(stage: Stage, name: str) -> str:
+    """Whoever is inside the first zone that the vehicle comes to."""
+    ahead = [c for c in stage.conflicts[name] if c.distances[0] > 0]
+    nearest = min((c.distances[0] for c in ahead), default=0.0)
+    inside = [c.other for c in ahead if c.distances[0] <= nearest + BODY and c.distances[1] <= 0]
+    return inside[0] if inside else ""
+
+
+def _human_first(stage: Stage, name: str, ordering: Ordering) -> str:
+    """A human driver who may be in the zone before the vehicle is through."""
+    time = ordering.times.get(name, 0.0)
+    reference = stage.scenes[name].place + _distance(stage, name)
+    for c in stage.conflicts[name]:
+        n = stage.scenes[name].neighbour(c.other)
+        if n is not None and n.intent is None and c.distances[0] > 0:
+            begin, end = window(c, n, reference, stage.road_map, stage.forecast)
+            if begin < time and end > 0:
+                return n.id
+    return ""
+
+
+def _held(stage: Stage, name: str, ordering: Ordering) -> str:
+    """What a vehicle waits for that the method holds back for longer than its conflicts do."""
+    distance = _distance(stage, name)
+    if name not in ordering.not_before or distance <= 0:
+        return ""
+    soonest = stage.forecast.time_to(distance, stage.forecast.reach(stage.scenes[name].ego.speed, True).most)
+    return "its turn" if soonest < ordering.not_before[name] - LATE else ""

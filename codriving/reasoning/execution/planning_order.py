@@ -1,0 +1,91 @@
+"""In which order everybody is planned: the passing order, and nobody before those who drive ahead on the same way."""
+
+from collections.abc import Mapping, Sequence
+
+from codriving.datatypes.action import Action
+from codriving.reasoning.conflicts import is_open
+from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.prediction.expectation import is_behind
+from codriving.reasoning.sharing.movers import Mover
+
+LANE_CHANGES = frozenset((Action.LANE_LEFT, Action.LANE_RIGHT))
+
+BODY = 5.0
+"""Length of a vehicle [m]."""
+
+
+def cavs(stage: Stage) -> dict[str, Mover]:
+    """Return all CAVs as movers, each as it knows itself.
+
+    Args:
+        stage: The moment.
+    """
+    return {name: known[name] for name, known in sorted(stage.known.items())}
+
+
+def drives_ahead(stage: Stage, vehicles: Mapping[str, Mover]) -> set[tuple[str, str]]:
+    """Return the pairs of CAVs (ahead, behind) that follow one another, whatever the order says.
+
+    Args:
+        stage: The moment.
+        vehicles: All CAVs, by id.
+    """
+    found = set()
+    for behind in vehicles.values():
+        for ahead in vehicles.values():
+            if ahead.id == behind.id:
+                continue
+            for route, place in behind.routes:
+                for other, there in ahead.routes:
+                    zones = stage.road_map.zones(route, other)
+                    if any(is_behind(zone, place, there) for zone in zones):
+                        found.add((ahead.id, behind.id))
+            if _is_alongside(stage, behind, ahead):
+                found.add((ahead.id, behind.id))
+    return found
+
+
+def _is_alongside(stage: Stage, changing: Mover, other: Mover) -> bool:
+    """Whether somebody drives ahead or alongside on the lane that a CAV must change to, which then cannot go first."""
+    change = stage.scenes[changing.id].must_change
+    if change is None or not LANE_CHANGES & set(stage.available[changing.id]):
+        return False
+    (route, place), (way, there) = changing.routes[0], other.routes[0]
+    if stage.scenes[other.id].ego.lane != change.lane:
+        return False
+    for zone in stage.road_map.zones(route, way):
+        if zone.merge_i is not None and zone.merge_j is not None and is_open(zone, place, there):
+            return zone.merge_j - there < zone.merge_i - place + BODY
+    return False
+
+
+def planning_order(sequence: Sequence[str], vehicles: Mapping[str, Mover], ahead: set[tuple[str, str]]) -> list[str]:
+    """Line all CAVs up for planning.
+
+    Args:
+        sequence: The passing order of those who have a conflict ahead.
+        vehicles: All CAVs, by id.
+        ahead: Pairs (ahead, behind) that follow one another.
+
+    Returns:
+        All CAVs: the passing order, whoever drives ahead before those behind, and those without a conflict from the
+        front to the back.
+    """
+    rank = {name: i for i, name in enumerate(sequence)}
+    leaders: dict[str, list[str]] = {}
+    for leader, follower in sorted(ahead):
+        leaders.setdefault(follower, []).append(leader)
+    order: list[str] = []
+    entered: set[str] = set()
+
+    def place(name: str) -> None:
+        # Whoever drives ahead is drawn forward; a circle, as only an overlap makes one, is cut where it closes.
+        if name not in entered:
+            entered.add(name)
+            for leader in leaders.get(name, ()):
+                place(leader)
+            order.append(name)
+
+    for name in sorted(vehicles, key=lambda n: (rank.get(n, len(rank)), -vehicles[n].routes[0][1], n)):
+        place(name)
+    return order

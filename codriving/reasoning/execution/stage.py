@@ -1,0 +1,34 @@
+"""One moment as an executor sees it: everybody's knowledge together, since all CAVs are planned jointly."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.scene_description import SceneDescription
+from codriving.geometry.road_map import RoadMap
+from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.sharing.movers import Mover
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """One moment.
+
+    Attributes:
+        scenes: What each CAV knows, by id.
+        conflicts: Conflicts of each CAV, most urgent first, by id.
+        known: The vehicles that each CAV knows of, itself included, as movers, by id of the CAV.
+        available: Actions that the road allows each CAV, by id.
+        road_map: The precomputed road.
+        forecast: Predictions of this step.
+        time: Simulated time [s].
+    """
+
+    scenes: Mapping[str, SceneDescription]
+    conflicts: Mapping[str, tuple[Conflict, ...]]
+    known: Mapping[str, dict[str, Mover]]
+    available: Mapping[str, tuple[Action, ...]]
+    road_map: RoadMap
+    forecast: Forecast
+    time: float

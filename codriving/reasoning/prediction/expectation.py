@@ -1,0 +1,204 @@
+"""How everybody is expected to move if the passing order is kept: planned one after another, first to last."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.conflict import Relation
+from codriving.datatypes.order import PassingOrder
+from codriving.geometry.road_map import RoadMap
+from codriving.geometry.zone import ConflictZone
+from codriving.reasoning.conflicts import is_open
+from codriving.reasoning.prediction.clearance import stays_behind
+from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.prediction.plans import PLANS, STARTS_WITH
+from codriving.reasoning.sharing.movers import Mover
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+HEADWAY = 0.8
+"""Time gap to whoever drives ahead that is planned for [s]; the safety check alone would allow less or ask for more."""
+
+EARLY = 0.3
+"""Weight of the mean distance within the horizon against the distance at its end."""
+
+CLEARS = 1.6
+"""Time after which a vehicle that changes lanes is off the lane that it leaves [s]; measured at 5 to 30 m/s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Expected:
+    """The expected motion of one vehicle.
+
+    Attributes:
+        route: Route that it is expected on.
+        places: Arc length over time (n,) [m].
+        free: Whether it is expected to go at once, held up by nobody.
+        progress: How far it gets within the horizon if it begins with an action and keeps the order [m]; no entry for
+            an action with which it could not keep the order, and none at all for human drivers.
+    """
+
+    route: str
+    places: Array
+    free: bool
+    progress: Mapping[Action, float]
+
+
+def expect(
+    vehicles: dict[str, Mover],
+    order: PassingOrder,
+    road_map: RoadMap,
+    forecast: Forecast,
+    lag: int,
+    minds_conflicts: bool,
+) -> dict[str, tuple[Expected, ...]]:
+    """Plan every vehicle in the passing order against those before it.
+
+    Human drivers are expected to keep their speed on each route that they may take.
+
+    Args:
+        vehicles: The vehicles that are known, by id.
+        order: Who goes first.
+        road_map: The precomputed road.
+        forecast: Predictions of this step.
+        lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
+        minds_conflicts: Whether conflicts are known at all; otherwise everybody only minds who drives ahead.
+
+    Returns:
+        Expected motions by id: one a route that the vehicle may be on or reaches onto, that of its intent first.
+    """
+    cavs = [v for v in vehicles.values() if v.is_cav]
+    found: dict[str, tuple[Expected, ...]] = {}
+    for v in vehicles.values():
+        if not v.is_cav:
+            steady = forecast.reach(v.speed, False).steady
+            found[v.id] = tuple(Expected(route, place + steady, True, {}) for route, place in v.routes)
+    rank = {name: i for i, name in enumerate(order.sequence)}
+    # Whoever is in no conflict follows the order of the lanes: the vehicle farther along its route first.
+    for v in sorted(cavs, key=lambda v: (rank.get(v.id, len(rank)), -v.routes[0][1], v.id)):
+        travels = forecast.travel(v.speed, v.target, PLANS)
+        keeps = np.ones(len(PLANS), dtype=np.bool_)
+        for k, (route, place) in enumerate(v.routes):
+            # A lane that the vehicle is leaving is minded until its body is off it.
+            until = forecast.steps + 1 if k == 0 else round(CLEARS / forecast.sample) + 1
+            motion = place + travels[:, :until]
+            minds = minds_conflicts and k == 0
+            keeps &= keeps_order(v.id, route, motion, vehicles, found, order, road_map, lag, forecast.sample, minds)
+        gained = np.where(keeps, worth(travels), -np.inf)
+        best = int(np.argmax(gained)) if keeps.any() else len(PLANS) - 1
+        gains = progress_by_action(gained)
+        found[v.id] = tuple(
+            Expected(route, place + travels[best], best == 0, gains if k == 0 else {})
+            for k, (route, place) in enumerate(v.routes)
+        )
+    return found
+
+
+def keeps_order(
+    name: str,
+    route: str,
+    places: Array,
+    vehicles: Mapping[str, Mover],
+    expected: Mapping[str, tuple[Expected, ...]],
+    order: PassingOrder,
+    road_map: RoadMap,
+    lag: int,
+    sample: float,
+    minds_conflicts: bool,
+) -> Flags:
+    """Whether a vehicle stays behind everybody who drives ahead or goes first.
+
+    Args:
+        name: Id of the vehicle.
+        route: Route that it drives on.
+        places: Its arc length there over time, for as long as it is to be minded (plans, n) [m].
+        vehicles: The vehicles that are known, by id.
+        expected: Expected motions of those that have been planned, by id.
+        order: Who goes first.
+        road_map: The precomputed road.
+        lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
+        sample: Time between two samples of a motion [s].
+        minds_conflicts: Whether zones count in which it is open who goes first.
+
+    Returns:
+        One flag a plan (plans,).
+    """
+    keeps: Flags = np.ones(len(places), dtype=np.bool_)
+    place = float(places[0, 0])
+    for other, motions in expected.items():
+        if other == name:
+            continue
+        # A driver who may still take several routes is left to the safety check: no slowing down early for guesses.
+        certain = vehicles[other].is_cav or len(motions) == 1
+        minds = minds_conflicts and certain and order.first_of(name, other) != name
+        for motion in motions:
+            there = float(motion.places[0])
+            for zone in road_map.zones(route, motion.route):
+                following = is_behind(zone, place, there)
+                if not following and not (minds and is_open(zone, place, there)):
+                    continue
+                after = min(lag, round(HEADWAY / sample)) if following else lag
+                keeps &= stays_behind(zone, places, motion.places[: places.shape[1]], after, 0.0)
+    return keeps
+
+
+def worth(travels: Array) -> Array:
+    """Return what a plan is worth: the distance at the end of the horizon, and a little of being closer before.
+
+    Without the second part a vehicle that has to wait beyond the horizon would put off its approach for ever.
+
+    Args:
+        travels: Distance of each plan over time (plans, n) [m].
+
+    Returns:
+        Distance (plans,) [m].
+    """
+    return np.asarray((1 - EARLY) * travels[:, -1] + EARLY * travels.mean(axis=1))
+
+
+def progress_by_action(gained: Array) -> dict[Action, float]:
+    """Return how far a vehicle gets at best after each action.
+
+    Args:
+        gained: Distance of each plan; -inf where it would not keep the order (plans,) [m].
+
+    Returns:
+        Distance [m]; no entry for an action with which the order cannot be kept.
+    """
+    best = {first: float(max(gained[list(plans)])) for first, plans in STARTS_WITH.items()}
+    return {action: gain for action, gain in best.items() if gain > -np.inf}
+
+
+def binding_zones(
+    zones: Sequence[ConflictZone], place: float, other: float, minds_conflicts: bool
+) -> list[ConflictZone]:
+    """Select the zones in which a vehicle has to mind another one that goes before it.
+
+    Args:
+        zones: Zones of the two routes, seen from the vehicle.
+        place: Arc length of the vehicle [m].
+        other: Arc length of the one that goes before it [m].
+        minds_conflicts: Whether zones count in which it is open who goes first.
+    """
+    return [z for z in zones if (minds_conflicts and is_open(z, place, other)) or is_behind(z, place, other)]
+
+
+def is_behind(zone: ConflictZone, place: float, other: float) -> bool:
+    """Whether a vehicle follows another one in a stretch that both routes share.
+
+    Args:
+        zone: The zone, seen from the vehicle.
+        place: Arc length of the vehicle [m].
+        other: Arc length of the other vehicle [m].
+    """
+    if place > zone.exit_i or other > zone.exit_j:
+        return False
+    if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
+        return place < other
+    if zone.merge_i is None or zone.merge_j is None or is_open(zone, place, other):
+        return False
+    return place - zone.merge_i < other - zone.merge_j

@@ -1,0 +1,156 @@
+"""Scene descriptions: states and intents put in relation to the ego vehicle, lane by lane (Section III-C.1 and 2)."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from math import cos, pi
+
+from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.road import LaneId
+from codriving.datatypes.scene_description import LaneChange, Neighbour, Role, SceneDescription
+from codriving.datatypes.vehicle import Intent, VehicleState
+from codriving.datatypes.world import WorldState
+from codriving.geometry.road_map import RoadMap
+from codriving.reasoning.sharing.detection import Glimpse
+from codriving.reasoning.sharing.state_sharing import Views
+from codriving.reasoning.sharing.tracking import Tracking
+
+SAME_LANE = 2.0
+"""A vehicle is on the ego lane within this lateral offset, half a lane [m]."""
+
+ALIGNED = cos(pi / 3)
+"""A vehicle on the ego lane heads within 60 degrees of it, where its heading is known."""
+
+
+NO_ROLE: tuple[Role, float | None] = (Role.OTHER, None)
+"""Who is neither ahead nor behind; conflicts are found later."""
+
+
+def describe_scenes(
+    world: WorldState, views: Views, intents: Mapping[str, Intent], tracking: Tracking
+) -> dict[str, SceneDescription]:
+    """Describe the surroundings of every CAV; who is in conflict with whom is filled in later.
+
+    Args:
+        world: The world, of which each CAV's own state and intent are read.
+        views: What each CAV knows of the others.
+        intents: Intents that have been shared.
+        tracking: What each CAV remembers of the others.
+
+    Returns:
+        One description a CAV, by id.
+    """
+    tracking.begin_step()
+    road_map = tracking.road_map
+    scenes = {}
+    for ego in world.cavs:
+        intent, seen = world.intents[ego.id], views[ego.id]
+        road_map.project_all(intent.route, [(ego.x, ego.y), *((other.x, other.y) for other in seen)])
+        place, _ = road_map.project(intent.route, ego.x, ego.y)
+        change = road_map.changes.ahead(intent.route, place)
+        roles = _roles(seen, ego, intent.route, place, road_map)
+        scenes[ego.id] = SceneDescription(
+            ego=ego,
+            intent=intent,
+            place=place,
+            adjacent_lanes=adjacent_lanes(road_map, ego.lane),
+            conflict_lanes=(),
+            covers=road_map.changes.covered(intent.route, road_map.lane_at(intent.route, place), ego.x, ego.y),
+            must_change=None if change is None else LaneChange(change[0], change[1] - place),
+            neighbours=tuple(
+                _neighbour(other, intents.get(other.id), tracking, ego.id, world.time, *roles.get(other.id, NO_ROLE))
+                for other in seen
+            ),
+        )
+    return scenes
+
+
+def with_roles(
+    neighbours: Iterable[Neighbour], ego: VehicleState, route: str, place: float, road_map: RoadMap
+) -> tuple[Neighbour, ...]:
+    """Mark who drives ahead of the ego vehicle and who behind it on its lane.
+
+    Args:
+        neighbours: Everybody it knows of.
+        ego: Its own state.
+        route: Id of its route.
+        place: Its arc length there [m].
+        road_map: The precomputed road.
+    """
+    everybody = tuple(neighbours)
+    road_map.project_all(route, [(n.x, n.y) for n in everybody])
+    roles = _roles(everybody, ego, route, place, road_map)
+    wanted = [roles.get(n.id, NO_ROLE) for n in everybody]
+    return tuple(
+        n if (n.role, n.gap) == (role, gap) else replace(n, role=role, gap=gap)
+        for n, (role, gap) in zip(everybody, wanted, strict=True)
+    )
+
+
+def _roles(
+    others: Sequence[Glimpse] | Sequence[Neighbour], ego: VehicleState, route: str, place: float, road_map: RoadMap
+) -> dict[str, tuple[Role, float | None]]:
+    """Return who drives next ahead and next behind on the ego vehicle's lane, and at which gap."""
+    path = road_map.paths[route]
+    nearest: dict[Role, tuple[float, str]] = {}
+    for n in others:
+        s, side = road_map.project(route, n.x, n.y)
+        if abs(side) > SAME_LANE or (n.heading is not None and cos(n.heading - path.place(s)[2]) <= ALIGNED):
+            continue
+        role = Role.LEADING if s > place else Role.REARING
+        gap = abs(s - place) - (n.length + ego.length) / 2
+        if role not in nearest or gap < nearest[role][0]:
+            nearest[role] = (gap, n.id)
+    return {name: (role, gap) for role, (gap, name) in nearest.items()}
+
+
+def with_conflicts(scene: SceneDescription, conflicts: tuple[Conflict, ...], road_map: RoadMap) -> SceneDescription:
+    """Mark the vehicles and lanes with which the ego vehicle is in conflict.
+
+    Args:
+        scene: The description so far.
+        conflicts: Conflicts of the ego vehicle.
+        road_map: The precomputed road.
+    """
+    others = {c.other for c in conflicts}
+    lanes: set[LaneId] = set()
+    for c in conflicts:
+        zone = road_map.zones(*c.routes)[c.zone]
+        lanes.add(road_map.lane_at(c.routes[1], zone.point_j))
+    neighbours = tuple(
+        replace(n, role=Role.CONFLICT) if n.id in others and n.role is Role.OTHER else n for n in scene.neighbours
+    )
+    return replace(scene, neighbours=neighbours, conflict_lanes=tuple(sorted(lanes)))
+
+
+def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
+    """Return the lanes to the left and right of a lane that run its way.
+
+    Args:
+        road_map: The precomputed road.
+        lane: A lane.
+    """
+    start, end, index = lane
+    sides = ((start, end, index - 1), (start, end, index + 1))
+    return tuple(side for side in sides if side in road_map.lanes)
+
+
+def _neighbour(
+    seen: Glimpse, intent: Intent | None, tracking: Tracking, ego: str, time: float, role: Role, gap: float | None
+) -> Neighbour:
+    return Neighbour(
+        id=seen.id,
+        # Whoever shares an intent has said that it is a CAV.
+        kind="CAV" if intent is not None else seen.kind,
+        x=seen.x,
+        y=seen.y,
+        speed=seen.speed,
+        heading=seen.heading,
+        acceleration=seen.acceleration,
+        lane=seen.lane,
+        length=seen.length,
+        routes=tracking.places(ego, seen, intent),
+        intent=intent,
+        standing=tracking.standing(ego, seen, time),
+        role=role,
+        gap=gap,
+    )

@@ -1,0 +1,43 @@
+"""Seed to scene: the roads, the places where vehicles start and where they want to go.
+
+What a scenario is made of can be imported from here, for scenarios of your own: the road as data (``Road``, ``Lane``,
+``Route`` and their parts), the settings that all scenarios share (``Crowd``, ``Pace``) and their checks, and ``place``,
+which draws a scene.
+"""
+
+from codriving.datatypes.road import Arc, Block, Lane, LaneId, Line, Point, Road, Route, Sine, Straight, Turn
+from codriving.datatypes.scene import Scene, Start
+from codriving.datatypes.vehicle import Kind
+from codriving.environment.scenarios.crowd import Crowd
+from codriving.environment.scenarios.pace import Pace, require, require_interval, require_range
+from codriving.environment.scenarios.placement import place
+from codriving.environment.scenarios.protocol import Scenario
+from codriving.environment.scenarios.shapes import bend, turned
+from codriving.geometry.lane_path import lane_starts
+
+__all__ = [
+    "Arc",
+    "Block",
+    "Crowd",
+    "Kind",
+    "Lane",
+    "LaneId",
+    "Line",
+    "Pace",
+    "Point",
+    "Road",
+    "Route",
+    "Scenario",
+    "Scene",
+    "Sine",
+    "Start",
+    "Straight",
+    "Turn",
+    "bend",
+    "lane_starts",
+    "place",
+    "require",
+    "require_interval",
+    "require_range",
+    "turned",
+]

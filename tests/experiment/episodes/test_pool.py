@@ -1,0 +1,89 @@
+"""Several processes: same results, dead workers replaced, nobody left behind."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from toy_drive import LABELS, BuildToy
+
+from codriving.datatypes.outcome import Ending
+from codriving.errors import ConfigError
+from codriving.experiment.episodes.batch import run_batch
+from codriving.experiment.episodes.episode import EpisodeResult
+from codriving.experiment.episodes.job import Job, Report
+from codriving.experiment.episodes.launcher import Processes, Serial, worker_count
+from codriving.experiment.episodes.pool import available_cores, run_parallel, run_serial
+from codriving.experiment.episodes.unit import Objects, Unit
+
+UNITS = [Unit("cell", seed) for seed in range(8)]
+
+
+@dataclass(frozen=True)
+class SaveText:
+    """Keeps a result as one file."""
+
+    folder: Path
+
+    def __call__(self, unit: Unit, result: EpisodeResult) -> None:
+        """Keep it."""
+        (self.folder / str(unit.seed)).write_text(repr(result.record))
+
+
+@dataclass(frozen=True)
+class Misconfigured:
+    """Builds nothing, for the config is wrong."""
+
+    def __call__(self, cell: str) -> Objects:
+        """Refuse."""
+        raise ConfigError("scenario.cavs must be at most 12, got 99")
+
+
+def job(folder: Path, build: object) -> Job:
+    folder.mkdir(exist_ok=True)
+    return Job({"cell": LABELS}, build, SaveText(folder))  # type: ignore[arg-type]
+
+
+def by_seed(reports: Iterable[Report]) -> list[Report]:
+    return sorted(reports, key=lambda report: report.unit.seed)
+
+
+def test_three_processes_do_what_one_does(tmp_path: Path) -> None:
+    serial = list(run_serial(UNITS, job(tmp_path / "1", BuildToy(raises=(3,)))))
+    parallel = by_seed(run_parallel(UNITS, job(tmp_path / "3", BuildToy(raises=(3,))), 3, ["numpy"]))
+    assert parallel == serial
+    assert [report.ending for report in serial].count(Ending.ERROR) == 1
+    for unit in UNITS:
+        assert (tmp_path / "1" / str(unit.seed)).read_text() == (tmp_path / "3" / str(unit.seed)).read_text()
+
+
+def test_a_killed_worker_is_tried_once_more_and_the_batch_goes_on(tmp_path: Path) -> None:
+    build = BuildToy(dies=(2,), gate=tmp_path, waits_from=99)
+    report = run_batch(UNITS, job(tmp_path / "out", build), Processes(), workers=2)
+    assert report.done == len(UNITS)
+    assert [failed.unit.seed for failed in report.failed] == [2]
+    assert report.failed[0].message == "WorkerDied: the process that drove this episode was killed by signal 9"
+    assert (tmp_path / "died-2").read_text() == "xx"
+
+
+def test_a_mistake_of_the_users_arrives_as_it_was_raised(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"got 99"):
+        run_batch(UNITS, job(tmp_path / "out", Misconfigured()), Processes(), workers=2)
+
+
+def test_progress_is_told_of_every_unit(tmp_path: Path) -> None:
+    calls: list[tuple[str, bool]] = []
+
+    class Told:
+        def update(self, cell: str, failed: bool) -> None:
+            calls.append((cell, failed))
+
+    run_batch(UNITS, job(tmp_path / "out", BuildToy(raises=(1,))), Serial(), workers=4, progress=Told())
+    assert calls == [(unit.cell, unit.seed == 1) for unit in UNITS]
+
+
+def test_auto_takes_the_cores_that_there_are_and_no_more_than_units() -> None:
+    assert worker_count("auto", 1000) == available_cores()
+    assert worker_count("auto", 1) == 1
+    assert worker_count(5, 3) == 3
+    assert worker_count(5, 0) == 1

@@ -1,0 +1,152 @@
+"""A world of one CAV and one human on a straight line, quick to drive and easy to break; importable by workers."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.datatypes.score import Pet, Score, TravelScore
+from codriving.datatypes.trajectory import Track, Trajectory
+from codriving.datatypes.vehicle import Intent, Kind, VehicleState
+from codriving.datatypes.world import WorldState
+from codriving.experiment.episodes.unit import Labels, Objects
+
+LABELS = Labels("toy", "steady", "full", "rules")
+LANE = ("a", "b", 0)
+
+
+class ToyEnvironment:
+    """Success past 20 m; every seventh seed collides."""
+
+    road_map = "the map"
+    driving_model = DrivingModel((0.0, 5.0), 1.6, 1.0, 1.0, 50.0)
+
+    def __init__(self) -> None:
+        self.outcome: Outcome | None = None
+        self._rows: list[float] = []
+        self._speed = 0.0
+        self._seed = 0
+
+    def reset(self, seed: int) -> WorldState:
+        """Begin."""
+        if seed < 0:
+            raise ValueError("seeds are not negative")
+        self._seed = seed
+        self.outcome = None
+        self._rows = [0.0]
+        self._speed = float(np.random.default_rng(seed).uniform(3.0, 6.0))
+        return self._world()
+
+    def step(self, actions: Mapping[str, Action]) -> WorldState:
+        """Drive one second."""
+        assert set(actions) == {"CAV1"}
+        self._rows.append(self._rows[-1] + self._speed)
+        time = float(len(self._rows) - 1)
+        if self._seed % 7 == 6 and time >= 2:
+            hit = Collision(time, "CAV1", "HDV1", "CAV-HDV")
+            self.outcome = Outcome(Ending.COLLISION, time, {}, collision=hit)
+        elif self._rows[-1] > 20.0:
+            self.outcome = Outcome(Ending.SUCCESS, time, {"CAV1": time})
+        return self._world()
+
+    def trajectory(self) -> Trajectory:
+        """What was driven, the human first."""
+        n = len(self._rows)
+        x, zero = np.array(self._rows), np.zeros(n)
+        arrived = None if self.outcome is None else self.outcome.arrivals.get("CAV1")
+        cav = Track("CAV1", Kind.CAV, "west-east", 0, x, zero, zero, zero + self._speed, zero, ("IDLE",) * n, arrived)
+        hdv = Track("HDV1", Kind.HDV, "east-west", 0, -x, zero, zero, zero, zero, ("",) * n, None)
+        return Trajectory(1.0, (hdv, cav))
+
+    def _world(self) -> WorldState:
+        x, step = self._rows[-1], len(self._rows) - 1
+        cav = VehicleState("CAV1", Kind.CAV, x, 0.0, 0.0, self._speed, 0.0, LANE)
+        return WorldState(float(step), step, (cav,), {"CAV1": Intent("west-east", 5.0, LANE)}, {"CAV1": tuple(Action)})
+
+
+@dataclass(frozen=True)
+class ToyDeliberation:
+    """Stay as you are."""
+
+    actions: Mapping[str, Action]
+    step: int
+    counts: Mapping[str, int] = field(default_factory=lambda: {"fallbacks": 1})
+
+    def as_dict(self) -> dict[str, Any]:
+        """One line, with a number that JSON does not know."""
+        return {"step": self.step, "actions": dict(self.actions), "ttcp": float("inf")}
+
+
+@dataclass
+class ToyMethod:
+    """Drives on; breaks, dies or waits where it is told to."""
+
+    raises: tuple[int, ...] = ()
+    dies: tuple[int, ...] = ()
+    gate: Path | None = None
+    waits_from: int = 0
+    name: str = "steady"
+    variant: str = "full"
+    reasoner: str = "rules"
+    seed: int = -1
+
+    def reset(self, road_map: object, model: DrivingModel, seed: int) -> None:
+        """Take note of the seed."""
+        assert road_map == "the map"
+        self.seed = seed
+
+    def act(self, world: WorldState) -> ToyDeliberation:
+        """Go on, or do what the test wants."""
+        if self.gate is not None:
+            self._at_gate(self.gate)
+        if self.seed in self.raises and world.step == 1:
+            raise RuntimeError(f"seed {self.seed}\nbroke")
+        return ToyDeliberation({"CAV1": Action.IDLE}, world.step)
+
+    def _at_gate(self, gate: Path) -> None:
+        if self.seed in self.dies:
+            with (gate / f"died-{self.seed}").open("a") as file:
+                file.write("x")
+            os.kill(os.getpid(), 9)
+        if self.seed >= self.waits_from and (gate / "fifo").exists():
+            (gate / f"waiting-{os.getpid()}").touch()
+            # Opening a pipe that nobody writes to blocks for ever, without a clock.
+            (gate / "fifo").open().close()
+
+
+class ToyMetrics:
+    """A PET per seed, the speed of the CAV; NaN where it is told to."""
+
+    name = "toy"
+
+    def __init__(self, nan: tuple[int, ...] = ()) -> None:
+        self._nan = nan
+
+    def score(self, trajectory: Trajectory, outcome: Outcome, road: object) -> Score:
+        """One PET and one velocity."""
+        cav = trajectory.tracks[1]
+        value = float("nan") if round(outcome.time) in self._nan else 1.0 + outcome.time / 10.0
+        travel = TravelScore("CAV1", float(cav.speed[0]), outcome.time, None)
+        return Score(outcome.ending is Ending.SUCCESS, (Pet("CAV1", "HDV1", "crossing", value),), (travel,))
+
+
+@dataclass(frozen=True)
+class BuildToy:
+    """Builds the toy; picklable, with the settings of a test."""
+
+    raises: tuple[int, ...] = ()
+    dies: tuple[int, ...] = ()
+    gate: Path | None = None
+    waits_from: int = 0
+    nan: tuple[int, ...] = ()
+
+    def __call__(self, cell: str) -> Objects:
+        """Build them, whatever the cell."""
+        method = ToyMethod(self.raises, self.dies, self.gate, self.waits_from)
+        return Objects(ToyEnvironment(), method, ToyMetrics(self.nan))

@@ -1,0 +1,135 @@
+"""Which moments are kept, and what is noted of them."""
+
+import json
+from collections.abc import Sequence
+
+import pytest
+from dilu_driven import NEVER_HELD, Notebook, always, modelled, ruled, text
+from worlds import Junction, car
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.experience import Verdict
+from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.datatypes.situation import Decision
+from codriving.methods.dilu.diary import Diary
+from codriving.methods.dilu.dilu import DiLu
+from codriving.methods.dilu.reflection import RuleReflector
+from codriving.methods.dilu.told import Told, tell
+from codriving.methods.perception import single_vehicle_perception
+from codriving.methods.single_vehicle.demonstrated import CONSTANT
+from codriving.methods.single_vehicle.protocol import View
+from codriving.reasoning.prediction.forecast import Forecast
+
+CRASH = Collision(3.2, "CAV1", "HDV1", "CAV-HDV")
+CRASHED = Outcome(Ending.COLLISION, 3.2, {}, CRASH)
+ARRIVED = Outcome(Ending.SUCCESS, 9.0, {"CAV1": 9.0})
+
+
+@pytest.fixture(scope="module")
+def told(junction: Junction) -> Told:
+    """What CAV1 is told of HDV1, who comes from the left."""
+    perception = single_vehicle_perception(junction.road_map, Forecast(junction.model, CONSTANT))
+    world = junction.world(car("CAV1", "south-north", 86, 8, 9), car("HDV1", "west-east", 85, 8))
+    seen = perception.perceive(world)
+    view = View(
+        seen.scenes["CAV1"],
+        seen.conflicts["CAV1"],
+        world.available["CAV1"],
+        junction.road_map,
+        perception.forecast,
+        0.0,
+    )
+    return tell(view)
+
+
+def diary(told: Told, actions: Sequence[Action], ego: str = "CAV1") -> Diary:
+    made = Diary()
+    for k, action in enumerate(actions):
+        made.note(float(k), 2 * k, [told], [Decision(ego, action, "HDV1 is far")])
+    return made
+
+
+def test_mistake_is_the_last_decision_before_the_collision_that_was_not_to_slow_down(told: Told) -> None:
+    actions = [Action.FASTER, Action.IDLE, Action.FASTER, Action.SLOWER, Action.FASTER]
+    (mistake,) = diary(told, actions).mistakes(CRASH)
+    assert (mistake.step, mistake.decision.action, mistake.other, mistake.struck) == (4, Action.FASTER, "HDV1", True)
+    assert mistake.later == pytest.approx(1.2)
+
+
+def test_whoever_slowed_down_all_along_made_no_mistake(told: Told) -> None:
+    assert diary(told, [Action.SLOWER] * 4).conclude(CRASHED, RuleReflector()) == []
+
+
+def test_both_cavs_of_a_collision_made_one(told: Told) -> None:
+    made = diary(told, [Action.FASTER])
+    made.note(1.0, 2, [told], [Decision("CAV2", Action.LANE_LEFT, "")])
+    mistakes = made.mistakes(Collision(2.0, "CAV1", "CAV2", "CAV-CAV"))
+    assert [(m.decision.ego, m.other, m.struck) for m in mistakes] == [("CAV1", "CAV2", True), ("CAV2", "CAV1", False)]
+    right = [c.action for c in RuleReflector().correct(mistakes)]
+    assert right == [Action.SLOWER, Action.IDLE]
+
+
+def test_correction_by_rule_is_remembered(told: Told) -> None:
+    (kept,) = diary(told, [Action.FASTER, Action.IDLE]).conclude(CRASHED, RuleReflector())
+    assert (kept.action, kept.verdict, kept.step, kept.effect.collision) == (
+        Action.IDLE,
+        Verdict.INTENSIFIED,
+        2,
+        pytest.approx(2.2),
+    )
+    assert kept.lesson == (
+        "Mistake: IDLE, and 2.2 s later you ran into another vehicle. "
+        "Lesson: Slow down in time in a situation like this. Right: SLOWER."
+    )
+    assert kept.description.kinds["driver"] == "unknown"
+    assert kept.description.kinds["order"] == "none"
+
+
+def test_of_a_success_every_fifth_decision_is_kept(told: Told) -> None:
+    kept = diary(told, [Action.FASTER] * 12).conclude(ARRIVED, RuleReflector())
+    assert [(e.step, e.verdict) for e in kept] == [(8, Verdict.EASED), (18, Verdict.EASED)]
+    assert kept[0].lesson == "No mistake, the drive ended well. Why: another vehicle is far"
+
+
+@pytest.mark.parametrize("ending", [Ending.TIMEOUT, Ending.OFF_ROAD])
+def test_of_anything_else_nothing_is_kept(told: Told, ending: Ending) -> None:
+    assert diary(told, [Action.FASTER] * 12).conclude(Outcome(ending, 50.0, {}), RuleReflector()) == []
+
+
+def crashing(junction: Junction, made: DiLu) -> tuple[dict[str, float], list[dict[str, object]]]:
+    """Decide once, and then say that CAV1 has run into HDV1."""
+    world = junction.world(car("CAV1", "south-north", 86, 8, 9), car("HDV1", "west-east", 85, 8))
+    made.act(world)
+    return made.conclude(world, CRASHED)
+
+
+def test_model_reflects_once_on_a_mistake(junction: Junction) -> None:
+    book = Notebook()
+    made, chat = modelled(junction, always("FASTER"), book, NEVER_HELD)
+    counts, lines = crashing(junction, made)
+    assert [q.purpose for q in chat.questions] == ["decide", "reflect"]
+    assert "What you did: FASTER. Your reason: it is free" in text(chat.questions[1])
+    assert "3.2 s later you ran into V1." in text(chat.questions[1])
+    assert [line["purpose"] for line in lines] == ["reflect"]
+    assert (counts["experiences"], counts["experiences_new"], counts["fallbacks"]) == (1, 1, 0)
+    [kept] = book.learnt
+    assert kept.lesson == "Mistake: another vehicle was overlooked. Lesson: Let them pass. Right: SLOWER."
+    assert (book.interactions[0].method, book.interactions[0].reasoner) == ("dilu", "scripted")
+
+
+@pytest.mark.parametrize("said", ["no idea", {"lesson": "x", "action": "FASTER"}, {"lesson": "", "action": "SLOWER"}])
+def test_reflection_that_cannot_be_used_is_written_by_rule_and_counted(junction: Junction, said: object) -> None:
+    book = Notebook()
+    answer = json.dumps(said)
+    made, _ = modelled(junction, lambda q: answer if q.purpose == "reflect" else always("FASTER")(q), book, NEVER_HELD)
+    counts, _ = crashing(junction, made)
+    assert (counts["fallbacks"], counts["re_asks"]) == (1, 1)
+    assert "Slow down in time" in book.learnt[0].lesson
+
+
+def test_rule_reflects_without_a_model_and_only_if_there_is_something_to_learn_into(junction: Junction) -> None:
+    book = Notebook()
+    counts, lines = crashing(junction, ruled(junction, book))
+    assert (counts, lines) == ({"experiences": len(book.learnt), "experiences_new": len(book.learnt)}, [])
+    assert crashing(junction, ruled(junction, Notebook(learns=False))) == ({}, [])
+    assert crashing(junction, ruled(junction)) == ({}, [])

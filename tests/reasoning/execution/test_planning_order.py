@@ -1,0 +1,92 @@
+"""In which order everybody is planned."""
+
+from driven import stage_of
+from hypothesis import given
+from hypothesis import strategies as st
+from worlds import Junction, car
+
+from codriving.reasoning.execution.planning_order import cavs, drives_ahead, planning_order
+from codriving.reasoning.sharing.movers import Mover
+
+NAMES = [f"CAV{k}" for k in range(1, 8)]
+
+
+def mover(name: str, place: float) -> Mover:
+    return Mover(name, True, 5.0, 5.0, (("east", place),), 0.0, 0.0)
+
+
+def everybody(places: list[float]) -> dict[str, Mover]:
+    return {name: mover(name, place) for name, place in zip(NAMES, places, strict=False)}
+
+
+vehicles = st.lists(st.floats(0.0, 100.0), min_size=1, max_size=7).map(everybody)
+links = st.sets(st.tuples(st.sampled_from(NAMES), st.sampled_from(NAMES)).filter(lambda p: p[0] != p[1]))
+
+
+@st.composite
+def orders(draw: st.DrawFn) -> tuple[dict[str, Mover], list[str]]:
+    """Some vehicles, and the passing order of some of them."""
+    some = draw(vehicles)
+    return some, draw(st.lists(st.sampled_from(sorted(some)), unique=True))
+
+
+@given(orders())
+def test_where_nobody_drives_ahead_the_passing_order_is_kept(drawn: tuple[dict[str, Mover], list[str]]) -> None:
+    some, sequence = drawn
+    order = planning_order(sequence, some, set())
+    assert order[: len(sequence)] == sequence
+    rest = order[len(sequence) :]
+    assert [some[n].routes[0][1] for n in rest] == sorted((some[n].routes[0][1] for n in rest), reverse=True)
+    assert sorted(order) == sorted(some)
+
+
+@given(orders(), st.permutations(NAMES), links)
+def test_whoever_drives_ahead_is_planned_before_those_behind(
+    drawn: tuple[dict[str, Mover], list[str]], lane: list[str], some_links: set[tuple[str, str]]
+) -> None:
+    some, sequence = drawn
+    rank = {name: k for k, name in enumerate(lane)}
+    ahead = {(a, b) for a, b in some_links if rank[a] < rank[b] and {a, b} <= some.keys()}
+    order = planning_order(sequence, some, ahead)
+    assert sorted(order) == sorted(some)
+    assert all(order.index(a) < order.index(b) for a, b in ahead)
+    # Nobody is drawn forward for nothing: whoever goes before an earlier one has someone behind who waits for it.
+    free = [n for n in sequence if all(n not in pair for pair in ahead)]
+    assert [n for n in order if n in free] == free
+
+
+@given(orders(), links)
+def test_everybody_is_planned_once_even_if_they_follow_one_another_in_a_circle(
+    drawn: tuple[dict[str, Mover], list[str]], some_links: set[tuple[str, str]]
+) -> None:
+    some, sequence = drawn
+    ahead = {pair for pair in some_links if set(pair) <= some.keys()}
+    order = planning_order(sequence, some, ahead)
+    assert sorted(order) == sorted(some)
+    same: set[tuple[str, str]] = set()
+    for pair in sorted(ahead, reverse=True):
+        same.add(pair)
+    assert order == planning_order(sequence, some, same), "however the pairs came together"
+
+
+def test_the_order_of_those_who_have_gone_is_of_no_interest() -> None:
+    some = everybody([10.0, 20.0])
+    assert planning_order(["CAV7", "CAV1", "CAV9", "CAV2"], some, set()) == ["CAV1", "CAV2"]
+
+
+def ahead_of(junction: Junction, *routes: tuple[str, float]) -> set[tuple[str, str]]:
+    thoughts = junction.thoughts(*[car(f"CAV{k}", route, place, 5.0) for k, (route, place) in enumerate(routes, 1)])
+    stage = stage_of(thoughts)
+    return drives_ahead(stage, cavs(stage))
+
+
+def test_who_drives_ahead(junction: Junction) -> None:
+    assert ahead_of(junction, ("south-north", 60.0), ("south-north", 70.0)) == {("CAV2", "CAV1")}
+    assert ahead_of(junction, ("south-north", 60.0), ("south-west", 50.0)) == {("CAV1", "CAV2")}, "of one lane"
+    assert ahead_of(junction, ("south-north", 60.0), ("west-east", 70.0)) == set()
+    assert ahead_of(junction, ("south-north", 60.0), ("west-north", 70.0)) == set(), "not yet on the same lane"
+    past = junction.road_map.routes["south-north"].goal - 10.0
+    assert ahead_of(junction, ("south-north", past - 8.0), ("west-north", past)) in (
+        {("CAV2", "CAV1")},
+        {("CAV1", "CAV2")},
+    ), "behind the junction they are"

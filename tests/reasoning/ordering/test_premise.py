@@ -1,0 +1,68 @@
+"""What an agreed order rests on, and what is open at all."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
+from codriving.datatypes.ordering_problem import Entrant, Instance
+from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
+
+
+def instance(before: frozenset[tuple[str, str]] = frozenset(), **etas: float) -> Instance:
+    return Instance(0.0, {name: Entrant(name, 0.0, eta) for name, eta in etas.items()}, {}, before)
+
+
+THEN = premise(instance(A=3.0, B=3.5, C=9.0), [("A", "B"), ("B", "C")])
+
+
+def later(*pairs: tuple[str, str], **etas: float) -> Premise:
+    return premise(instance(**etas), pairs or [("A", "B"), ("B", "C")])
+
+
+def test_premise_holds_while_nothing_changes() -> None:
+    assert THEN.still_holds(THEN)
+
+
+@pytest.mark.parametrize(
+    ("now", "holds"),
+    [
+        (later(A=2.0, B=2.5, C=8.0), True),
+        (later(A=3.0, B=2.1, C=9.0), True),
+        (later(A=3.0, B=1.9, C=9.0), False),
+        (later(A=1.0, B=8.0, C=9.0), True),
+        (later(("A", "B"), A=3.0, B=3.5), True),
+        (later(("A", "B"), ("A", "C"), A=3.0, B=3.5, C=9.0), False),
+    ],
+    ids=["all nearer", "a little earlier", "clearly earlier", "more clearly later", "a pair less", "a new pair"],
+)
+def test_premise_is_about_open_pairs_and_who_is_earlier(now: Premise, holds: bool) -> None:
+    assert THEN.still_holds(now) is holds
+
+
+def test_premise_is_about_human_drivers_and_who_can_stop() -> None:
+    assert not THEN.still_holds(replace(THEN, held=frozenset({"A"})))
+    assert not THEN.still_holds(replace(THEN, cannot_stop=frozenset({"B"})))
+    # C has left; that it was held up does not matter any more.
+    held = replace(THEN, held=frozenset({"C"}))
+    assert held.still_holds(later(("A", "B"), A=3.0, B=3.5))
+
+
+def test_human_drivers_count_only_where_they_hold_somebody_up() -> None:
+    world = instance(A=3.0, B=3.5)
+    world.entrants["A"].windows.append((1.0, 4.0))
+    world.entrants["B"].windows.append((4.0, 9.0))
+    assert premise(world, [("A", "B")]).held == {"A"}
+
+
+def test_pairs_that_are_fixed_even_by_way_of_others_are_not_open() -> None:
+    world = instance(frozenset({("A", "B"), ("B", "C")}), A=1.0, B=2.0, C=3.0, D=4.0)
+    assert open_pairs(world, [("A", "B"), ("A", "C"), ("C", "A"), ("C", "D")]) == [("C", "D")]
+
+
+def test_circle_is_found_with_everybody_before_the_next() -> None:
+    pairs = {("A", "B"), ("B", "C"), ("C", "A"), ("C", "D")}
+    circle = find_circle(pairs)
+    assert circle is not None
+    assert set(pairwise(circle)) <= pairs
+    assert find_circle(pairs - {("B", "C")}) is None

@@ -1,0 +1,115 @@
+"""What a run folder takes beside what it holds: more episodes, more cells of the same experiment, nothing else."""
+
+import dataclasses
+import json
+from pathlib import Path
+
+import pytest
+from manifests import CONFIGS, cell, files, manifest
+
+from codriving.datatypes.record import EpisodeRecord
+from codriving.errors import RunFolderError
+from codriving.runs.continuation import changed_versions, continued
+from codriving.runs.episode_folder import write_episode
+from codriving.runs.manifest import CellEntry, Manifest, read_manifest
+from codriving.runs.run_folder import RunFolder
+from codriving.runs.timing import timing_of
+
+
+def named(folder: str, fingerprint: str, **swept: str) -> CellEntry:
+    return dataclasses.replace(cell(fingerprint), folder=folder, swept=swept)
+
+
+def asked(*cells: CellEntry, episodes: int = 20) -> Manifest:
+    return dataclasses.replace(manifest(*cells), episodes=episodes)
+
+
+HERE = Path("outputs/run/x")
+
+
+def test_the_same_again_changes_nothing() -> None:
+    there = asked(named("a", "f1"), named("b", "f2"))
+    later = dataclasses.replace(there, created="2027-01-01T00:00:00+00:00")
+    assert continued(HERE, there, later) == there
+
+
+@pytest.mark.parametrize("episodes", [5, 200])
+def test_any_number_of_episodes_may_be_asked_for(episodes: int) -> None:
+    there = asked(named("a", "f1"))
+    assert continued(HERE, there, asked(named("a", "f1"), episodes=episodes)).episodes == episodes
+
+
+def test_cells_are_added_in_the_order_asked_for_and_none_is_forgotten() -> None:
+    there = asked(named("a", "f1"), named("b", "f2"))
+    grown = continued(HERE, there, asked(named("c", "f3"), named("b", "f2")))
+    assert grown.rows == ("c", "b")
+    assert [entry.folder for entry in grown.cells] == ["a", "b", "c"]
+    again = continued(HERE, grown, asked(named("a", "f1")))
+    assert (again.rows, len(again.cells)) == (("a",), 3)
+
+
+def test_a_cell_keeps_its_folder_and_takes_the_new_label() -> None:
+    there = asked(named("plain", "f1"))
+    grown = continued(HERE, there, asked(named("cavs=8", "f2", cavs="8"), named("cavs=4", "f1", cavs="4")))
+    assert grown.rows == ("cavs=8", "plain")
+    assert {entry.folder: entry.swept for entry in grown.cells} == {"plain": {"cavs": "4"}, "cavs=8": {"cavs": "8"}}
+
+
+def test_a_new_cell_never_gets_the_folder_of_another() -> None:
+    there = asked(named("Plain", "f1"))
+    grown = continued(HERE, there, asked(named("other", "f1"), named("PLAIN", "f2")))
+    assert grown.rows == ("Plain", "PLAIN-f2")
+
+
+def test_without_a_cell_in_common_it_is_another_config() -> None:
+    there = asked(dataclasses.replace(cell("f1"), settings={"scenario.cavs": "4", "environment.scenario.cavs": "4"}))
+    other = asked(dataclasses.replace(cell("f2"), settings={"scenario.cavs": "8", "environment.scenario.cavs": "8"}))
+    with pytest.raises(RunFolderError, match=r"another config: scenario\.cavs was 4, is now 8; repeat its settings"):
+        continued(HERE, there, other)
+
+
+def test_the_difference_is_told_to_the_cell_that_is_most_alike() -> None:
+    far = dataclasses.replace(cell("f1"), settings={"a": "1", "b": "1"})
+    near = dataclasses.replace(cell("f2"), settings={"a": "1", "b": "2"})
+    with pytest.raises(RunFolderError, match=r"another config: a was 1, is now 3; "):
+        continued(HERE, asked(far, near), asked(dataclasses.replace(cell("f3"), settings={"a": "3", "b": "2"})))
+
+
+def test_what_goes_on_with_another_version_is_named() -> None:
+    before = dataclasses.replace(asked(), versions={"numpy": "1", "scipy": "1"}, commit="abc")
+    now = dataclasses.replace(asked(), versions={"numpy": "2", "scipy": "1", "faiss-cpu": "1"}, commit=None)
+    assert changed_versions(before, now) == ("commit abc -> none", "faiss-cpu none -> 1", "numpy 1 -> 2")
+    assert changed_versions(before, before) == ()
+
+
+def test_a_folder_that_grows_keeps_what_it_has(tmp_path: Path, record: EpisodeRecord) -> None:
+    with RunFolder(tmp_path, manifest(), CONFIGS) as folder:
+        for seed in (3, 7, 30):
+            write_episode(folder.episode("a-cell", seed), record, None, [], timing_of(1.0, []))
+    before = files(tmp_path)
+    more = asked(named("b", "f2"), named("new name", "f1"), episodes=8)
+    with RunFolder(tmp_path, more, {"b": "cavs: 8\n", "new name": "cavs: 4\n"}) as folder:
+        assert folder.manifest.rows == ("b", "a-cell")
+        assert folder.further(range(8)) == 1
+    after = files(tmp_path)
+    changed = {name for name in before if before[name] != after[name]}
+    assert changed == {"manifest.json", "config.yaml", "configs/a-cell.yaml"}
+    assert after["config.yaml"] == after["configs/b.yaml"] == b"cavs: 8\n"
+    assert after["configs/a-cell.yaml"] == b"cavs: 4\n"
+    with RunFolder(tmp_path, asked(named("b", "f2"), episodes=1), {"b": ""}) as folder:
+        assert folder.further(range(1)) == 3
+
+
+def test_the_first_layout_can_be_read_and_is_not_added_to(tmp_path: Path) -> None:
+    with RunFolder(tmp_path, manifest(), CONFIGS):
+        pass
+    path = tmp_path / "manifest.json"
+    plain = json.loads(path.read_text())
+    old = {**plain, "format": 1, "cells": [{k: v for k, v in c.items() if k != "swept"} for c in plain["cells"]]}
+    del old["rows"]
+    path.write_text(json.dumps(old))
+    found = read_manifest(tmp_path)
+    assert found is not None
+    assert (found.rows, found.cells) == (("a-cell",), (cell(),))
+    with pytest.raises(RunFolderError, match=r"written by another version \(layout 1, not 2\)"):
+        RunFolder(tmp_path, manifest(), CONFIGS)

@@ -1,0 +1,142 @@
+"""Records survive writing and reading, and damage is named."""
+
+import dataclasses
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.datatypes.record import EpisodeRecord, Participant
+from codriving.datatypes.score import Pet, Score, TravelScore
+from codriving.errors import RunFolderError
+from codriving.runs.records import RECORD, read_record, record_text
+from codriving.runs.strict_json import decode
+
+NUMBER = st.floats(allow_nan=False, allow_infinity=False)
+WORD = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
+COLLISION = st.builds(Collision, NUMBER, WORD, WORD, WORD)
+RECORDS = st.builds(
+    EpisodeRecord,
+    *[WORD] * 4,
+    seed=st.integers(0, 2**31),
+    outcome=st.builds(
+        Outcome,
+        st.sampled_from(Ending),
+        NUMBER,
+        st.dictionaries(WORD, NUMBER, max_size=2),
+        st.none() | COLLISION,
+        st.lists(COLLISION, max_size=2).map(tuple),
+        st.lists(WORD, max_size=2).map(tuple),
+        WORD,
+    ),
+    score=st.none()
+    | st.builds(
+        Score,
+        st.booleans(),
+        st.lists(st.builds(Pet, WORD, WORD, WORD, NUMBER), max_size=2).map(tuple),
+        st.lists(st.builds(TravelScore, WORD, NUMBER, NUMBER, st.none() | NUMBER), max_size=2).map(tuple),
+    ),
+    participants=st.lists(st.builds(Participant, WORD, WORD, WORD, st.none() | NUMBER), max_size=2).map(tuple),
+    decisions=st.integers(0, 1000),
+    counts=st.dictionaries(WORD, st.integers(), max_size=2),
+    memory=WORD,
+)
+
+
+@settings(max_examples=40)
+@given(RECORDS)
+def test_what_is_read_is_what_was_written(record: EpisodeRecord) -> None:
+    text = record_text(record)
+    assert decode(EpisodeRecord, text) == record
+    assert record_text(record) == text
+
+
+def test_a_record_from_before_there_was_a_memory_can_be_read(record: EpisodeRecord) -> None:
+    older = {name: value for name, value in json.loads(record_text(record)).items() if name != "memory"}
+    assert decode(EpisodeRecord, json.dumps(older)) == dataclasses.replace(record, memory="")
+    with pytest.raises(ValueError, match="field seed is missing"):
+        decode(EpisodeRecord, json.dumps({name: value for name, value in older.items() if name != "seed"}))
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_a_value_that_is_not_finite_is_never_written(record: EpisodeRecord, value: float) -> None:
+    with pytest.raises(ValueError, match="JSON compliant"):
+        record_text(dataclasses.replace(record, outcome=dataclasses.replace(record.outcome, time=value)))
+
+
+def test_a_value_of_another_type_is_never_written(record: EpisodeRecord) -> None:
+    with pytest.raises(ValueError, match=r"field seed must be int, got 1\.5"):
+        record_text(dataclasses.replace(record, seed=1.5))
+    with pytest.raises(ValueError, match=r"field counts\.fallbacks must be a number, got True"):
+        record_text(dataclasses.replace(record, counts={"fallbacks": True}))
+
+
+def test_counters_are_whole_and_amounts_are_not(record: EpisodeRecord, tmp_path: Path) -> None:
+    counts = {"cost_usd": 0.0, "fallbacks": 2, "prompt_tokens": 12_345_678}
+    (tmp_path / "record.json").write_text(record_text(dataclasses.replace(record, counts=counts)))
+    read = read_record(tmp_path).counts
+    assert read == counts
+    assert [type(number) for number in read.values()] == [float, int, int]
+    with pytest.raises(ValueError, match="JSON compliant"):
+        record_text(dataclasses.replace(record, counts={"cost_usd": math.inf}))
+
+
+def change(path: list[str], value: object) -> Callable[[Any], str]:
+    """An edit of the record's JSON: the value at a path, or its removal."""
+
+    def edit(plain: Any) -> str:
+        node = plain
+        for key in path[:-1]:
+            node = node[key]
+        if value is None:
+            del node[path[-1]]
+        else:
+            node[path[-1]] = value
+        return json.dumps(plain)
+
+    return edit
+
+
+DAMAGE = {
+    "cut in half": (lambda plain: json.dumps(plain)[:100], "Unterminated|delimiter|Expecting"),
+    "empty": (lambda plain: "", "Expecting value"),
+    "a list": (lambda plain: "[]", "field at the top must be dict"),
+    "missing field": (change(["outcome", "arrivals"], None), r"field outcome\.arrivals is missing"),
+    "unknown field": (change(["colour"], "red"), "field colour is unknown"),
+    "wrong type": (change(["seed"], "7"), "field seed must be int, got '7'"),
+    "a switch for a number": (change(["decisions"], True), "field decisions must be int, got True"),
+    "unknown ending": (change(["outcome", "ending"], "won"), "must be one of success, collision, .* got 'won'"),
+    "NaN": (change(["outcome", "time"], math.nan), "NaN is not a number"),
+    "too large": (lambda plain: json.dumps(plain).replace("1.25", "1e999"), r"score\.pets\[0\]\.value must be finite"),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGE)
+def test_damage_is_named_with_its_cure_and_nothing_is_lost(tmp_path: Path, record: EpisodeRecord, name: str) -> None:
+    edit, reason = DAMAGE[name]
+    path = tmp_path / RECORD
+    path.write_text(edit(json.loads(record_text(record))))
+    before = path.read_bytes()
+    with pytest.raises(RunFolderError, match=reason) as caught:
+        read_record(tmp_path)
+    assert str(path) in str(caught.value)
+    assert f"delete the folder {tmp_path}" in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert path.read_bytes() == before
+
+
+def test_a_folder_without_its_record_is_damaged(tmp_path: Path) -> None:
+    with pytest.raises(RunFolderError, match="it is missing"):
+        read_record(tmp_path)
+
+
+def test_bytes_that_are_no_text_are_damage(tmp_path: Path) -> None:
+    (tmp_path / RECORD).write_bytes(b"\xff\xfe")
+    with pytest.raises(RunFolderError, match="damaged"):
+        read_record(tmp_path)
