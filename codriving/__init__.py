@@ -19,7 +19,6 @@ def run(*overrides: str, config_dir: str | Path | None = None) -> "Results":
 
     Args:
         *overrides: ``key=value`` tokens, for instance ``"scenario=intersection", "episodes=5"``.
-        config_dir: A folder with YAML files of your own, in the same groups.
 
     Returns:
         ``episodes`` and ``summary`` as pandas data frames, and the run ``folder``.
@@ -42,7 +41,6 @@ def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -
     Args:
         table: ``"baselines"``, ``"single-vehicle"``, ``"all"`` or ``"load"``.
         *overrides: ``key=value`` tokens; ``"method=mine"`` adds a method of your own.
-        config_dir: A folder with YAML files of your own, in the same groups.
 
     Returns:
         ``table``, ``episodes`` and ``summary`` as pandas data frames, and the run ``folder``.

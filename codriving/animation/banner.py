@@ -9,12 +9,7 @@ from codriving.datatypes.outcome import Ending, Outcome
 
 
 def sentence(outcome: Outcome, cavs: int) -> str:
-    """Say how an episode ended.
-
-    Args:
-        outcome: Its outcome.
-        cavs: How many CAVs took part.
-    """
+    """Say how an episode ended."""
     after = f"after {outcome.time:.1f} s"
     arrived = f"{len(outcome.arrivals)} of {cavs} CAVs arrived"
     if outcome.ending is Ending.SUCCESS:
@@ -30,14 +25,7 @@ def sentence(outcome: Outcome, cavs: int) -> str:
 
 
 def draw_banner(canvas: Canvas, area: Area, outcome: Outcome, cavs: int) -> None:
-    """Draw the banner.
-
-    Args:
-        canvas: Where to draw.
-        area: The part of the frame that shows the road.
-        outcome: How the episode ended.
-        cavs: How many CAVs took part.
-    """
+    """Draw the banner."""
     good = outcome.ending is Ending.SUCCESS
     colour = GREEN if good else VERMILION
     words = shortened(canvas, sentence(outcome, cavs), 17, area.width - 120, bold=True)

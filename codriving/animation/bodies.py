@@ -21,13 +21,7 @@ _LETTERS = 12.0
 
 
 def draw_bodies(canvas: Canvas, window: Window, bodies: Sequence[Body]) -> None:
-    """Draw vehicles.
-
-    Args:
-        canvas: Where to draw.
-        window: What is seen where.
-        bodies: The vehicles.
-    """
+    """Draw vehicles."""
     for body in bodies:
         if not window.sees([(body.x, body.y)], 40.0):
             continue
@@ -56,14 +50,7 @@ def _outline(window: Window, body: Body, shape: Points) -> Points:
 
 
 def draw_names(canvas: Canvas, window: Window, space: Space, moment: Moment) -> None:
-    """Write at each vehicle who it is, what it does and how fast; on the side where there is room.
-
-    Args:
-        canvas: Where to draw.
-        window: What is seen where.
-        space: Where there is room; the names take their part of it.
-        moment: Vehicles and actions.
-    """
+    """Write at each vehicle who it is, what it does and how fast; on the side where there is room."""
     shown = [body for body in moment.bodies if window.owns((body.x, body.y))]
     boxes = [_bounds(_outline(window, body, _CAV)) for body in shown]
     for box in boxes:

@@ -37,8 +37,6 @@ class Camera:
     On a compact road it stays over the middle and moves in and out alone, so that nobody loses the way.
 
     Args:
-        trajectory: What was driven.
-        road_map: The road.
         view: Part of the frame that shows the road [px].
     """
 
@@ -68,7 +66,6 @@ def overview(points: NDArray[np.float64], road_map: RoadMap, view: Area) -> tupl
 
     Args:
         points: What has to be seen (n, 2) [m].
-        road_map: The road.
         view: Part of the frame [px].
     """
     lanes = np.concatenate([lane_path(lane, spacing=5.0).points for lane in road_map.road.lanes])

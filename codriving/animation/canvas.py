@@ -28,13 +28,10 @@ class Canvas:
     Args:
         width: Width [px].
         height: Height [px].
-        scale: Real pixels a logical pixel.
 
     Attributes:
         width: Width [px].
         height: Height [px].
-        scale: Real pixels a logical pixel.
-        pixels: What has been drawn (rows, columns, 4), RGBA; changes with every stroke.
     """
 
     def __init__(self, width: float, height: float, scale: float = 1.0) -> None:
@@ -67,7 +64,6 @@ class Canvas:
         Args:
             points: Its corners (n, 2) [px].
             fill: Colour inside, ``#rrggbb`` or ``#rrggbbaa``.
-            stroke: Colour of the outline.
             width: Width of the outline [px].
         """
         self.shape(Shape([points], closed=True), None, fill, stroke, width)
@@ -77,7 +73,6 @@ class Canvas:
 
         Args:
             points: Points (n, 2) [px].
-            colour: Its colour.
             width: Its width [px].
             dash: Lengths of dashes and gaps in turn [px]; none for a full line.
         """
@@ -93,8 +88,6 @@ class Canvas:
             top: Upper edge [px].
             width: Width [px].
             height: Height [px].
-            fill: Colour inside.
-            stroke: Colour of the outline.
         """
         right, bottom = left + width, top + height
         self.polygon([(left, top), (right, top), (right, bottom), (left, bottom)], fill, stroke)
@@ -111,10 +104,8 @@ class Canvas:
         """Draw a shape that was prepared before.
 
         Args:
-            shape: The shape.
             matrix: From its units to pixels (3, 3), for points as columns (x, y, 1); None if it is in pixels.
             fill: Colour inside, ``#rrggbb`` or ``#rrggbbaa``.
-            stroke: Colour of its lines.
             width: Width of its lines [px].
             dash: Lengths of dashes and gaps in turn [px]; none for a full line.
         """
@@ -144,12 +135,7 @@ class Canvas:
         Args:
             x: Where it stands [px].
             y: Middle of its capitals [px].
-            words: What to write.
             size: Size of the letters [px].
-            colour: Their colour.
-            bold: Whether they are bold.
-            anchor: Which part of the line is at `x`: 0 its beginning, 0.5 its middle, 1 its end.
-            halo: Colour of a rim around the letters, for words on the road.
         """
         words = " ".join(words.split())
         size, rim = size * self.scale, round(1.8 * self.scale) if halo else 0
@@ -168,9 +154,7 @@ class Canvas:
         """Return the width of a line of text [px].
 
         Args:
-            words: The text.
             size: Size of the letters [px].
-            bold: Whether they are bold.
         """
         return text_width(" ".join(words.split()), size * self.scale, bold) / self.scale
 
@@ -193,7 +177,6 @@ class Canvas:
             top: Upper edge [px].
             width: Width [px].
             height: Height [px].
-            part: What was copied.
         """
         np.copyto(self._part(left, top, width, height), part)
 

@@ -22,7 +22,6 @@ class Cards:
 
     Args:
         area: Where on the frame [px].
-        cavs: Ids of all CAVs of the episode.
     """
 
     def __init__(self, area: Area, cavs: Sequence[str]) -> None:
@@ -35,13 +34,7 @@ class Cards:
         self._area, self._more = area, len(cavs) - len(self._shown)
 
     def draw(self, canvas: Canvas, moment: Moment, meetings: Sequence[Meeting]) -> None:
-        """Draw all that does not change with every frame.
-
-        Args:
-            canvas: Where to draw.
-            moment: What there is to say.
-            meetings: Open conflicts, the most severe first.
-        """
+        """Draw all that does not change with every frame."""
         here = {body.id for body in moment.bodies}
         for k, name in enumerate(self._shown):
             left, y = self._area.left, self._middle(k)
@@ -60,12 +53,7 @@ class Cards:
             canvas.text(self._area.left, self._middle(len(self._shown)), f"and {self._more} more", _SMALL, FAINT)
 
     def speeds(self, canvas: Canvas, moment: Moment) -> None:
-        """Write the speeds, which change with every frame.
-
-        Args:
-            canvas: Where to draw.
-            moment: The vehicles.
-        """
+        """Write the speeds, which change with every frame."""
         right = self._area.left + self._area.width
         speeds = {body.id: body.speed for body in moment.bodies}
         for k, name in enumerate(self._shown):
@@ -105,11 +93,7 @@ def _gone(canvas: Canvas, x: float, y: float, name: str, moment: Moment) -> None
 
 
 def natural(name: str) -> tuple[str, int, str]:
-    """Order names as people do: ``CAV2`` before ``CAV10``.
-
-    Args:
-        name: A name.
-    """
+    """Order names as people do: ``CAV2`` before ``CAV10``."""
     stem = name.rstrip("0123456789")
     digits = name[len(stem) :]
     return stem, int(digits) if digits else -1, name

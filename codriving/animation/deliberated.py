@@ -18,11 +18,7 @@ class Deliberated:
 
     Attributes:
         time: When [s].
-        thoughts: What each CAV decided, by id.
-        routes: Route that each CAV plans, by id.
-        meetings: The most severe open conflict of each pair.
         order: The passing order that all share, or None.
-        order_title: What kind of order it is; empty if there is nothing to order.
     """
 
     time: float
@@ -34,12 +30,7 @@ class Deliberated:
 
 
 def deliberated(line: Mapping[str, Any], road_map: RoadMap) -> Deliberated:
-    """Read a line.
-
-    Args:
-        line: The line.
-        road_map: The road.
-    """
+    """Read a line."""
     cavs = {name: entry for entry in _maps(line, "cavs") if (name := _text(entry, "id"))}
     order, title = _order([_map(entry, "order") for entry in cavs.values()])
     routes = {name: _text(_map(_map(entry, "scene"), "intent"), "route") for name, entry in cavs.items()}
@@ -54,11 +45,7 @@ def deliberated(line: Mapping[str, Any], road_map: RoadMap) -> Deliberated:
 
 
 def action_named(name: str) -> Action | None:
-    """Return an action by its name, or None if it is not one.
-
-    Args:
-        name: Its name.
-    """
+    """Return an action by its name, or None if it is not one."""
     return Action(name) if name in {str(action) for action in Action} else None
 
 

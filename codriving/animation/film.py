@@ -33,7 +33,6 @@ class Reel:
 
     Attributes:
         format: ``mp4`` or ``gif``.
-        rate: Frames a second.
         rows: Height of a frame [px].
         columns: Width of a frame [px].
     """
@@ -46,15 +45,6 @@ class Reel:
 
 def write_film(path: Path, reel: Reel, frames: Iterator[Frame], samples: Sequence[Frame] = ()) -> int:
     """Write a film; only one frame at a time is in memory.
-
-    Args:
-        path: The file; whatever its name ends in.
-        reel: The shape of the film.
-        frames: The frames (rows, columns, 4), RGBA.
-        samples: Some of them, which a GIF takes its 256 colours from.
-
-    Returns:
-        The number of frames.
 
     Raises:
         FilmError: If ffmpeg cannot be started or gives up.
@@ -126,10 +116,6 @@ def _palette(samples: Sequence[Frame]) -> Image.Image:
 
 def write_png(path: Path, frame: Frame) -> None:
     """Write a single frame.
-
-    Args:
-        path: The file.
-        frame: The frame (rows, columns, 3 or 4).
 
     Raises:
         OSError: If it cannot be written.

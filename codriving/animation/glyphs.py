@@ -26,8 +26,6 @@ def action_glyph(canvas: Canvas, action: Action, x: float, y: float, size: float
     """Draw the sign of an action.
 
     Args:
-        canvas: Where to draw.
-        action: The action.
         x: Its middle [px].
         y: Its middle [px].
         size: Its width [px].
@@ -42,11 +40,9 @@ def tick(canvas: Canvas, x: float, y: float, size: float, colour: str) -> None:
     """Draw the sign of success.
 
     Args:
-        canvas: Where to draw.
         x: Its middle [px].
         y: Its middle [px].
         size: Its width [px].
-        colour: Its colour.
     """
     points = np.array([(-0.45, 0.0), (-0.1, 0.35), (0.5, -0.4)])
     canvas.line(points * size + (x, y), colour, size / 5)
@@ -56,7 +52,6 @@ def target(canvas: Canvas, x: float, y: float, radius: float) -> None:
     """Draw a ring with four ticks around something, which stays in sight.
 
     Args:
-        canvas: Where to draw.
         x: Its middle [px].
         y: Its middle [px].
         radius: Its radius [px].
@@ -73,11 +68,9 @@ def cross(canvas: Canvas, x: float, y: float, size: float, colour: str = VERMILI
     """Draw the sign of failure.
 
     Args:
-        canvas: Where to draw.
         x: Its middle [px].
         y: Its middle [px].
         size: Its width [px].
-        colour: Its colour.
     """
     arm = np.array([(-0.4, -0.4), (0.4, 0.4)])
     for line in (arm, arm * (1, -1)):

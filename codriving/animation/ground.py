@@ -26,11 +26,7 @@ _MARKS = 50.0
 
 
 class Ground:
-    """The road as shapes in metres, worked out once.
-
-    Args:
-        road_map: The road.
-    """
+    """The road as shapes in metres, worked out once."""
 
     def __init__(self, road_map: RoadMap) -> None:
         ways = [(lane, _way(lane)) for lane in road_map.road.lanes]
@@ -51,12 +47,7 @@ class Ground:
         self._crosses = Shape(block[pair] for block in blocks for pair in ([0, 2], [1, 3]))
 
     def draw(self, canvas: Canvas, windows: tuple[Window, ...]) -> None:
-        """Draw it through each window.
-
-        Args:
-            canvas: Where to draw.
-            windows: What is seen where.
-        """
+        """Draw it through each window."""
         for number, window in enumerate(windows):
             a = window.area
             with canvas.within(a.left, a.top, a.width, a.height):
@@ -82,7 +73,6 @@ def side(way: Path, offset: float) -> Points:
     """Return the line that runs beside a way.
 
     Args:
-        way: The way.
         offset: How far to its right [m].
 
     Returns:

@@ -22,7 +22,6 @@ def draw_legend(canvas: Canvas, area: Area) -> None:
     """Draw the legend.
 
     Args:
-        canvas: Where to draw.
         area: Where on the frame [px].
     """
     canvas.line([(area.left, area.top), (area.left + area.width, area.top)], HAIR, 1.0)

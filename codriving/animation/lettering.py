@@ -22,8 +22,6 @@ class Stamp:
     """A line of text in its colours, ready to be pressed onto a sheet.
 
     Attributes:
-        ink: What it adds (rows, columns, 3), 0 to 255.
-        keep: How much it leaves of what is there (rows, columns, 1), 0 to 1.
         dx: From the beginning of the line to the left edge [px].
         dy: From the middle of the capitals to the upper edge [px].
     """
@@ -47,9 +45,7 @@ def text_width(words: str, size: float, bold: bool) -> float:
     """Return the width of a line of text [px].
 
     Args:
-        words: The text.
         size: Size of the letters [px].
-        bold: Whether they are bold.
     """
     return _font(size, bold).getlength(words)
 
@@ -59,10 +55,7 @@ def stamp(words: str, size: float, bold: bool, colour: str, halo: str | None, ri
     """Cut the stamp of a line of text.
 
     Args:
-        words: The text, in one line.
         size: Size of the letters [px].
-        bold: Whether they are bold.
-        colour: Colour of the letters.
         halo: Colour of a rim around them, or None.
         rim: Width of the rim [px].
     """

@@ -25,12 +25,9 @@ class LivePicture:
     The same calls in the same order give the same pixels. Nothing heavy is imported before the first frame.
 
     Args:
-        road_map: The road.
         title: First line of the panel, for instance ``intersection, seed 3``.
         width: Width of a frame at scale 1 [px]; the panel takes 384 of it.
         height: Height of a frame at scale 1 [px].
-        scale: Pixels a pixel of the layout, 0.5 to 4; 2 for a screen of high resolution.
-        panel: Whether there is a panel with time, actions and speeds at the right; without it, road alone.
 
     Raises:
         ConfigError: If a size is out of range.
@@ -72,13 +69,9 @@ class LivePicture:
         The view is chosen anew whenever time goes back, as after a reset.
 
         Args:
-            world: The vehicles on the road, and what the CAVs among them intend.
-            actions: The action in force of each CAV, by id; those that are missing are not shown.
             deliberation: ``Deliberation.as_dict()`` of the method, if there is one: conflicts, order and reasons.
-            outcome: How the episode ended; draws the banner.
             arrivals: Arrival time of each CAV that has arrived [s], by id; without it a CAV that has left the road
                 counts as arrived, and the outcome says when.
-            title: A new first line of the panel, as after a reset with another seed.
 
         Returns:
             The frame (height, width, 3), uint8, RGB; an array of its own that may be kept.

@@ -18,22 +18,13 @@ _RANK = {severity: rank for rank, severity in enumerate(SEVERITIES)}
 
 
 def worst_first(meetings: Sequence[Meeting]) -> list[Meeting]:
-    """Return the conflicts that are drawn, the most severe first.
-
-    Args:
-        meetings: All conflicts.
-    """
+    """Return the conflicts that are drawn, the most severe first."""
     shown = [m for m in meetings if m.severity in _RANK]
     return sorted(shown, key=lambda m: (_RANK[m.severity], m.dttcp, m.one, m.other))
 
 
 def pressing(meetings: Sequence[Meeting], bodies: Mapping[str, Body]) -> list[Meeting]:
-    """Return the conflicts that get lines and words: the most severe of each CAV, or nobody would find a way through.
-
-    Args:
-        meetings: Conflicts, the most severe first.
-        bodies: The vehicles on the road, by id.
-    """
+    """Return the conflicts that get lines and words: the most severe of each CAV."""
     done, chosen = set[str](), []
     for meeting in meetings:
         cavs = {name for name in (meeting.one, meeting.other) if bodies[name].kind is Kind.CAV}
@@ -44,13 +35,7 @@ def pressing(meetings: Sequence[Meeting], bodies: Mapping[str, Body]) -> list[Me
 
 
 class Meetings:
-    """The conflicts of a frame.
-
-    Args:
-        meetings: All conflicts.
-        bodies: The vehicles on the road.
-        road_map: The road.
-    """
+    """The conflicts of a frame."""
 
     def __init__(self, meetings: Sequence[Meeting], bodies: Sequence[Body], road_map: RoadMap) -> None:
         self._bodies = {body.id: body for body in bodies}
@@ -59,12 +44,7 @@ class Meetings:
         self._shapes = {id(m): meeting_lines(m, self._bodies, road_map) for m in self._shown}
 
     def lines(self, canvas: Canvas, window: Window) -> None:
-        """Draw the ways of the two to where they meet, for those conflicts that press, the most severe on top.
-
-        Args:
-            canvas: Where to draw.
-            window: What is seen where.
-        """
+        """Draw the ways of the two to where they meet, for those conflicts that press, the most severe on top."""
         for meeting in reversed(self._pressing):
             stroke = SEVERITIES[meeting.severity]
             for line in self._shapes[id(meeting)][1]:
@@ -72,12 +52,7 @@ class Meetings:
                     canvas.line(window.place(line), stroke.colour + BAND, stroke.width, stroke.dash)
 
     def marks(self, canvas: Canvas, window: Window) -> None:
-        """Draw a mark for each, the most severe on top.
-
-        Args:
-            canvas: Where to draw.
-            window: What is seen where.
-        """
+        """Draw a mark for each, the most severe on top."""
         for meeting in reversed(self._shown):
             place = self._shapes[id(meeting)][0]
             if window.sees([place], 20.0):
@@ -85,12 +60,7 @@ class Meetings:
                 mark(canvas, float(x), float(y), 1.0, meeting.severity, meeting.certain)
 
     def claim(self, window: Window, space: Space) -> None:
-        """Keep words off the marks.
-
-        Args:
-            window: What is seen where.
-            space: Where there is room; the marks take their part of it.
-        """
+        """Keep words off the marks."""
         for meeting in self._shown:
             space.take(self._box(window, meeting))
 
@@ -100,13 +70,7 @@ class Meetings:
         return Area(x - half, y - half, 2 * half, 2 * half)
 
     def label(self, canvas: Canvas, window: Window, space: Space) -> None:
-        """Write at the marks of those that press how severe they are.
-
-        Args:
-            canvas: Where to draw.
-            window: What is seen where.
-            space: Where there is room; the words take their part of it.
-        """
+        """Write at the marks of those that press how severe they are."""
         for meeting in self._pressing:
             place = self._shapes[id(meeting)][0]
             if not window.owns(place):
@@ -119,11 +83,6 @@ class Meetings:
 
 def meeting_lines(meeting: Meeting, bodies: Mapping[str, Body], road_map: RoadMap) -> tuple[Points, list[Points]]:
     """Return where two vehicles would meet, and the ways of the two until there.
-
-    Args:
-        meeting: The conflict.
-        bodies: The vehicles on the road, by id.
-        road_map: The road.
 
     Returns:
         A point (2,) and lines (n, 2) [m]. Where one only follows the other, the point lies between them.
@@ -157,12 +116,8 @@ def mark(canvas: Canvas, x: float, y: float, size: float, severity: Severity, ce
     """Draw a mark.
 
     Args:
-        canvas: Where to draw.
         x: Its middle [px].
         y: Its middle [px].
-        size: How large, 1 on the road.
-        severity: What it stands for; serious ones have an exclamation mark.
-        certain: Whether both routes are known; else it is hollow.
     """
     colour = SEVERITIES[severity].colour
     inside, rim = (colour, PAPER) if certain else (PAPER, colour)

@@ -14,8 +14,6 @@ class Body:
     """A vehicle on the road.
 
     Attributes:
-        id: Its name.
-        kind: CAV or HDV.
         x: Position [m].
         y: Position [m].
         heading: Heading [rad].
@@ -41,11 +39,7 @@ class Meeting:
     """An open conflict between two vehicles.
 
     Attributes:
-        one: Id of the one.
-        other: Id of the other.
-        severity: The band of the time difference.
         dttcp: The time difference [s].
-        certain: Whether both routes are known.
         ways: Route of each, with the arc length at which it comes to where they would meet [m]; None if that is not
             known.
     """
@@ -60,13 +54,7 @@ class Meeting:
 
 @dataclass(frozen=True, slots=True)
 class Thought:
-    """What a CAV decided.
-
-    Attributes:
-        action: Its action.
-        reason: Why, in a sentence; may be empty.
-        waits_for: Ids of those that it lets pass first.
-    """
+    """What a CAV decided."""
 
     action: Action | None
     reason: str = ""
@@ -79,13 +67,8 @@ class Moment:
 
     Attributes:
         time: Simulated time [s].
-        bodies: Every vehicle on the road.
-        thoughts: What each CAV decided, by id.
-        meetings: Open conflicts, the most severe of each pair.
         order: The passing order, first to last; None if there is none that all share.
-        order_title: What kind of order it is.
         arrived: Arrival time of each CAV that has arrived [s], by id; None if it is not known when.
-        outcome: How the episode ended, once it has.
     """
 
     time: float

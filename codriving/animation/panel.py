@@ -23,8 +23,6 @@ class Panel:
 
     Args:
         area: Where on the frame [px].
-        title: Its first two lines.
-        cavs: Ids of all CAVs of the episode, also of those that have left the road.
     """
 
     def __init__(self, area: Area, title: tuple[str, str], cavs: Sequence[str]) -> None:
@@ -33,12 +31,7 @@ class Panel:
         self._kept: tuple[Any, Pixels, Cards] | None = None
 
     def draw(self, canvas: Canvas, moment: Moment) -> None:
-        """Draw it.
-
-        Args:
-            canvas: Where to draw.
-            moment: What there is to say.
-        """
+        """Draw it."""
         a = self._area
         here = tuple((body.id, body.kind) for body in moment.bodies)
         key = (here, moment.thoughts, moment.meetings, moment.order, moment.order_title, moment.arrived)

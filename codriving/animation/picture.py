@@ -26,13 +26,8 @@ class Picture:
     """Draws the moments of one episode.
 
     Args:
-        road_map: The road.
-        cavs: Ids of all CAVs of the episode, in the order of the panel.
-        title: The first two lines of the panel.
         width: Width of a frame [px].
         height: Height of a frame [px].
-        scale: Real pixels a pixel.
-        panel: Whether there is a panel.
 
     Attributes:
         view: The part of a frame that shows the road [px].
@@ -64,10 +59,6 @@ class Picture:
     def draw(self, moment: Moment, windows: tuple[Window, ...]) -> NDArray[np.uint8]:
         """Draw a frame.
 
-        Args:
-            moment: What there is to see.
-            windows: Which part of the world is seen where.
-
         Returns:
             The frame (rows, columns, 4), RGBA; valid until the next one is drawn.
         """
@@ -97,10 +88,6 @@ class Picture:
 
     def rgb(self, moment: Moment, windows: tuple[Window, ...]) -> NDArray[np.uint8]:
         """Draw a frame that may be kept.
-
-        Args:
-            moment: What there is to see.
-            windows: Which part of the world is seen where.
 
         Returns:
             The frame (rows, columns, 3), RGB.

@@ -18,10 +18,6 @@ _STEP = 2.0
 def way_ahead(road_map: RoadMap, body: Body) -> Points | None:
     """Return the way that a vehicle plans to drive next.
 
-    Args:
-        road_map: The road.
-        body: The vehicle.
-
     Returns:
         Points (n, 2) [m], or None if it is not known or has been driven.
     """
@@ -45,8 +41,6 @@ def draw_plan(canvas: Canvas, window: Window, way: Points) -> None:
     """Draw a way with an arrow at its end.
 
     Args:
-        canvas: Where to draw.
-        window: What is seen where.
         way: Points (n, 2) [m].
     """
     if not window.sees(way, 10.0):

@@ -17,10 +17,7 @@ class Replay:
     """The moments of one episode.
 
     Args:
-        road_map: The road.
-        trajectory: What was driven; at least one vehicle.
         decisions: Lines of ``decisions.jsonl``, by time; what another method wrote differently is not shown.
-        outcome: How it ended.
 
     Attributes:
         duration: Time from the first row to the last [s].

@@ -31,11 +31,7 @@ class Screening:
     """Draws an episode from what was kept of it.
 
     Args:
-        road: The road.
-        trajectory: What was driven; at least one vehicle.
         decisions: Lines of ``decisions.jsonl``.
-        record: Its record.
-        scale: Real pixels a pixel of the layout.
 
     Attributes:
         duration: How long was driven [s].
@@ -70,15 +66,7 @@ class Screening:
         return self._picture.draw(self._replay.at(time), self._camera.at(time))
 
     def frames(self, rate: Fraction, speed: float) -> Iterator[Frame]:
-        """Draw all frames of a film.
-
-        Args:
-            rate: Frames a second of film.
-            speed: Seconds of driving a second of film.
-
-        Yields:
-            The frames; each valid until the next one. The last stands for a while.
-        """
+        """Draw all frames of a film."""
         last = self.frame_count(rate, speed) - 1
         hold = ceil(_HOLD * rate)
         for k in range(last - hold):
@@ -88,12 +76,7 @@ class Screening:
             yield end
 
     def frame_count(self, rate: Fraction, speed: float) -> int:
-        """Return how many frames a film has.
-
-        Args:
-            rate: Frames a second of film.
-            speed: Seconds of driving a second of film.
-        """
+        """Return how many frames a film has."""
         return ceil(self.duration / speed * float(rate) - 1e-9) + ceil(_HOLD * rate) + 1
 
     def write(
@@ -102,14 +85,8 @@ class Screening:
         """Write the film.
 
         Args:
-            path: The file.
             format: ``mp4`` or ``gif``.
-            rate: Frames a second of film.
-            speed: Seconds of driving a second of film.
             frames: ``frames(rate, speed)``, if somebody wants to count along.
-
-        Returns:
-            The number of frames.
 
         Raises:
             FilmError: If ffmpeg cannot be started or gives up.

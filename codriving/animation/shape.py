@@ -12,10 +12,6 @@ class Shape:
 
     Args:
         parts: Points of each part (n, 2).
-        closed: Whether each returns to its first point. Parts that run the same way round become one area.
-
-    Attributes:
-        outline: The same for Agg.
     """
 
     def __init__(self, parts: Iterable[ArrayLike], closed: bool = False) -> None:

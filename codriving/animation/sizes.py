@@ -15,8 +15,6 @@ def check_size(width: float, height: float, scale: float, panel: bool = True) ->
     Args:
         width: Width of a frame at scale 1 [px].
         height: Height of a frame at scale 1 [px].
-        scale: Pixels a pixel of the layout.
-        panel: Whether there is a panel.
 
     Raises:
         ConfigError: If one of them is out of range.

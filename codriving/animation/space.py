@@ -29,9 +29,6 @@ class Space:
 
         Args:
             options: Places, the best first [px].
-
-        Returns:
-            The place, moved into the frame.
         """
         best, least = self._inside(options[0]), float("inf")
         for option in options:
@@ -52,12 +49,7 @@ class Space:
 
 
 def overlap(a: Area, b: Area) -> float:
-    """Return how much two areas have in common [px²].
-
-    Args:
-        a: An area.
-        b: Another.
-    """
+    """Return how much two areas have in common [px²]."""
     across = min(a.left + a.width, b.left + b.width) - max(a.left, b.left)
     down = min(a.top + a.height, b.top + b.height) - max(a.top, b.top)
     return max(across, 0.0) * max(down, 0.0)

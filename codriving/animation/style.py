@@ -42,12 +42,9 @@ class Stroke:
     """How a conflict is drawn.
 
     Attributes:
-        colour: One hue, darker with danger.
         width: Width of the line [px]; wider with danger.
         dash: Lengths of dashes and gaps [px]; shorter dashes with less danger, none for a full line.
         mark: Half the width of the mark [px].
-        word: The word beside it.
-        limit: The time difference up to which it holds, in words.
     """
 
     colour: str

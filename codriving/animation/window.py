@@ -21,14 +21,7 @@ TWICE = 12.0
 
 @dataclass(frozen=True, slots=True)
 class Area:
-    """An upright rectangle of the frame or of the world.
-
-    Attributes:
-        left: Smallest x.
-        top: Smallest y.
-        width: Extent along x.
-        height: Extent along y.
-    """
+    """An upright rectangle of the frame or of the world."""
 
     left: float
     top: float
@@ -53,8 +46,6 @@ class Window:
         area: Where on the frame [px].
         x: Point of the world in its middle [m].
         y: Point of the world in its middle [m].
-        zoom: Pixels a metre.
-        turned: Whether the world is turned by a quarter, so that its y runs to the right.
         dim: Width of the ends that are seen in the row before and in the next one, too [px].
     """
 
@@ -125,9 +116,6 @@ def rows(box: Area, area: Area) -> tuple[Window, ...]:
     Args:
         box: Part of the world [m].
         area: Part of the frame [px].
-
-    Returns:
-        The windows, in the order of the world from its smallest x, or y where the world is turned.
     """
     turned = box.height > 1.5 * box.width
     long, wide = (box.height, box.width) if turned else (box.width, box.height)

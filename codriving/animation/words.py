@@ -7,11 +7,8 @@ def shortened(canvas: Canvas, words: str, size: float, room: float, bold: bool =
     """Cut a text so that it fits into a line, and show that it was cut.
 
     Args:
-        canvas: Knows how wide letters are.
-        words: The text.
         size: Size of the letters [px].
         room: Width of the line [px].
-        bold: Whether the letters are bold.
     """
     words = " ".join(words.split())
     if canvas.width_of(words, size, bold) <= room:
@@ -30,11 +27,8 @@ def wrapped(canvas: Canvas, words: str, size: float, room: float, lines: int) ->
     """Break a text into at most so many lines; the last is cut if there is more.
 
     Args:
-        canvas: Knows how wide letters are.
-        words: The text.
         size: Size of the letters [px].
         room: Width of a line [px].
-        lines: Largest number of lines.
     """
     rest, broken = words.split(), list[str]()
     while rest and len(broken) < lines - 1:

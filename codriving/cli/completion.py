@@ -27,39 +27,22 @@ PLURALS = {
 
 
 def complete_group(incomplete: str) -> list[str]:
-    """Offer the groups of `codriving list`.
-
-    Args:
-        incomplete: What has been typed.
-    """
+    """Offer the groups of `codriving list`."""
     return [plural for plural in PLURALS if plural.startswith(incomplete)]
 
 
 def complete_format(incomplete: str) -> list[str]:
-    """Offer the formats of `codriving replay`.
-
-    Args:
-        incomplete: What has been typed.
-    """
+    """Offer the formats of `codriving replay`."""
     return [name for name in ("mp4", "gif") if name.startswith(incomplete)]
 
 
 def complete_table(incomplete: str) -> list[tuple[str, str]]:
-    """Offer the tables of `codriving compare`.
-
-    Args:
-        incomplete: What has been typed.
-    """
+    """Offer the tables of `codriving compare`."""
     return [(name, meaning) for name, meaning in TABLES.items() if name.startswith(incomplete)]
 
 
 def complete_in_line(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
-    """Offer overrides that begin with what has been typed, by what stands before it in the line.
-
-    Args:
-        ctx: The line so far.
-        incomplete: The word under the cursor, as the shell hands it over.
-    """
+    """Offer overrides that begin with what has been typed, by what stands before it in the line."""
     # Bash splits words at ``=``, also those before the cursor.
     line = " ".join(ctx.params.get("overrides") or ()).replace(" = ", "=")
     return complete_override(incomplete, Line(ctx.params.get("config_dir"), tuple(line.split())))
@@ -70,7 +53,6 @@ class Line:
     """What has been typed before the word under the cursor.
 
     Attributes:
-        config_dir: The user's own configs, if any.
         overrides: ``key=value`` tokens.
     """
 
@@ -88,15 +70,7 @@ class Line:
 
 
 def complete_override(incomplete: str, line: Line = Line()) -> list[tuple[str, str]]:
-    """Offer overrides that begin with what has been typed.
-
-    Args:
-        incomplete: The word under the cursor, as the shell hands it over.
-        line: What stands before it.
-
-    Returns:
-        Pairs of the word to insert and a sentence on it.
-    """
+    """Offer overrides that begin with what has been typed."""
     before, typed = _whole_word(incomplete)
     try:
         return [(word[len(before) :], text) for word, text in _offers(typed, line) if word.startswith(typed)]
@@ -105,10 +79,7 @@ def complete_override(incomplete: str, line: Line = Line()) -> list[tuple[str, s
 
 
 def _whole_word(incomplete: str) -> tuple[str, str]:
-    """Return what stands before the word in the shell's eyes, and the whole override as typed.
-
-    Bash splits words at ``=``: of ``scenario=int`` it hands over ``int`` and replaces no more than that.
-    """
+    """Return what stands before the word in the shell's eyes, and the whole override as typed."""
     words = os.environ.get("COMP_WORDS", "").split("\n")
     cursor = os.environ.get("COMP_CWORD", "")
     if not cursor.isdigit() or int(cursor) >= len(words) + 1:

@@ -11,10 +11,6 @@ if TYPE_CHECKING:
 def print_configs(points: "Sequence[Point]", config_dir: Path | None) -> None:
     """Print the composed config of every cell, once all of them are known to be valid.
 
-    Args:
-        points: What the cells are made of; several become YAML documents, each with its cell in a comment.
-        config_dir: The user's own configs, if any.
-
     Raises:
         ConfigError: If one of them cannot be used.
     """

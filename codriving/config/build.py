@@ -20,11 +20,6 @@ def build(node: Mapping[str, Any], plugins: Sequence[str] = (), key: str = "") -
 
     Args:
         node: A mapping with a ``_target_``.
-        plugins: Packages whose classes may be named besides our own.
-        key: Where the node stands in the config, for messages.
-
-    Returns:
-        The object.
 
     Raises:
         ConfigError: If the class is not allowed, a key is unknown or missing, or a value has the wrong type or range.

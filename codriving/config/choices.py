@@ -65,7 +65,6 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
 
     Args:
         group: Name of the group, for instance ``scenario``.
-        config_dir: The user's own configs, if any.
 
     Returns:
         The YAML file of each choice, by name, in the order in which tables and lists show them.

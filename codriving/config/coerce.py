@@ -21,13 +21,6 @@ def coerce(value: object, wanted: Any) -> object:  # noqa: ANN401 - an annotatio
     paths. Nothing else is converted: ``"5"`` is not 5 and ``4.0`` is not a number of cars. What is not a plain type (a
     protocol, say) is left to the constructor.
 
-    Args:
-        value: What the YAML holds, or an object that was already built from it.
-        wanted: The annotation.
-
-    Returns:
-        The value to pass on.
-
     Raises:
         MismatchError: If the value does not fit.
     """

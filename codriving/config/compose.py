@@ -25,7 +25,6 @@ def compose(overrides: Sequence[str], config_dir: Path | None = None) -> dict[st
 
     Args:
         overrides: ``key=value`` tokens; groups take the name of one of their YAML files.
-        config_dir: A folder of the user's with the same groups.
 
     Returns:
         The config with every reference resolved, made of dicts, lists, texts, numbers, booleans and None.

@@ -22,10 +22,6 @@ def prepare(tokens: Sequence[str], config_dir: Path | None = None) -> list[str]:
 
     Args:
         tokens: ``key=value`` as typed.
-        config_dir: The user's own configs, if any.
-
-    Returns:
-        The overrides for Hydra, in the same order.
 
     Raises:
         ConfigError: If a token is not ``key=value``, or names a choice that there is not.
@@ -87,11 +83,6 @@ def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not 
 
 def check_choice(group: str, value: object, config_dir: Path | None = None) -> None:
     """Refuse what is not the name of a YAML file of a group.
-
-    Args:
-        group: The group.
-        value: What it is set to, as Hydra reads it.
-        config_dir: The user's own configs, if any.
 
     Raises:
         ConfigError: With the choices that there are.

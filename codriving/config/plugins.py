@@ -19,9 +19,6 @@ def gathered(resolved: Mapping[str, Any]) -> dict[str, Any]:
 
     So a YAML of the user's says itself what it needs, and in a sweep each cell has what its own files ask for.
 
-    Args:
-        resolved: A composed config of plain values.
-
     Returns:
         The config; ``plugins`` are at its root alone, each once.
 
@@ -54,10 +51,6 @@ def find_beside(plugins: Sequence[str], config_dir: Path | None) -> None:
 
     The folder goes to the end of the search path, so that it hides nothing, and only if it holds a package that is
     listed and not to be found otherwise. Worker processes are given the same search path.
-
-    Args:
-        plugins: Names of packages.
-        config_dir: The user's own configs, if any.
     """
     if config_dir is None:
         return

@@ -13,9 +13,6 @@ def check_rules(resolved: Mapping[str, Any]) -> None:
 
     Rules between the keys of one node are its constructor's.
 
-    Args:
-        resolved: A composed config whose root has been checked.
-
     Raises:
         ConfigError: If two settings contradict each other, or one holds a secret.
     """

@@ -27,13 +27,7 @@ class Key:
     """One plain key of the root.
 
     Attributes:
-        name: The key.
-        meaning: What it sets, with its unit.
-        kind: Type of the value.
-        low: Smallest number allowed.
-        high: Largest number allowed.
         words: Words that are allowed instead of the type, for instance ``auto``.
-        pattern: Regular expression that a text must match as a whole.
         optional: Whether ``null`` is allowed.
     """
 
@@ -102,11 +96,6 @@ def unknown(key: str, known: Iterable[str], where: str) -> ConfigError:
 
     Args:
         key: The full key that was given, for instance ``scenario.typo``.
-        known: The keys that would have been allowed at that place.
-        where: What they belong to, for messages.
-
-    Returns:
-        The error; the value is left out, since it may be a secret that was put in the wrong place.
     """
     names = sorted(known)
     last = key.rpartition(".")[2]
@@ -118,9 +107,6 @@ def unknown(key: str, known: Iterable[str], where: str) -> ConfigError:
 
 def check_root(resolved: Mapping[str, Any]) -> None:
     """Check the keys, types and ranges of the root.
-
-    Args:
-        resolved: The composed config as a plain dict.
 
     Raises:
         ConfigError: If a key is unknown or missing, or a value breaks its rule.

@@ -15,9 +15,6 @@ _PASSWORD = re.compile(r"\w+://[^/]*@")
 def check_secrets(resolved: Mapping[str, Any]) -> None:
     """Refuse what may be a key where the name of its variable belongs; the message leaves the value out.
 
-    Args:
-        resolved: A composed config of plain values.
-
     Raises:
         ConfigError: If a setting that ends in ``_env`` is not the name of a variable, or an address has a password.
     """
@@ -39,9 +36,6 @@ def shown(token: str) -> str:
 
     Args:
         token: ``key=value`` as typed.
-
-    Returns:
-        The same, without the value where it may be a secret.
     """
     return f"{token.partition('=')[0]}=..." if may_be_secret(token) else token
 

@@ -23,14 +23,7 @@ HOW_A_MODEL_IS_ASKED = (
 
 
 def show(resolved: Mapping[str, Any]) -> str:
-    """Write a composed config as YAML, in the order in which it was composed.
-
-    Args:
-        resolved: The composed config as a plain dict.
-
-    Returns:
-        The YAML, with a newline at the end.
-    """
+    """Write a composed config as YAML, in the order in which it was composed."""
     from omegaconf import OmegaConf
 
     return OmegaConf.to_yaml(OmegaConf.create(dict(resolved)))
@@ -38,9 +31,6 @@ def show(resolved: Mapping[str, Any]) -> str:
 
 def fingerprint(resolved: Mapping[str, Any]) -> str:
     """Reduce a composed config to what its results depend on.
-
-    Args:
-        resolved: The composed config as a plain dict.
 
     Returns:
         The SHA-256 of its canonical JSON, without the keys that have no effect on results.
@@ -55,9 +45,6 @@ SNAPSHOT, AUTO = "snapshot", "auto"
 
 def relevant(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out what has no effect on results.
-
-    Args:
-        resolved: The composed config as a plain dict.
 
     Returns:
         A copy; what other nodes hold of ``llm`` and ``memory`` is left out likewise.

@@ -37,13 +37,7 @@ ONE_VALUE = {
 
 @dataclass(frozen=True)
 class Point:
-    """One config of a sweep.
-
-    Attributes:
-        overrides: Its overrides, each with one value, in the order given.
-        swept: Its value of each key that was given several, as typed.
-        removed: Overrides that are not the user's: what an ablation takes away.
-    """
+    """One config of a sweep."""
 
     overrides: tuple[str, ...]
     swept: Mapping[str, str] = field(default_factory=dict)
@@ -68,10 +62,6 @@ def expand(tokens: Sequence[str], config_dir: Path | None = None) -> tuple[Point
 
     Args:
         tokens: ``key=value`` as typed.
-        config_dir: The user's own configs, if any.
-
-    Returns:
-        The configs; one where no key has several values.
 
     Raises:
         ConfigError: If a token cannot be read, or a key cannot have several values.

@@ -13,11 +13,6 @@ def find_class(target: object, key: str, plugins: Sequence[str] = ()) -> type:
 
     Args:
         target: Full name of the class, for instance ``codriving.metrics.standard.StandardMetrics``.
-        key: Key of the node, for messages.
-        plugins: Packages whose classes may be named besides our own.
-
-    Returns:
-        The class.
 
     Raises:
         ConfigError: If the package is not allowed, or there is no such class in it.

@@ -4,15 +4,7 @@ from collections.abc import Iterator, Mapping
 
 
 def texts(node: object, key: str = "") -> Iterator[tuple[str, str]]:
-    """Yield every text with its dotted key.
-
-    Args:
-        node: A config, or a part of one.
-        key: Key of the part.
-
-    Yields:
-        Key and text.
-    """
+    """Yield every text with its dotted key."""
     if isinstance(node, Mapping):
         for name, value in node.items():
             yield from texts(value, f"{key}.{name}" if key else str(name))

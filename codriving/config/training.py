@@ -27,9 +27,6 @@ SMOKE = "smoke"
 def trainings(config_dir: Path | None = None) -> dict[str, Path]:
     """List the trainings.
 
-    Args:
-        config_dir: The user's own configs, if any.
-
     Returns:
         The YAML file of each, by name.
     """
@@ -43,10 +40,7 @@ def compose_training(
     """Compose the config of a training.
 
     Args:
-        name: Name of its YAML.
         overrides: ``key=value`` tokens; a part of a list is named by its number, as in ``traffic.0.weight=2``.
-        smoke: Whether to change what makes it a short test of the machinery, before the overrides.
-        config_dir: A folder of the user's own configs.
 
     Returns:
         The config, made of dicts, lists, texts, numbers, booleans and None.

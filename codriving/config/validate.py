@@ -13,9 +13,6 @@ ORDER = (*(name for name in NODES if name != "method"), "method")
 def validate(resolved: Mapping[str, Any]) -> None:
     """Check keys, types and ranges of every node by building it.
 
-    Args:
-        resolved: A composed config as a plain dict.
-
     Raises:
         ConfigError: With the full key, the rule and the value that broke it.
     """

@@ -28,18 +28,12 @@ class Conflict:
     """Two vehicles whose ways ahead share a zone, seen from one of them.
 
     Attributes:
-        ego: Id of the vehicle that sees it.
-        other: Id of the other vehicle.
-        relation: How their routes meet from here on.
-        routes: Route of the ego and of the other; assumed for a vehicle that does not share its route.
-        zone: Index of the zone among those of the two routes.
         places: Arc length of each along its route [m].
         distances: Distance of each to the zone [m]; 0 inside it.
         exits: Distance of each to the end of the zone [m].
         ttcp: Time of each to the conflict zone at its present speed [s].
         dttcp: Difference of the two times [s].
         severity: The paper's band of ``dttcp``.
-        certain: Whether the other's route is known, not one of several that it may take.
     """
 
     ego: str

@@ -23,10 +23,6 @@ class Description:
     Nothing in it names a vehicle, a place or a route, so that situations of the same kind read alike.
 
     Attributes:
-        scene: The scene description.
-        conflict: The description of the most urgent conflict.
-        order: What was agreed on in that conflict.
-        numbers: Numbers by name; what is not defined is missing.
         kinds: Words of a fixed set by name, for instance ``relation``.
     """
 
@@ -54,8 +50,6 @@ class Effect:
         own_braking: Hardest mean deceleration of the CAV over one of the next decision steps [m/s2].
         forced_braking: Hardest mean deceleration of another vehicle in its way over this or the next step [m/s2].
         collision: Time until the CAV was in a collision [s]; None if it was in none within the horizon.
-        to_blame: Whether the action led to that collision.
-        needless: Whether it waited although nobody used the way.
     """
 
     dttcp_before: float | None = None
@@ -70,15 +64,7 @@ class Effect:
 
 @dataclass(frozen=True, slots=True)
 class Interaction:
-    """One episode that was learnt from.
-
-    Attributes:
-        scenario: Name of the scenario.
-        seed: Seed of the episode.
-        method: Name of the method.
-        variant: Name of its variant.
-        reasoner: Who reasoned.
-    """
+    """One episode that was learnt from."""
 
     scenario: str
     seed: int
@@ -89,17 +75,7 @@ class Interaction:
 
 @dataclass(frozen=True, slots=True)
 class Experience:
-    """One decision worth remembering.
-
-    Attributes:
-        description: The situation in which it was taken.
-        action: What the CAV did.
-        verdict: What that did to the conflict.
-        effect: The same in numbers.
-        lesson: What is told of it.
-        step: Number of decisions taken before in the episode.
-        ego: Id of the CAV.
-    """
+    """One decision worth remembering."""
 
     description: Description
     action: Action
@@ -112,16 +88,7 @@ class Experience:
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """An experience that was found for a situation.
-
-    Attributes:
-        id: Its number in the store.
-        text: What is told of it.
-        action: What was done.
-        verdict: What that did.
-        similarity: Cosine similarity to the situation, at most 1.
-        count: How often it was made.
-    """
+    """An experience that was found for a situation."""
 
     id: int
     text: str

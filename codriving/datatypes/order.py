@@ -5,13 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Precedence:
-    """One vehicle passes a conflict zone before another.
-
-    Attributes:
-        first: Id of the vehicle that goes first.
-        second: Id of the vehicle that waits for it.
-        reason: Why, in words that a person or a model can read.
-    """
+    """One vehicle passes a conflict zone before another."""
 
     first: str
     second: str
@@ -20,13 +14,7 @@ class Precedence:
 
 @dataclass(frozen=True, slots=True)
 class PassingOrder:
-    """The answer of a coordinator: an order without cycles.
-
-    Attributes:
-        sequence: All vehicles that are in a conflict, first to last.
-        precedences: The pairs that were asked about, each with its reason.
-        binding: Whether the order is an instruction (CDA class D) or advice (class C).
-    """
+    """The answer of a coordinator: an order without cycles."""
 
     sequence: tuple[str, ...]
     precedences: tuple[Precedence, ...]

@@ -12,20 +12,13 @@ class Entrant:
     """What an order has to know of one CAV that still has a conflict ahead.
 
     Attributes:
-        id: Vehicle id.
         reference: Arc length of its first conflict zone [m].
         eta: Earliest time at which it can be there [s]; negative if it is past it.
-        committed: Whether it can no longer stop before the zone.
-        turning: Whether its route turns where ways cross.
-        leader: Id of the CAV ahead of it on its lane, if any.
         windows: Intervals in which it must not pass the reference point, because of human drivers [s].
-        lane: Lane that it is on, as text.
-        stream: Lane and movement; vehicles of one stream come one after another.
         distance: Distance to the reference point [m]; 0 past it.
         crossing: Time from the reference point until it has left its last conflict zone, at top speed [s].
         remaining: Distance to the end of its route [m].
         speed: Speed [m/s].
-        priority: Priority of its lane; whoever has the higher one goes first if all else is equal.
     """
 
     id: str
@@ -50,10 +43,8 @@ class Instance:
 
     Attributes:
         time: Simulated time [s].
-        entrants: Everybody who is to be ordered, by id.
         separation: Time that must lie between two vehicles at their reference points, by (first, second), for every
             pair that shares a zone or a lane [s].
-        before: Pairs whose order is physically fixed: who drives ahead, who is inside the zone, who cannot stop.
     """
 
     time: float

@@ -20,8 +20,6 @@ class Collision:
 
     Attributes:
         time: When the footprints first overlapped [s].
-        striker: Id of the vehicle whose front ran into the other.
-        struck: Id of the vehicle, or name of the block, that was hit.
         pair: ``CAV-CAV``, ``CAV-HDV``, ``HDV-HDV``, ``CAV-block`` or ``HDV-block``.
     """
 
@@ -36,12 +34,8 @@ class Outcome:
     """The one end of an episode.
 
     Attributes:
-        ending: How it ended.
         time: Simulated time at the end [s].
         arrivals: Arrival time of each CAV that arrived [s], by id.
-        collision: The collision that ended the episode, if one did.
-        bystander_collisions: Collisions among human drivers; they are towed away and counted apart.
-        off_road: Ids of the vehicles that left the road, if that ended the episode.
         message: What went wrong, for ``error``.
     """
 

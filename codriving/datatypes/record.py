@@ -11,9 +11,7 @@ class Participant:
     """A vehicle that took part in an episode.
 
     Attributes:
-        id: Vehicle id.
         kind: ``CAV`` or ``HDV``.
-        route: Id of the route driven.
         arrived: Time of arrival [s], or None.
     """
 
@@ -28,17 +26,9 @@ class EpisodeRecord:
     """The result of one episode; free of anything that depends on the machine or its clock.
 
     Attributes:
-        scenario: Name of the scenario.
-        method: Name of the method.
         variant: Name of the CDA variant, for instance ``full`` or ``no_negotiation/own_view``.
         reasoner: Who reasoned: ``rules`` or the name of a model.
-        seed: Seed of the episode.
-        outcome: How it ended.
         score: What it is judged by; None for ``error``.
-        participants: Who took part, in order of id.
-        decisions: Number of decision steps.
-        counts: Further counters a method reports (fallbacks, repaired orders, cost, ...), summed over the episode.
-        memory: What was recalled from; empty without a memory.
     """
 
     scenario: str

@@ -40,7 +40,6 @@ class Arc:
         radius: Radius of the centre line [m].
         start_phase: Angle of the first point seen from the centre [rad].
         end_phase: Angle of the last point seen from the centre [rad].
-        clockwise: Whether the phase grows along the lane (clockwise on screen, where y points down).
     """
 
     center: Point
@@ -86,13 +85,8 @@ class Lane:
     """One directed lane between two nodes of the road network.
 
     Attributes:
-        id: Start node, end node and index from the left.
-        shape: Centre line.
         width: Lane width [m].
         speed_limit: Highest legal speed [m/s].
-        priority: Rank of the right of way; the higher goes first.
-        lines: Painted lines on the left and on the right.
-        forbidden: Whether changing onto this lane is forbidden.
     """
 
     id: LaneId
@@ -127,9 +121,6 @@ class Route:
 
     Attributes:
         id: Name that is unique on the road, for instance ``south-north``.
-        lanes: The lanes followed, in order. Two lanes side by side, between the same nodes, are a lane change that the
-            destination asks for, as at the end of a ramp.
-        turn: What the route does at the junction.
         entry: Arc length at which the shared part of the road (junction, ring, merge) begins [m].
         goal: Arc length at which a vehicle has arrived [m].
         taper: Length of the way from one lane to the one beside it, which ends where the lane that is left does [m].
@@ -145,15 +136,7 @@ class Route:
 
 @dataclass(frozen=True, slots=True)
 class Road:
-    """All lanes and routes of one scenario.
-
-    Attributes:
-        name: Name for messages.
-        lanes: Every lane, each id once.
-        routes: Every route, each id once.
-        regulated: Whether human drivers give way by lane priority before the shared part.
-        blocks: Solid things that stand on the road.
-    """
+    """All lanes and routes of one scenario."""
 
     name: str
     lanes: tuple[Lane, ...]
@@ -163,10 +146,5 @@ class Road:
 
 
 def beside(lane: LaneId, other: LaneId) -> bool:
-    """Whether two different lanes run side by side, between the same nodes.
-
-    Args:
-        lane: A lane.
-        other: Another lane.
-    """
+    """Whether two different lanes run side by side, between the same nodes."""
     return lane[:2] == other[:2] and lane[2] != other[2]

@@ -10,9 +10,6 @@ class Start:
     """The beginning of one vehicle.
 
     Attributes:
-        id: Name, unique in the episode.
-        kind: CAV or HDV.
-        route: Id of the route that it will drive.
         position: Arc length along the route [m].
         speed: Initial speed [m/s].
     """
@@ -26,12 +23,7 @@ class Start:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """Everything that the seed decides before the first step.
-
-    Attributes:
-        seed: The seed that it was drawn from.
-        starts: One entry a vehicle, CAVs first.
-    """
+    """Everything that the seed decides before the first step."""
 
     seed: int
     starts: tuple[Start, ...]

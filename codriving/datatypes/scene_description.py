@@ -21,19 +21,15 @@ class Neighbour:
     """Another vehicle as far as the ego vehicle knows it; what it does not know is None.
 
     Attributes:
-        id: Vehicle id.
         kind: ``CAV``, ``HDV``, or None if it cannot tell.
         x: Position [m].
         y: Position [m].
         speed: Speed [m/s].
         heading: Heading [rad].
         acceleration: Acceleration [m/s2].
-        lane: Lane that it drives on.
         length: Vehicle length [m].
         routes: Each route that it may be on, with its arc length there [m]; one entry if it shared its route.
-        intent: Route, target speed and target lane, if it shared them.
         standing: How long it has been standing [s].
-        role: What it is to the ego vehicle.
         gap: Free distance along the ego lane for a leading or rearing vehicle [m].
     """
 
@@ -58,7 +54,6 @@ class LaneChange:
     """A lane change that the ego vehicle's route asks for.
 
     Attributes:
-        lane: The lane to change to.
         room: Distance within which it has to be begun, since the present lane ends [m].
     """
 
@@ -71,12 +66,7 @@ class SceneDescription:
     """The surroundings of one CAV, by lane and by relation.
 
     Attributes:
-        ego: Its own state.
-        intent: Its own intent.
         place: Its arc length along its route [m].
-        adjacent_lanes: Lanes to the left and right that run its way.
-        conflict_lanes: Lanes that its lanes ahead intersect.
-        neighbours: Everybody it knows of, in order of id.
         covers: Other routes onto whose lanes its body reaches while it changes lanes, with its arc length there [m].
         must_change: The lane change that its route asks for next, or None.
     """

@@ -14,9 +14,6 @@ class ActionAssessment:
     """What the three-layer safety check says of one action.
 
     Attributes:
-        action: The action.
-        safe: Whether it stays in the set of alternatives.
-        reasons: Why it was removed, one entry a layer and vehicle.
         arrivals: Earliest time to reach each conflict zone of the ego vehicle after this action and then full
             speed [s]; inf if never.
         progress: How far the CAV gets within the horizon if it then keeps the order [m]; None if it cannot keep it.
@@ -34,12 +31,7 @@ class Situation:
     """The input of one decision.
 
     Attributes:
-        scene: What the CAV knows.
-        conflicts: Conflicts that it is part of, most urgent first.
-        order: The negotiated (or own) passing order.
         clear_times: When each conflict zone is expected to be free of those who go first [s]; 0 if the CAV goes first.
-        assessments: The safety check of every available action.
-        memories: Experiences retrieved for this scene, most similar first.
     """
 
     scene: SceneDescription
@@ -57,14 +49,7 @@ class Situation:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """One semantic decision and its reason.
-
-    Attributes:
-        ego: Id of the CAV.
-        action: The action.
-        reason: Why, in one sentence.
-        recalled: Numbers of the experiences that changed the decision.
-    """
+    """One semantic decision and its reason."""
 
     ego: str
     action: Action

@@ -13,10 +13,6 @@ class Track:
     """The recorded motion of one vehicle, from its start until it left the road.
 
     Attributes:
-        id: Vehicle id.
-        kind: CAV or HDV.
-        route: Id of the route that was driven (the truth, also for HDVs).
-        first_step: Simulation step of the first row.
         x: Position of the centre (n,) [m].
         y: Position of the centre (n,) [m].
         heading: Heading (n,) [rad].
@@ -49,7 +45,6 @@ class Trajectory:
 
     Attributes:
         step: Time between two rows [s].
-        tracks: One track a vehicle, in order of its id.
     """
 
     step: float

@@ -19,13 +19,11 @@ class VehicleState:
 
     Attributes:
         id: Name, unique in the episode, for instance ``CAV1``.
-        kind: CAV or HDV.
         x: Position of the centre [m].
         y: Position of the centre [m].
         heading: Heading [rad].
         speed: Speed along the heading [m/s].
         acceleration: Commanded acceleration of the last simulation step [m/s2].
-        lane: Lane on which the vehicle drives.
         length: Vehicle length [m].
         width: Vehicle width [m].
     """
@@ -47,9 +45,7 @@ class Intent:
     """What a CAV means to do; known to others only if it shares it (CDA class B).
 
     Attributes:
-        route: Id of the planned route.
         target_speed: Speed that the controller tracks [m/s].
-        target_lane: Lane that the controller tracks.
     """
 
     route: str

@@ -15,10 +15,6 @@ class WorldState:
 
     Attributes:
         time: Simulated time [s].
-        step: Number of decisions taken so far.
-        vehicles: Every vehicle on the road, in order of its id.
-        intents: Intent of each CAV, by id.
-        available: Actions that the road allows each CAV, by id.
     """
 
     time: float

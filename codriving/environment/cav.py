@@ -29,12 +29,7 @@ class ConnectedVehicle(OnWay, MDPVehicle):
         """Put a CAV on the road.
 
         Args:
-            road: The road of highway-env.
-            start: Where it starts.
-            ways: Every route of the road, laid out, by id.
             target_speeds: Speeds that FASTER and SLOWER step through [m/s].
-            gains: Gains of its controllers.
-            corrections: Which faults of the simulator are corrected.
         """
         way = ways[start.route]
         x, y = way.path.position(start.position)

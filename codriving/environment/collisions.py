@@ -15,11 +15,7 @@ PUSHED = 3.0
 
 
 def kind(vehicle: OnWay) -> str:
-    """Return ``CAV`` or ``HDV``.
-
-    Args:
-        vehicle: A vehicle on the road.
-    """
+    """Return ``CAV`` or ``HDV``."""
     return "CAV" if isinstance(vehicle, ConnectedVehicle) else "HDV"
 
 
@@ -29,13 +25,8 @@ def find_collisions(
     """Find every pair of vehicles that have collided.
 
     Args:
-        vehicles: Vehicles on the road.
         time: Present time, for the record [s].
         dt: Time since this was last asked [s].
-        by_footprint: Whether a collision is an overlap of two footprints; else it is what highway-env declares.
-
-    Returns:
-        The striker, the struck and the record of each collision.
     """
     found = []
     pushed = 0.0 if by_footprint else PUSHED
@@ -57,13 +48,7 @@ def find_block_collisions(
     """Find every vehicle that has run into something solid that stands on the road.
 
     Args:
-        vehicles: Vehicles on the road.
-        obstacles: What stands on it.
         time: Present time, for the record [s].
-        by_footprint: Whether a collision is an overlap of two footprints; else it is what highway-env declares.
-
-    Returns:
-        The vehicle and the record of each collision.
     """
     found = []
     for k, obstacle in enumerate(obstacles, start=1):

@@ -14,12 +14,7 @@ BEND = 0.3
 
 
 def continues(lane: AbstractLane, following: AbstractLane) -> bool:
-    """Whether one lane begins where another one ends, in the same direction.
-
-    Args:
-        lane: The lane that ends.
-        following: The lane that may continue it.
-    """
+    """Whether one lane begins where another one ends, in the same direction."""
     gap = np.linalg.norm(lane.position(lane.length, 0) - following.position(0, 0))
     turn = lane.heading_at(lane.length) - following.heading_at(0)
     return bool(gap < JOINT and abs((turn + np.pi) % (2 * np.pi) - np.pi) < BEND)
@@ -27,12 +22,6 @@ def continues(lane: AbstractLane, following: AbstractLane) -> bool:
 
 def connected(network: RoadNetwork, index: LaneIndex, planned: Sequence[str]) -> list[tuple[AbstractLane, float]]:
     """Find the lanes that physically precede and follow a lane.
-
-    Args:
-        network: The road network.
-        index: The lane.
-        planned: Nodes to which the vehicle will go on from the end of the lane; where the road splits, only its branch
-            counts. Empty: every branch.
 
     Returns:
         Each lane with the offset that turns its arc length into that of the given lane [m].

@@ -29,12 +29,6 @@ from codriving.geometry.road_map import road_map
 class Environment:
     """Several CAVs and human drivers on one road, on highway-env's physics.
 
-    Args:
-        scenario: The road and who starts where.
-        control: Gains of the CAVs' controllers.
-        drivers: Parameters of the human drivers.
-        corrections: Which faults of the simulator are corrected.
-
     Raises:
         ScenarioError: If the road is not consistent in itself.
     """
@@ -60,9 +54,6 @@ class Environment:
     def reset(self, seed: int) -> WorldState:
         """Begin an episode.
 
-        Args:
-            seed: Seed of the scene and of the drivers' individual differences.
-
         Raises:
             ScenarioError: If the vehicles cannot be placed.
         """
@@ -80,9 +71,6 @@ class Environment:
 
     def step(self, actions: Mapping[str, Action]) -> WorldState:
         """Let every CAV carry out its decision until the next one is due, or until the episode ends.
-
-        Args:
-            actions: One action for every CAV on the road, by id.
 
         Raises:
             EpisodeError: If no episode is going on, or an action is missing, for nobody, or not available.

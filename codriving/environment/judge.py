@@ -13,7 +13,6 @@ class Judge:
     """Watches one episode and takes off the road who has arrived, left or been towed away.
 
     Args:
-        cavs: Ids of the CAVs; the episode is a success when all of them have arrived.
         time_limit: Longest duration [s].
         dt: Simulation step [s].
 
@@ -31,7 +30,6 @@ class Judge:
         """Look at the road after a simulation step.
 
         Args:
-            traffic: All bodies on the road; whoever is done is taken off.
             time: Present time [s].
 
         Returns:

@@ -31,9 +31,6 @@ class PlainMotion(_Base):
     def steering_control(self, target_lane_index: LaneId) -> float:
         """Steer back to the centre of a lane (paper Eq. 1: delta = arcsin(K_h (phi_r - phi) l / 2v)).
 
-        Args:
-            target_lane_index: The lane to follow.
-
         Returns:
             Angle of the front wheels [rad].
         """
@@ -83,10 +80,5 @@ class PlainMotion(_Base):
 
 
 def clip(value: float, most: float) -> float:
-    """Keep a number within [-most, most].
-
-    Args:
-        value: The number.
-        most: Its largest size.
-    """
+    """Keep a number within [-most, most]."""
     return min(max(value, -most), most)

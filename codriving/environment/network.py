@@ -17,11 +17,7 @@ PAINT = {
 
 
 def build_lane(lane: Lane) -> AbstractLane:
-    """Turn one lane into highway-env's class for its shape.
-
-    Args:
-        lane: The lane as data.
-    """
+    """Turn one lane into highway-env's class for its shape."""
     painted = [PAINT[line] for line in lane.lines]
     shape = lane.shape
     common = {
@@ -48,9 +44,6 @@ def build_lane(lane: Lane) -> AbstractLane:
 
 def build_network(road: Road) -> RoadNetwork:
     """Turn a road into highway-env's network, lanes in their order.
-
-    Args:
-        road: The road as data.
 
     Raises:
         ScenarioError: If parallel lanes are not given from index 0 upwards; highway-env counts them in their order.

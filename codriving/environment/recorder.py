@@ -26,13 +26,7 @@ class Recorder:
         self.logs: dict[str, _Log] = {}
 
     def record(self, step: int, vehicles: list[OnWay], actions: dict[str, str]) -> None:
-        """Add one row a vehicle.
-
-        Args:
-            step: Number of simulation steps taken.
-            vehicles: Vehicles on the road.
-            actions: Action in force of each CAV, by id.
-        """
+        """Add one row a vehicle."""
         for v in vehicles:
             log = self.logs.get(v.id)
             if log is None:
@@ -74,9 +68,6 @@ class Recorder:
 
 def acceleration(vehicle: OnWay) -> float:
     """Return the acceleration commanded in the last simulation step.
-
-    Args:
-        vehicle: A vehicle on the road.
 
     Returns:
         Acceleration [m/s2].

@@ -10,11 +10,7 @@ from codriving.environment.traffic.traffic import Traffic
 
 
 def state_of(vehicle: OnWay) -> VehicleState:
-    """Copy the physical state of one vehicle.
-
-    Args:
-        vehicle: A vehicle on the road.
-    """
+    """Copy the physical state of one vehicle."""
     return VehicleState(
         id=vehicle.id,
         kind=Kind.CAV if isinstance(vehicle, ConnectedVehicle) else Kind.HDV,
@@ -33,9 +29,7 @@ def snapshot(traffic: Traffic, time: float, step: int) -> WorldState:
     """Copy what a method may know of the world.
 
     Args:
-        traffic: All bodies on the road.
         time: Simulated time [s].
-        step: Number of decisions taken so far.
     """
     vehicles = sorted(traffic.vehicles, key=lambda v: v.id)
     cavs = [v for v in vehicles if isinstance(v, ConnectedVehicle)]

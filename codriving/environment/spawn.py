@@ -23,12 +23,7 @@ def spawn(
     """Put everybody on the road, in the order of the scene.
 
     Args:
-        traffic: The empty road.
-        scene: Who starts where.
-        ways: Every route, laid out.
         target_speeds: Speeds that a CAV's FASTER and SLOWER step through [m/s].
-        control: Gains of the CAVs' controllers.
-        drivers: Parameters of the human drivers.
     """
     corrections = traffic.corrections
     for start in scene.starts:

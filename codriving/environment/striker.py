@@ -24,12 +24,7 @@ def who_struck(one: OnWay, other: OnWay, dt: float) -> tuple[OnWay, OnWay]:
     scrape along each other, it is the one that moved faster towards the other.
 
     Args:
-        one: A vehicle.
-        other: A vehicle whose footprint overlaps that of the first.
         dt: Time since they were last known not to overlap [s].
-
-    Returns:
-        The striker and the struck.
     """
     back = _since_touch(one, other, dt)
     contact = _contact(one, other, back)

@@ -21,9 +21,6 @@ REMOVALS: tuple[tuple[str, ...], ...] = (
 def ablation_points(points: Sequence[Point]) -> list[Point]:
     """Take the sub-modules out of each config in turn.
 
-    Args:
-        points: What the user asked for, for instance one config a scenario.
-
     Returns:
         The cells, those of one config together and the full method first.
     """

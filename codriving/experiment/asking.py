@@ -34,12 +34,7 @@ class Spending(Protocol):
 
 
 class Client(Protocol):
-    """What all episodes ask through; one for each model and settings.
-
-    Attributes:
-        spending: What it has used up.
-        on_retry: Called whenever a request has to be sent again.
-    """
+    """What all episodes ask through; one for each model and settings."""
 
     on_retry: Callable[[Any], None]
 
@@ -57,9 +52,6 @@ class Model(Protocol):
     """What ``llm`` describes where a language model reasons.
 
     Attributes:
-        name: Name for tables.
-        max_concurrency: Requests under way at once.
-        failures_in_a_row: Episodes in a row without an answer after which a batch stops.
         cache: ``off``, ``use`` or ``replay``.
     """
 
@@ -75,9 +67,6 @@ class Model(Protocol):
 
 def model_of(resolved: Mapping[str, Any]) -> Model | None:
     """Find out which language model the method of a cell asks.
-
-    Args:
-        resolved: Its resolved config of plain values.
 
     Returns:
         The model; None if the built-in rules reason, or the method does not reason at all.
@@ -96,13 +85,6 @@ def model_of(resolved: Mapping[str, Any]) -> Model | None:
 
 class Asked:
     """The models of some cells.
-
-    Args:
-        cells: The cells.
-
-    Attributes:
-        models: The model of each cell that asks one, by the name of its folder.
-        retries: Requests that had to be sent again.
 
     Raises:
         ConfigError: If a model cannot be built.

@@ -17,15 +17,7 @@ from codriving.runs.redaction import flat, redact
 
 @dataclass(frozen=True)
 class Cell:
-    """One row of a table.
-
-    Attributes:
-        folder: Name of its folder, readable and unique in the run.
-        labels: What its records are labelled with.
-        resolved: Its resolved config of plain values.
-        metrics: Name of the definitions that it is scored by.
-        swept: Its value of each key that the command gives several.
-    """
+    """One row of a table."""
 
     folder: str
     labels: Labels
@@ -59,13 +51,6 @@ class Cell:
 
 def make_cell(resolved: Mapping[str, Any], point: Point | None = None) -> Cell:
     """Make the cell of a config; its labels are what its objects call themselves.
-
-    Args:
-        resolved: A validated config of plain values.
-        point: What it was composed of.
-
-    Returns:
-        The cell.
 
     Raises:
         ConfigError: If an object cannot be built or has no name.

@@ -29,7 +29,6 @@ def run_check(overrides: Sequence[str], config_dir: Path | None = None) -> int:
 
     Args:
         overrides: ``key=value`` tokens.
-        config_dir: A folder of the user's own configs.
 
     Returns:
         Exit code: 0 if both were answered in form or no model reasons, 1 if a fallback was needed.

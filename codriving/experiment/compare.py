@@ -19,9 +19,6 @@ class Comparison:
 
     Attributes:
         table: The comparison itself, as in ``comparison.csv`` or ``load.csv``.
-        episodes: One row an episode.
-        summary: One row a cell.
-        folder: The run folder.
     """
 
     table: "DataFrame"
@@ -36,7 +33,6 @@ def run_comparison(table: str | None, overrides: Sequence[str], config_dir: Path
     Args:
         table: ``baselines``, ``single-vehicle``, ``all`` or ``load``.
         overrides: ``key=value`` tokens that hold for every cell; ``method=`` adds methods.
-        config_dir: A folder of the user's own configs.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -54,10 +50,6 @@ def compare_frames(table: str, *overrides: str, config_dir: Path | None = None) 
     Args:
         table: ``baselines``, ``single-vehicle``, ``all`` or ``load``.
         *overrides: ``key=value`` tokens.
-        config_dir: A folder of the user's own configs.
-
-    Returns:
-        The comparison, episodes, summary and the run folder.
 
     Raises:
         UserError: If the table, the config or the run folder cannot be used.

@@ -24,10 +24,6 @@ from codriving.reports.timing_table import cpu_per_decision
 def methods(table: str, driven: Driven) -> Further:
     """Make a comparison of methods.
 
-    Args:
-        table: Name of the table.
-        driven: All episodes of the run.
-
     Returns:
         ``comparison.csv`` and ``comparison.md``, and what is printed: the same with computing times.
     """
@@ -48,9 +44,6 @@ def methods(table: str, driven: Driven) -> Further:
 
 def load(driven: Driven) -> Further:
     """Make the table and the figure of loads.
-
-    Args:
-        driven: All episodes of the run.
 
     Returns:
         ``load.csv``, ``load.md`` and ``figures/load.*``, and what is printed: the table with computing times.

@@ -28,12 +28,7 @@ def comparison(table: str | None, overrides: Sequence[str], config_dir: Path | N
     Every method of the table that has a YAML takes part. ``method=`` adds others to them.
 
     Args:
-        table: Name of the table.
         overrides: ``key=value`` tokens that hold for every cell; with several values, for one block of rows each.
-        config_dir: A folder of the user's own configs.
-
-    Returns:
-        Its cells: those of one scenario and setting together, methods in the order of the table.
 
     Raises:
         ConfigError: If there is no such table, or an override cannot be read.
@@ -66,12 +61,5 @@ def _methods(table: str, added: Sequence[str], config_dir: Path | None) -> list[
 
 
 def setting(resolved: Mapping[str, Any]) -> str:
-    """Mark the setting of a cell: cells with the same mark differ in the method alone.
-
-    Args:
-        resolved: Its resolved config.
-
-    Returns:
-        The mark. Packages that a method's own YAML names belong to the method.
-    """
+    """Mark the setting of a cell: cells with the same mark differ in the method alone."""
     return fingerprint({key: value for key, value in resolved.items() if key not in ("method", "plugins")})

@@ -21,13 +21,6 @@ SHARED = (*(name for name in ROOT if name not in ("plugins", "prompts")), "launc
 def composed(points: Sequence[Point], config_dir: Path | None = None) -> list[dict[str, Any]]:
     """Compose the config of every cell; one after another, since Hydra's state is global.
 
-    Args:
-        points: What the cells are made of, at least one.
-        config_dir: A folder of the user's own configs.
-
-    Returns:
-        The configs in the same order.
-
     Raises:
         ConfigError: If one cannot be composed, or what belongs to the run as a whole differs between cells.
     """
@@ -46,10 +39,6 @@ def composed(points: Sequence[Point], config_dir: Path | None = None) -> list[di
 def validated(points: Sequence[Point], configs: Sequence[Mapping[str, Any]]) -> None:
     """Check every node of every cell by building it.
 
-    Args:
-        points: What the cells are made of.
-        configs: Their configs, in the same order.
-
     Raises:
         ConfigError: With the full key, the rule, the value that broke it and the cell.
     """
@@ -58,14 +47,6 @@ def validated(points: Sequence[Point], configs: Sequence[Mapping[str, Any]]) -> 
 
 def each_cell(points: Sequence[Point], given: Sequence[Any], work: Callable[[Any], T]) -> list[T]:
     """Do the same for every cell.
-
-    Args:
-        points: What the cells are made of.
-        given: What to work on, one a cell.
-        work: What to do.
-
-    Returns:
-        What the work gives, one a cell.
 
     Raises:
         ConfigError: The first refusal, with the cell it is about, unless all cells are refused for one reason.
@@ -88,14 +69,7 @@ def each_cell(points: Sequence[Point], given: Sequence[Any], work: Callable[[Any
 
 
 def cell_name(point: Point) -> str:
-    """Name a cell by what tells it from the others.
-
-    Args:
-        point: What it is made of.
-
-    Returns:
-        Its overrides, without what may be a secret.
-    """
+    """Name a cell by what tells it from the others."""
     masked = redact({key: _number(text) for key, text in point.swept.items()})
     shown = [f"{key}={MASK if masked[key] == MASK else text}" for key, text in point.swept.items()]
     return " ".join([*shown, *point.removed]) or "with nothing removed"

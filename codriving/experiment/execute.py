@@ -39,20 +39,7 @@ from codriving.runs.timing import Timing, read_timing
 
 @dataclass(frozen=True, slots=True)
 class Finished:
-    """A run that is complete.
-
-    Attributes:
-        folder: The run folder.
-        tables: Its tables.
-        driven: Episodes driven now.
-        kept: Episodes that were there already.
-        failed: Those that ended in an error.
-        further: Episodes in the folder that were not asked for, and are in no table.
-        changed: What has another version than when the run began, if episodes of both are in the table.
-        filmed: Films made now.
-        unfilmed: Episodes of which films were asked for and could not be made.
-        extra: What the command makes of them beyond the tables of every run.
-    """
+    """A run that is complete."""
 
     folder: Path
     tables: RunTables
@@ -82,19 +69,6 @@ def execute(
     extend: Callable[[Driven], Further] = lambda _: Further(),
 ) -> Finished:
     """Run a plan, or what is left of it.
-
-    Args:
-        plan: What to run.
-        build: Given the config of each cell by the name of its folder, gives what builds the objects of a cell from
-            that name; the latter is picklable.
-        preload: Modules imported once for all processes.
-        paper: The paper's numbers, to stand beside ours.
-        progress: Opens a display of the progress of so many units of each cell, and of what a note says about the
-            language models that are asked.
-        extend: Makes what the command has beyond the tables of every run.
-
-    Returns:
-        The finished run.
 
     Raises:
         UserError: If the folder cannot be used, the objects cannot be built or a language model cannot be reached.

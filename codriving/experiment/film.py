@@ -24,38 +24,22 @@ _RATE = Fraction(25)
 
 @dataclass(frozen=True)
 class FilmEpisode:
-    """Makes the film of an episode from what was kept of it; records are read and never written.
-
-    Attributes:
-        folder: The run folder.
-        cells: The cells that films are made of, by folder.
-    """
+    """Makes the film of an episode from what was kept of it; records are read and never written."""
 
     folder: Path
     cells: dict[str, CellEntry]
 
     def path(self, unit: Unit) -> Path:
-        """Where the film of an episode is, or will be.
-
-        Args:
-            unit: Cell and seed.
-        """
+        """Where the film of an episode is, or will be."""
         return self._place(unit) / FILM
 
     def lacks(self, unit: Unit) -> bool:
-        """Tell whether an episode that is saved has no film though there is something to show.
-
-        Args:
-            unit: Cell and seed.
-        """
+        """Tell whether an episode that is saved has no film though there is something to show."""
         folder = self._place(unit)
         return (folder / TRAJECTORY).exists() and not self.path(unit).exists()
 
     def kept(self, unit: Unit) -> Ending | None:
         """Tell how an episode ended that need not be driven again.
-
-        Args:
-            unit: Cell and seed.
 
         Returns:
             Its ending; None if it has not been driven, or ended in an error.
@@ -67,11 +51,7 @@ class FilmEpisode:
         return None if ending is Ending.ERROR else ending
 
     def finish(self, unit: Unit) -> None:
-        """Make the film of an episode that lacks one; ``replay-error.txt`` says why if that fails.
-
-        Args:
-            unit: Cell and seed.
-        """
+        """Make the film of an episode that lacks one; ``replay-error.txt`` says why if that fails."""
         if not self.lacks(unit):
             return
         folder = self._place(unit)
@@ -87,13 +67,7 @@ class FilmEpisode:
             self.abandon(unit, error, traceback.format_exc())
 
     def abandon(self, unit: Unit, error: Exception, trace: str = "") -> None:
-        """Note why there is no film.
-
-        Args:
-            unit: Cell and seed.
-            error: What went wrong.
-            trace: Where, if it is not the user's to mend.
-        """
+        """Note why there is no film."""
         # On a full disk there is no room for this either; that the film is missing is reported all the same.
         with suppress(OSError):
             write_text(self._place(unit) / FILM_ERROR, trace or f"{error}\n")

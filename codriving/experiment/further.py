@@ -17,10 +17,7 @@ class Driven:
     """All episodes of a run.
 
     Attributes:
-        cells: Its cells, in the order of the tables.
-        records: The records of each cell, by seed.
         timings: What each of them cost, None where that is lost.
-        folder: The run folder.
     """
 
     cells: Sequence[Cell]
@@ -36,13 +33,7 @@ class Driven:
 
 @dataclass(frozen=True, slots=True)
 class Further:
-    """What was made of them.
-
-    Attributes:
-        files: Content of each file, by its path in the run folder.
-        displays: What is printed instead of the summary; nothing prints the summary.
-        tables: For Python.
-    """
+    """What was made of them."""
 
     files: Mapping[str, bytes] = field(default_factory=dict)
     displays: tuple[Display, ...] = ()
@@ -50,9 +41,6 @@ class Further:
 
     def write(self, folder: Path) -> None:
         """Write the files, each whole or not at all.
-
-        Args:
-            folder: The run folder.
 
         Raises:
             OSError: If it cannot be written.

@@ -13,22 +13,13 @@ from codriving.runs.timing import timing_of
 
 @dataclass(frozen=True)
 class KeepEpisode:
-    """Writes episodes under a run folder.
-
-    Attributes:
-        folder: The run folder.
-        variables: Names of the environment variables whose values must not get into it.
-    """
+    """Writes episodes under a run folder."""
 
     folder: Path
     variables: tuple[str, ...] = ()
 
     def __call__(self, unit: Unit, result: EpisodeResult) -> None:
         """Write one episode, whole or not at all.
-
-        Args:
-            unit: Cell and seed.
-            result: What it left.
 
         Raises:
             RunFolderError: If the disk refuses.

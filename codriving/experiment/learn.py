@@ -44,7 +44,6 @@ def run_learn(overrides: Sequence[str], config_dir: Path | None = None) -> int:
 
     Args:
         overrides: ``key=value`` tokens, among them ``interactions=0,2,5``.
-        config_dir: A folder of the user's own configs.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -85,7 +84,6 @@ def shown_points(overrides: Sequence[str], config_dir: Path | None = None) -> li
 
     Args:
         overrides: ``key=value`` tokens.
-        config_dir: A folder of the user's own configs.
 
     Raises:
         ConfigError: If a token cannot be used.
@@ -99,7 +97,6 @@ def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tup
 
     Args:
         overrides: ``key=value`` tokens without ``interactions``.
-        config_dir: A folder of the user's own configs.
 
     Raises:
         ConfigError: If a token cannot be used.
@@ -115,13 +112,7 @@ def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tup
 
 
 def build_points(points: Sequence[Point], interactions: int, run: str) -> list[Point]:
-    """Give what is driven to learn, one config a setting.
-
-    Args:
-        points: The settings.
-        interactions: How many interactions.
-        run: Name of the run.
-    """
+    """Give what is driven to learn, one config a setting."""
     base = ("memory=online", "experiment=learn-memory")
     own = ("experiment", "episodes", "seed", "run", "render")
     ends = (f"episodes={max(interactions, 1)}", f"seed={FIRST_SEED}", f"run={run}")
@@ -132,14 +123,7 @@ def build_points(points: Sequence[Point], interactions: int, run: str) -> list[P
 
 
 def frozen_points(points: Sequence[Point], files: Sequence[Path], sizes: Sequence[int], run: str) -> list[Point]:
-    """Give what is tested: every setting with the first interactions of its memory.
-
-    Args:
-        points: The settings.
-        files: The memory of each.
-        sizes: After how many interactions.
-        run: Name of the run.
-    """
+    """Give what is tested: every setting with the first interactions of its memory."""
     cells = []
     for point, file in zip(points, files, strict=True):
         named = any(t.lstrip("+").startswith("experiment=") for t in point.overrides)
@@ -153,10 +137,6 @@ def frozen_points(points: Sequence[Point], files: Sequence[Path], sizes: Sequenc
 
 def learned(driven: Driven, settings: int) -> Further:
     """Make the learning table and figure.
-
-    Args:
-        driven: All episodes of the tests, the cells of one setting together.
-        settings: Number of settings.
 
     Returns:
         ``learn.csv``, ``learn.md``, ``figures/learn.*`` and what is printed.

@@ -32,7 +32,6 @@ def run_build(overrides: Sequence[str], config_dir: Path | None = None) -> int:
 
     Args:
         overrides: ``key=value`` tokens, among them ``interactions=N``.
-        config_dir: A folder of the user's own configs.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -49,10 +48,6 @@ def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> li
 
     Args:
         overrides: ``key=value`` tokens, among them ``interactions=N``.
-        config_dir: A folder of the user's own configs.
-
-    Returns:
-        One config a memory.
 
     Raises:
         ConfigError: If a token cannot be used, or a seed belongs to the tables.
@@ -83,9 +78,6 @@ def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> li
 def interactions_of(text: str) -> int:
     """Read a number of interactions.
 
-    Args:
-        text: What was typed.
-
     Raises:
         ConfigError: If it is none.
     """
@@ -96,9 +88,6 @@ def interactions_of(text: str) -> int:
 
 def built(driven: Driven) -> Further:
     """Say what was learnt.
-
-    Args:
-        driven: All episodes of the run.
 
     Returns:
         ``memory.md`` and what is printed.
@@ -117,9 +106,6 @@ def built(driven: Driven) -> Further:
 
 def refuse_forgetful(plan: Plan) -> None:
     """Refuse a method that would remember nothing.
-
-    Args:
-        plan: What is to be driven.
 
     Raises:
         ConfigError: If the method of a cell has no memory that learns.

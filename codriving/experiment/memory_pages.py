@@ -19,7 +19,6 @@ def show_page(file: Path | None, most: int) -> str:
 
     Args:
         file: The file; None for the newest one.
-        most: How many experiences to show.
 
     Raises:
         MemoryFileError: If it cannot be read.
@@ -44,9 +43,7 @@ def search_page(text: str, file: Path | None, most: int) -> str:
     """Say what in a memory speaks of some words.
 
     Args:
-        text: The words.
         file: The file; None for the newest one.
-        most: How many experiences to show.
 
     Raises:
         ConfigError: If there are no words.
@@ -65,10 +62,7 @@ def merge_page(first: Path, second: Path, out: Path | None, duplicates: float) -
     """Merge two memories and say what became of them.
 
     Args:
-        first: A file.
-        second: Another one.
         out: The file to make; None for one beside the first.
-        duplicates: Similarity from which on two experiences with the same action and verdict are one.
 
     Raises:
         MemoryFileError: If one of them cannot be used.

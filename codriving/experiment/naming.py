@@ -19,11 +19,6 @@ LONGEST = 100
 def folder_name(labels: Labels, swept: Mapping[str, str] | None = None, reasoner: bool = False) -> str:
     """Name the folder of a cell.
 
-    Args:
-        labels: What the records are labelled with.
-        swept: What tells it from cells with the same labels.
-        reasoner: Whether to name who reasons.
-
     Returns:
         ``<scenario>-<method>-<variant>``, then ``-<key>=<value>`` for each swept key, with everything unusual replaced.
     """
@@ -38,14 +33,7 @@ def _value(text: str) -> str:
 
 
 def distinct(cells: Sequence["Cell"]) -> tuple["Cell", ...]:
-    """Drop cells that are the same config again, and tell the others apart.
-
-    Args:
-        cells: Cells in the order of the table.
-
-    Returns:
-        The cells with unique folders and with the swept keys that need a column, in the same order.
-    """
+    """Drop cells that are the same config again, and tell the others apart."""
     once: dict[str, Cell] = {}
     for cell in cells:
         once.setdefault(cell.fingerprint, cell)
@@ -75,14 +63,7 @@ def _apart(names: Sequence[str], longer: Sequence[str]) -> list[str]:
 
 
 def repeated(cells: Sequence["Cell"]) -> tuple[str, ...]:
-    """Say which values of a sweep come to the same config as others, for nobody to look for their rows.
-
-    Args:
-        cells: Cells in the order of the table, repeated ones included.
-
-    Returns:
-        A sentence each.
-    """
+    """Say which values of a sweep come to the same config as others, for nobody to look for their rows."""
     first: dict[str, Cell] = {}
     notes: dict[str, None] = {}
     for cell in cells:

@@ -5,12 +5,7 @@ from typing import Any
 
 
 def holds(node: object, wanted: object) -> bool:
-    """Tell whether a config node is what is wanted or has it somewhere inside.
-
-    Args:
-        node: A node of plain values.
-        wanted: What is looked for.
-    """
+    """Tell whether a config node is what is wanted or has it somewhere inside."""
     if node == wanted:
         return True
     if isinstance(node, Mapping):
@@ -19,13 +14,7 @@ def holds(node: object, wanted: object) -> bool:
 
 
 def replaced(node: Any, old: object, new: Any) -> Any:  # noqa: ANN401 - any plain value
-    """Return a config node with something in it replaced, wherever it stands.
-
-    Args:
-        node: A node of plain values.
-        old: What is looked for.
-        new: What takes its place.
-    """
+    """Return a config node with something in it replaced, wherever it stands."""
     if node == old:
         return new
     if isinstance(node, Mapping):

@@ -10,22 +10,12 @@ from codriving.experiment.episodes.unit import Objects
 
 @dataclass(frozen=True)
 class BuildObjects:
-    """Builds the objects of a cell from its name; it travels to the workers, so it holds plain values only.
-
-    Attributes:
-        configs: Resolved config of each cell, by name.
-    """
+    """Builds the objects of a cell from its name; it travels to the workers, so it holds plain values only."""
 
     configs: Mapping[str, Mapping[str, Any]]
 
     def __call__(self, cell: str) -> Objects:
         """Build them.
-
-        Args:
-            cell: Name of the cell.
-
-        Returns:
-            Environment, method and metrics.
 
         Raises:
             ConfigError: If one of them cannot be built.
@@ -44,12 +34,6 @@ def modules_to_preload(configs: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
     """List the modules that all workers need, so that they are imported once and not once a worker.
 
     Only ours: a user's module that fails to import must fail where it is used, with its own message.
-
-    Args:
-        configs: Resolved configs of all cells.
-
-    Returns:
-        Names of modules.
     """
     used = {target.rpartition(".")[0] for config in configs for target in _targets(config)}
     ours = {module for module in used if module.startswith("codriving.")}

@@ -21,16 +21,8 @@ class Plan:
     """A run that can be started.
 
     Attributes:
-        cells: Rows of the table, in its order.
-        first_seed: Seed of the first episode of each cell.
-        episodes: Episodes of each cell.
-        launcher: Where episodes are driven.
         workers: Number of processes, or ``auto``.
-        output: Folder of all experiments.
-        experiment: Name of the experiment.
         run: Name of the run, or None for its time.
-        notes: What a reader of its table has to know.
-        render: Whether each episode leaves a film.
     """
 
     cells: tuple[Cell, ...]
@@ -57,13 +49,6 @@ class Plan:
 
 def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
     """Plan a run with one cell a point.
-
-    Args:
-        points: What the cells are made of; they share everything that belongs to the run as a whole.
-        config_dir: A folder of the user's own configs.
-
-    Returns:
-        The plan.
 
     Raises:
         ConfigError: If an override, a value or a combination cannot be used.

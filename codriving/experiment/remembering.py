@@ -16,9 +16,6 @@ AUTO = "auto"
 def pinned(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Note in a config what the snapshot of its memory holds, so that no other is taken for it later.
 
-    Args:
-        resolved: A validated config of plain values.
-
     Returns:
         The config with the SHA-256 of the snapshot in place of ``auto``.
 
@@ -33,11 +30,7 @@ def pinned(resolved: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def learns(resolved: Mapping[str, Any]) -> bool:
-    """Tell whether the episodes of a cell learn from one another, so that they have to be driven in order.
-
-    Args:
-        resolved: A resolved config of plain values.
-    """
+    """Tell whether the episodes of a cell learn from one another, so that they have to be driven in order."""
     node = resolved.get("memory")
     if node is None or not holds(resolved.get("method"), node):
         return False
@@ -45,13 +38,7 @@ def learns(resolved: Mapping[str, Any]) -> bool:
 
 
 def growing(resolved: Mapping[str, Any], run: Path, cell: str) -> dict[str, Any]:
-    """Give a memory that learns its file in the run folder, unless its config names one.
-
-    Args:
-        resolved: A resolved config of plain values.
-        run: The run folder.
-        cell: Name of the cell's folder.
-    """
+    """Give a memory that learns its file in the run folder, unless its config names one."""
     if not learns(resolved) or resolved["memory"].get("file") is not None:
         return dict(resolved)
     node = resolved["memory"]
@@ -59,12 +46,7 @@ def growing(resolved: Mapping[str, Any], run: Path, cell: str) -> dict[str, Any]
 
 
 def memory_file(run: Path, cell: str) -> Path:
-    """Give the file of the memory that grew in a run.
-
-    Args:
-        run: The run folder.
-        cell: Name of the cell's folder.
-    """
+    """Give the file of the memory that grew in a run."""
     return run / MEMORIES / f"{cell}.sqlite"
 
 

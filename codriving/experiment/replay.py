@@ -33,11 +33,8 @@ class ReplayOptions:
         episode: Seed; None takes the first.
         format: ``mp4`` or ``gif``; None goes by the name of the file, and is a film otherwise.
         out: The file; None puts it beside the record.
-        speed: Seconds of driving a second of film.
         fps: Frames a second of film; None takes 25, and 10 for a GIF.
-        scale: Real pixels a pixel of the layout of 1280 by 720.
         frame: Simulated time of a single picture [s]; None makes a film.
-        config_dir: The user's own configs, if any; a package of theirs may stand beside it.
     """
 
     cell: str | None = None
@@ -53,13 +50,6 @@ class ReplayOptions:
 
 def replay(run: Path, options: ReplayOptions) -> str:
     """Write a film or a picture of a stored episode.
-
-    Args:
-        run: The run folder.
-        options: How to show it.
-
-    Returns:
-        What was written, in a sentence.
 
     Raises:
         UserError: If there is no such episode, the options cannot be, or the file cannot be written.

@@ -32,13 +32,7 @@ INTERRUPTED = 130
 
 @dataclass(frozen=True)
 class Results:
-    """What a run gives to Python.
-
-    Attributes:
-        episodes: One row an episode.
-        summary: One row a cell.
-        folder: The run folder.
-    """
+    """What a run gives to Python."""
 
     episodes: "DataFrame"
     summary: "DataFrame"
@@ -50,7 +44,6 @@ def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> 
 
     Args:
         overrides: ``key=value`` tokens.
-        config_dir: A folder of the user's own configs.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -66,7 +59,6 @@ def run_ablation(overrides: Sequence[str], config_dir: Path | None = None) -> in
 
     Args:
         overrides: ``key=value`` tokens that hold for every cell; with several values, for one ablation each.
-        config_dir: A folder of the user's own configs.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -96,10 +88,6 @@ def run_frames(*overrides: str, config_dir: Path | None = None) -> Results:
 
     Args:
         *overrides: ``key=value`` tokens.
-        config_dir: A folder of the user's own configs.
-
-    Returns:
-        Episodes, summary and the run folder.
 
     Raises:
         UserError: If the config or the run folder cannot be used.
@@ -114,14 +102,6 @@ def drive(
 ) -> Finished:
     """Drive some cells, or what is missing of them, with a progress display and without a table.
 
-    Args:
-        points: What the cells are made of.
-        config_dir: A folder of the user's own configs.
-        extend: Makes what the command has beyond the tables of every run.
-
-    Returns:
-        The finished run.
-
     Raises:
         UserError: If the config or the run folder cannot be used.
         Interrupted: If the user stops it; finished episodes are kept.
@@ -131,13 +111,6 @@ def drive(
 
 def drive_plan(plan: Plan, extend: Callable[[Driven], Further] | None = None) -> Finished:
     """Drive what a plan says, or what is missing of it, with a progress display and without a table.
-
-    Args:
-        plan: The plan.
-        extend: Makes what the command has beyond the tables of every run.
-
-    Returns:
-        The finished run.
 
     Raises:
         UserError: If the run folder cannot be used.
@@ -164,11 +137,6 @@ def command(
 
     Args:
         name: The command, for instance ``ablate``.
-        points: What the cells are made of.
-        overrides: What the user gave.
-        config_dir: A folder of the user's own configs.
-        extend: Makes what the command has beyond the tables of every run.
-        check: Refuses a plan that the command cannot do anything with, before anything is driven.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -193,29 +161,14 @@ def command(
 
 
 def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None, run: str) -> str:
-    """Give the command that goes on with a run.
-
-    Args:
-        name: The command.
-        overrides: What the user gave.
-        config_dir: The user's own configs, if any.
-        run: Name of the run.
-
-    Returns:
-        The command, quoted for a shell.
-    """
+    """Give the command that goes on with a run."""
     kept = [override for override in overrides if not override.lstrip("+").startswith("run=")]
     folder = ["--config-dir", str(config_dir)] if config_dir else []
     return shlex.join(["codriving", *name.split(), *kept, f"run={run}", *folder])
 
 
 def report(finished: Finished, again: str) -> None:
-    """Print what a finished run has to say; the last line tells its folder.
-
-    Args:
-        finished: The run.
-        again: The command that repeats failed episodes.
-    """
+    """Print what a finished run has to say; the last line tells its folder."""
     if not finished.driven and not finished.filmed:
         print(f"Nothing to do: all {finished.kept} episodes of this run are finished already.")
     for index, display in enumerate(finished.displays):

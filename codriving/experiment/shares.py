@@ -30,15 +30,6 @@ def run_shares(
     once as requests may be under way, unless the plan says otherwise than in processes. Episodes that learn from one
     another come one after the other, each cell in the order of its seeds.
 
-    Args:
-        missing: What to drive.
-        unfilmed: What is saved already and lacks its film only.
-        job: What to do with each.
-        plan: The run.
-        asked: The language models of the cells that something is missing of.
-        preload: Modules imported once for all processes.
-        progress: Who is told of each unit.
-
     Returns:
         Reports of those that ended in an error, by cell and seed.
 
@@ -70,6 +61,5 @@ def side_by_side(workers: int | str, concurrency: int) -> int:
 
     Args:
         workers: A number, or ``auto`` for as many as requests may be under way.
-        concurrency: Requests that may be under way.
     """
     return concurrency if workers == "auto" else min(int(workers), concurrency)

@@ -9,13 +9,7 @@ class Interrupted(KeyboardInterrupt):
     """Raised when the user stops a batch, after everything has been put in order."""
 
     def __init__(self, folder: Path, finished: int, planned: int) -> None:
-        """Say what there is.
-
-        Args:
-            folder: The run folder.
-            finished: Episodes that are kept.
-            planned: Episodes of the whole run.
-        """
+        """Say what there is."""
         super().__init__(f"stopped with {finished} of {planned} episodes finished")
         self.folder = folder
         self.finished = finished
@@ -26,14 +20,7 @@ class HaltedError(ModelError):
     """Raised when a batch stops since its language model must not be used any more; everything is in order."""
 
     def __init__(self, reason: ModelError, folder: Path, finished: int, planned: int) -> None:
-        """Say why, and what there is.
-
-        Args:
-            reason: What the model or its limits said.
-            folder: The run folder.
-            finished: Episodes that are kept.
-            planned: Episodes of the whole run.
-        """
+        """Say why, and what there is."""
         self.text = f"{str(reason).rstrip('.;')}; {finished} of {planned} episodes are finished and kept"
         super().__init__(f"{self.text} in {folder}")
         self.folder = folder

@@ -24,13 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class StoredEpisode:
-    """An episode of a run folder.
-
-    Attributes:
-        cell: Its cell.
-        seed: Its seed.
-        folder: Its folder.
-    """
+    """An episode of a run folder."""
 
     cell: CellEntry
     seed: int
@@ -39,12 +33,6 @@ class StoredEpisode:
 
 def find_run(run: Path) -> tuple[Path, Manifest]:
     """Find a run folder by its path, or by its name below ``outputs/``.
-
-    Args:
-        run: What the user calls it.
-
-    Returns:
-        The folder and its manifest.
 
     Raises:
         RunFolderError: If there is no run there, or its manifest is damaged.
@@ -68,12 +56,8 @@ def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode
     """Find an episode.
 
     Args:
-        run: The run folder.
         cell: Name of the cell or a part of it that no other has; None if there is but one.
         seed: Seed; None takes the first that was driven.
-
-    Returns:
-        Where it is.
 
     Raises:
         RunFolderError: If there is no such episode; the message lists what there is.
@@ -97,14 +81,6 @@ def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode
 def screening(episode: StoredEpisode, scale: float = 1.0, config_dir: Path | None = None) -> "Screening":
     """Read an episode for its pictures.
 
-    Args:
-        episode: Where it is.
-        scale: Real pixels a pixel of the layout.
-        config_dir: The user's own configs, if any.
-
-    Returns:
-        Its pictures.
-
     Raises:
         RunFolderError: If there is nothing to show, or a file is damaged.
         ConfigError: If its scenario cannot be built any more.
@@ -117,9 +93,6 @@ def screening(episode: StoredEpisode, scale: float = 1.0, config_dir: Path | Non
 
 def read_driven(folder: Path) -> tuple[EpisodeRecord, Trajectory]:
     """Read the record of an episode and what was driven.
-
-    Args:
-        folder: Folder of the episode.
 
     Raises:
         RunFolderError: If nothing was driven, or a file is damaged.
@@ -134,10 +107,6 @@ def read_driven(folder: Path) -> tuple[EpisodeRecord, Trajectory]:
 
 def road_of(cell: CellEntry, config_dir: Path | None = None) -> Road:
     """Build the road of a cell from the settings in the manifest.
-
-    Args:
-        cell: The cell.
-        config_dir: The user's own configs, if any; a package of theirs may stand beside it.
 
     Raises:
         ConfigError: If the scenario cannot be built any more, for instance since its package is missing.

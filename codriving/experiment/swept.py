@@ -15,15 +15,7 @@ _LABELS_BELOW = {"cda": "variant", "method": "variant", "llm": "reasoner"}
 
 
 def swept_values(swept: Mapping[str, str], resolved: Mapping[str, Any]) -> dict[str, str]:
-    """Read off a config what stands in it for the keys that were given several values.
-
-    Args:
-        swept: The value of each such key as typed.
-        resolved: The config of one cell.
-
-    Returns:
-        For a group the name of its choice, for any other key its value as JSON, a text without quotes; no secrets.
-    """
+    """Read off a config what stands in it for the keys that were given several values."""
     plain = redact(resolved)
     return {key: typed if key in LISTED else _value(plain, key, typed) for key, typed in swept.items()}
 
@@ -41,9 +33,6 @@ def _value(node: object, key: str, typed: str) -> str:
 
 def shown_apart(cells: Sequence[tuple[Labels, Mapping[str, str]]]) -> list[dict[str, str]]:
     """Keep of the swept keys those that need a column of their own.
-
-    Args:
-        cells: Labels and swept values of each cell.
 
     Returns:
         The values of these keys for each cell, by the head of their column.

@@ -64,10 +64,7 @@ class Band:
 
 
 def _table(rows: FloatArray, between: FloatArray) -> FloatArray:
-    """Put the values between two rows between theirs, from row 0 on; row -1 and what follows it come last.
-
-    So a single look-up finds the worse of both neighbours, and row -1 is found where Python's index -2 is.
-    """
+    """Put the values between two rows between theirs, from row 0 on; row -1 and what follows it come last."""
     found = np.empty(len(rows) + len(between))
     found[::2], found[1::2] = rows, between
     return np.roll(found, -2)

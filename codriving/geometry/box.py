@@ -68,9 +68,6 @@ def overlaps(corners_a: FloatArray, corners_b: FloatArray) -> BoolArray:
     Args:
         corners_a: Corner points (..., 4, 2) [m].
         corners_b: Corner points (..., 4, 2) [m], broadcast against `corners_a`.
-
-    Returns:
-        Booleans (...).
     """
     sides_a = corners_a[..., 1:3, :] - corners_a[..., 0:2, :]
     sides_b = corners_b[..., 1:3, :] - corners_b[..., 0:2, :]
@@ -92,8 +89,6 @@ def separation(dx: FloatArray, dy: FloatArray, cos: FloatArray, sin: FloatArray,
     Args:
         dx: Second centre minus first, in the frame of the first box, along its heading [m].
         dy: The same across its heading [m].
-        cos: Cosine of the second heading minus the first.
-        sin: Sine of the same.
         footprint: Size of both boxes [m].
 
     Returns:

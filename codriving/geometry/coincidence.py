@@ -26,7 +26,6 @@ class Coincidence:
     """The stretch on which two centre lines coincide, and what it makes of the conflict.
 
     Attributes:
-        relation: How the two routes meet.
         merge: Where the centre lines begin to coincide on each route [m], or None.
         split: Where they stop on each route [m], or None.
     """
@@ -42,11 +41,6 @@ def classify(path_i: Path, path_j: Path, zone: Cells) -> Coincidence:
     The routes follow one another where the stretch touches their starts and ends, converge where it touches an
     end only, diverge where it touches a start only, and weave where it touches neither. A stretch that stops because
     one of the two routes stops counts as touching the end: they stay together for as long as both exist.
-
-    Args:
-        path_i: Way of the first vehicle.
-        path_j: Way of the second vehicle.
-        zone: The zone as cells.
     """
     cells = _coincident(path_i, path_j, zone)
     if not len(cells.i):

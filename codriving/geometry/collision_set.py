@@ -39,8 +39,6 @@ def collision_set(path_i: Path, path_j: Path, footprint: Footprint) -> Cells:
     """Return all pairs of path points at which two footprints overlap, ordered by j and then by i.
 
     Args:
-        path_i: Way of the first vehicle.
-        path_j: Way of the second vehicle.
         footprint: Size of both vehicles [m].
     """
     near = _near_cells(path_i.points, path_j.points, float(np.hypot(footprint.length, footprint.width)))
@@ -53,9 +51,6 @@ def cell_separation(path_i: Path, path_j: Path, cells: Cells, footprint: Footpri
     """Return the signed separation of the two footprints at every cell (n,) [m]; negative if they overlap.
 
     Args:
-        path_i: Way of the first vehicle.
-        path_j: Way of the second vehicle.
-        cells: Pairs of points on the two.
         footprint: Size of both vehicles [m].
     """
     heading = path_i.headings[cells.i]
@@ -67,9 +62,6 @@ def cell_separation(path_i: Path, path_j: Path, cells: Cells, footprint: Footpri
 
 def components(cells: Cells) -> IntArray:
     """Number the connected parts of a set of cells; cells that touch at a side or a corner are connected.
-
-    Args:
-        cells: Cells ordered by j and then by i.
 
     Returns:
         Number of the part of each cell (n,), counted from 0 in the order of first appearance.

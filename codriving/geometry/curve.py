@@ -29,11 +29,7 @@ class Curve:
 
 
 def lane_curve(shape: LaneShape) -> Curve:
-    """Return the centre line of a lane; positions and headings are those of highway-env's lane of that shape.
-
-    Args:
-        shape: Straight line, arc or sine.
-    """
+    """Return the centre line of a lane; positions and headings are those of highway-env's lane of that shape."""
     match shape:
         case Straight():
             return _straight(shape.start, shape.end)
@@ -84,8 +80,6 @@ def taper(left: Curve, entered: Curve, length: float) -> Curve:
     """Return the way from the end of one lane over to the lane beside it, half a cosine across.
 
     Args:
-        left: Centre line of the lane that is left.
-        entered: Centre line of the lane beside it, of about the same length.
         length: How much of the lane that is left it takes, at most all of it [m].
     """
     share = min(length / left.length, 1.0)
@@ -114,7 +108,6 @@ def first_part(curve: Curve, length: float) -> Curve:
     """Return the beginning of a curve.
 
     Args:
-        curve: The curve.
         length: How much of it [m].
     """
     return Curve(length, curve.at)

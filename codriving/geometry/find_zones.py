@@ -22,8 +22,6 @@ def find_zones(path_i: Path, path_j: Path, footprint: Footprint) -> tuple[Confli
     """Return every conflict zone of two different routes, in the order in which route i meets them.
 
     Args:
-        path_i: Way of the first vehicle.
-        path_j: Way of the second vehicle.
         footprint: Size of both vehicles [m].
     """
     cells = collision_set(path_i, path_j, footprint)

@@ -19,8 +19,6 @@ class LaneChanges:
     """The lane changes that routes ask for, and what lies on the lanes beside them.
 
     Args:
-        lanes: Lanes by id.
-        routes: Routes by id, in the order of the road.
         starts: Arc length at which each lane of a route begins on it, by route and lane [m].
     """
 
@@ -36,7 +34,6 @@ class LaneChanges:
         """Return the next lane change that a route asks for.
 
         Args:
-            route_id: Id of the route.
             s: Arc length on it [m].
 
         Returns:
@@ -51,16 +48,7 @@ class LaneChanges:
         return None
 
     def routes_beside(self, route_id: str, lane: LaneId) -> tuple[tuple[str, LaneId], ...]:
-        """Return the routes along the lanes next to a lane which end where a route does.
-
-        Args:
-            route_id: Id of the route.
-            lane: The lane.
-
-        Returns:
-            Id and lane of each; the route along a lane with the fewest lane changes still to come, and then with the
-            fewest before, stands for all of them.
-        """
+        """Return the routes along the lanes next to a lane which end where a route does."""
         key = (route_id, lane)
         if key not in self._beside:
             found = []
@@ -80,8 +68,6 @@ class LaneChanges:
         """Return the routes beside a route onto whose lanes a body at a place still or already reaches.
 
         Args:
-            route_id: Id of the route that the body is on.
-            lane: The lane of it that the body is on.
             x: Centre of the body [m].
             y: Centre of the body [m].
 

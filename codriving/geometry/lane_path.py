@@ -20,7 +20,6 @@ def lane_path(lane: Lane, spacing: float = SPACING) -> Path:
     """Sample the centre line of one lane.
 
     Args:
-        lane: The lane.
         spacing: Nominal distance between two points [m]; the exact one divides the length evenly.
     """
     return _sample([lane_curve(lane.shape)], spacing)
@@ -30,7 +29,6 @@ def route_path(lanes: Sequence[Lane], change: float = 0.0, spacing: float = SPAC
     """Join lanes into one path; a gap between two of them is bridged smoothly, a lane change is a taper.
 
     Args:
-        lanes: The lanes in the order of travel, at least one.
         change: Length of the way from a lane to the one beside it, at the end of the one that is left [m].
         spacing: Nominal distance between two points [m].
     """
@@ -43,7 +41,6 @@ def lane_starts(lanes: Sequence[Lane], change: float = 0.0) -> tuple[float, ...]
     A lane that is changed to begins in the middle of the change.
 
     Args:
-        lanes: The lanes in the order of travel.
         change: Length of a lane change [m].
     """
     starts, s = [], 0.0
@@ -60,7 +57,6 @@ def joined_curves(lanes: Sequence[Lane], change: float) -> list[tuple[str, Curve
     """Return the curves of a route in order, each with what it is: a ``lane``, a ``bridge`` or a lane ``change``.
 
     Args:
-        lanes: The lanes in the order of travel.
         change: Length of a lane change [m].
     """
     curves: list[tuple[str, Curve]] = []

@@ -15,9 +15,6 @@ class Nearby:
     """Looks up the routes that pass by a place, all of them at once.
 
     Args:
-        lanes: Lanes by id.
-        routes: Routes by id, in the order of the road.
-        paths: Paths by id of the route.
         starts: Arc length at which each lane of a route begins on it, by route and lane [m].
     """
 

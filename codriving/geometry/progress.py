@@ -15,7 +15,6 @@ def progress(path: Path, x: FloatArray, y: FloatArray, heading: FloatArray) -> F
     drives forward never loses ground, so sideways motion and corner cutting cannot move it back.
 
     Args:
-        path: The route that was driven.
         x: Positions (n,) [m].
         y: Positions (n,) [m].
         heading: Headings (n,) [rad].

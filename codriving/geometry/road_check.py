@@ -23,9 +23,6 @@ _ROUGH = 0.5
 def check_road(road: Road) -> None:
     """Refuse a road that is not consistent in itself.
 
-    Args:
-        road: The road.
-
     Raises:
         ScenarioError: If there is no route, an id is used twice, a lane has no length, a route names a lane that does
             not exist or two lanes that are not connected, or its entry and goal are not on it in this order.

@@ -22,17 +22,6 @@ _REMEMBERED = 10_000
 class RoadMap:
     """Paths of all routes, and the conflict zones between them, which are worked out when they are asked for.
 
-    Args:
-        road: The road.
-
-    Attributes:
-        road: The road.
-        lanes: Lanes by id.
-        routes: Routes by id.
-        paths: Paths by id of the route.
-        changes: The lane changes that routes ask for, and the lanes beside them.
-        nearby: The routes that pass by a place.
-
     Raises:
         ScenarioError: If the road is not consistent in itself.
     """
@@ -67,7 +56,6 @@ class RoadMap:
         """Return arc length and lateral offset of a place on a route [m], as `Path.project` does, each worked out once.
 
         Args:
-            route_id: Id of the route.
             x: Place [m].
             y: Place [m].
 
@@ -86,7 +74,6 @@ class RoadMap:
         """Work out together what `project` will be asked for.
 
         Args:
-            route_id: Id of the route.
             places: Places, x and y [m].
 
         Raises:
@@ -105,7 +92,6 @@ class RoadMap:
         """Return the lane of a route at an arc length.
 
         Args:
-            route_id: Id of the route.
             s: Arc length; before the start of the route the first lane counts [m].
 
         Raises:
@@ -128,8 +114,6 @@ class RoadMap:
         """Return the conflict zones of two routes, seen from the first, in the order in which it meets them.
 
         Args:
-            route_i: Id of the first route.
-            route_j: Id of the second route; the same one gives a single zone of vehicles that follow one another.
             footprint: Size of both vehicles [m].
 
         Raises:
@@ -154,9 +138,6 @@ class RoadMap:
 @lru_cache(maxsize=64)
 def road_map(road: Road) -> RoadMap:
     """Return the map of a road; equal roads share one.
-
-    Args:
-        road: The road.
 
     Raises:
         ScenarioError: If the road is not consistent in itself.

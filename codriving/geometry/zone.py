@@ -16,7 +16,6 @@ class ConflictZone:
     """One connected zone of the collision set of two routes, seen from route i.
 
     Attributes:
-        relation: How the two routes meet.
         entry_i: Arc length on route i at which the zone begins [m].
         exit_i: Arc length on route i at which the zone ends [m].
         entry_j: Arc length on route j at which the zone begins [m].
@@ -27,8 +26,6 @@ class ConflictZone:
         merge_j: The same on route j [m].
         split_i: Where they stop to coincide on route i [m]; None unless diverging or weaving.
         split_j: The same on route j [m].
-        over_i: What is blocked on route j, tabulated over route i.
-        over_j: What is blocked on route i, tabulated over route j.
     """
 
     relation: Relation
@@ -98,7 +95,6 @@ def following_zone(path: Path, footprint: Footprint) -> ConflictZone:
     """Return the zone of two vehicles on the same route, who keep a body length apart all along.
 
     Args:
-        path: The route of both.
         footprint: Size of both vehicles [m].
     """
     band = FollowingBand(footprint.length)

@@ -16,9 +16,6 @@ ACTIONS = tuple(Action)
 def action_mask(available: Collection[Action]) -> NDArray[np.int8]:
     """Mark the actions that the road allows.
 
-    Args:
-        available: The allowed actions; nobody is left without any, so nothing allowed means IDLE.
-
     Returns:
         1 where the action of that number is allowed, else 0 (5,).
     """
@@ -27,10 +24,6 @@ def action_mask(available: Collection[Action]) -> NDArray[np.int8]:
 
 def action_of(agent: str, number: object) -> Action:
     """Return the action of a number.
-
-    Args:
-        agent: Whose action it is, for the message.
-        number: What was given: anything that is a whole number.
 
     Raises:
         EpisodeError: If it is not the number of an action.

@@ -26,11 +26,7 @@ def configured(
     """Build the environment of a scenario.
 
     Args:
-        name: Name of the scenario's YAML.
         overrides: ``key=value`` tokens.
-        cda: Name of the preset.
-        config_dir: A folder with YAML files of the user's own.
-        settings: Keys of the scenario and their values.
 
     Raises:
         ConfigError: If anything cannot be used, with the key and the rule.

@@ -17,13 +17,7 @@ from codriving.gym.reward import Driven, RewardWeights, rewards
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """What one decision step brought each CAV that was on the road, by id.
-
-    Attributes:
-        rewards: Reward.
-        terminated: Whether it has arrived, or the episode has ended otherwise than by the time limit.
-        truncated: Whether the time limit has ended the episode before it arrived.
-    """
+    """What one decision step brought each CAV that was on the road, by id."""
 
     rewards: dict[str, float]
     terminated: dict[str, bool]
@@ -34,11 +28,7 @@ class Eyes(Protocol):
     """What CAVs observe."""
 
     def observe(self, world: WorldState) -> dict[str, FloatArray]:
-        """Return what each CAV on the road observes, by id.
-
-        Args:
-            world: The world; once a step.
-        """
+        """Return what each CAV on the road observes, by id."""
         ...
 
     def nothing(self) -> FloatArray:
@@ -49,17 +39,8 @@ class Eyes(Protocol):
 class Drive:
     """An environment with eyes and rewards.
 
-    Args:
-        environment: What is driven.
-        observer: What is seen of it.
-        weights: What is rewarded.
-
     Attributes:
-        cavs: Ids of all CAVs, the same for every seed.
-        driving: Ids of those on the road while an episode goes on, in the same order.
         world: The world as it is now; None before the first episode.
-        actions: What each CAV carried out last, by id.
-        seed: Seed of the episode.
     """
 
     def __init__(self, environment: Environment, observer: Eyes, weights: RewardWeights) -> None:
@@ -74,9 +55,6 @@ class Drive:
 
     def begin(self, seed: int) -> None:
         """Begin an episode.
-
-        Args:
-            seed: Its seed.
 
         Raises:
             ScenarioError: If the vehicles cannot be placed, or the CAVs are not those of every other seed.
@@ -94,9 +72,6 @@ class Drive:
 
     def step(self, actions: Mapping[str, object]) -> Turn:
         """Carry out one decision of every CAV on the road.
-
-        Args:
-            actions: Number of an action for each of them, by id; those of CAVs that have left are ignored.
 
         Raises:
             EpisodeError: If no episode is going on, or an action is missing, for nobody, or no action.
@@ -121,9 +96,6 @@ class Drive:
     def observations(self, names: Sequence[str]) -> dict[str, FloatArray]:
         """Return what CAVs observe now; zeros for those that have left the road.
 
-        Args:
-            names: Ids of CAVs.
-
         Returns:
             A matrix (rows, 6) of its own each, by id.
         """
@@ -131,11 +103,7 @@ class Drive:
         return {name: views[name].copy() if name in views else nothing() for name in names}
 
     def info(self, name: str) -> dict[str, Any]:
-        """Return what is to be said of a CAV besides.
-
-        Args:
-            name: Its id.
-        """
+        """Return what is to be said of a CAV besides."""
         assert self.world is not None
         outcome = self.environment.outcome
         return {

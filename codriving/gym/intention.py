@@ -25,11 +25,6 @@ def intention(intent: Intent | None, lane: LaneId | None, routes: Mapping[str, R
 
     A lane change under way comes first, then one that the route still asks for (a ramp that ends, say), and then what
     the route does at the junction.
-
-    Args:
-        intent: What is known of the intent, if anything.
-        lane: Lane that the vehicle drives on, if it is known.
-        routes: The routes of the road by id.
     """
     if intent is None:
         return Intention.HIDDEN

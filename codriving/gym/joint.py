@@ -19,12 +19,8 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
     """One agent that decides for all CAVs: observations and actions are the products of theirs (paper Section II).
 
     Args:
-        name: Name of the scenario.
         overrides: ``key=value`` tokens, as for ``codriving.parallel_env``.
         **settings: The other arguments of ``codriving.parallel_env``.
-
-    Attributes:
-        parallel: The same environment with an agent a CAV.
 
     Raises:
         ConfigError: If a setting cannot be used.
@@ -47,7 +43,6 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         Args:
             seed: Begins exactly the episode that `codriving run` drives with this seed, and seeds the generator from
                 which later episodes are drawn; None draws one.
-            options: Not used.
 
         Returns:
             Joint observation (cavs, rows, 6) and info.

@@ -29,9 +29,7 @@ class Layout:
     """What an observation looks like.
 
     Attributes:
-        rows: Vehicles that it has room for, the ego vehicle among them.
         coordinates: ``relative``: places of others are seen from the ego vehicle; ``absolute``: on the map.
-        normalise: Whether every number is divided by its largest magnitude.
 
     Raises:
         ConfigError: If a setting is not one of the allowed values.
@@ -55,11 +53,7 @@ class Layout:
         return self.rows, len(FEATURES)
 
     def bounds(self, road_map: RoadMap) -> tuple[FloatArray, FloatArray]:
-        """Return the smallest and largest values on a road (rows, 6) each, in SI units; 0 is always within.
-
-        Args:
-            road_map: The precomputed road.
-        """
+        """Return the smallest and largest values on a road (rows, 6) each, in SI units; 0 is always within."""
         paths = [lane_path(lane).points for lane in road_map.road.lanes]
         least = reduce(np.minimum, [points.min(axis=0) for points in paths]) - MARGIN
         most = reduce(np.maximum, [points.max(axis=0) for points in paths]) + MARGIN

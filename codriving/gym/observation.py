@@ -22,17 +22,7 @@ Row = tuple[float, float, float, float, float, float]
 
 
 class Observer:
-    """Turns a world into what each CAV observes of it.
-
-    Args:
-        road_map: The precomputed road.
-        model: Holds the detection range.
-        cda: Whether states and intents are shared.
-        layout: What an observation looks like.
-
-    Attributes:
-        lanes: Number of each lane, from 1 in the order of the road.
-    """
+    """Turns a world into what each CAV observes of it."""
 
     def __init__(self, road_map: RoadMap, model: DrivingModel, cda: CdaLevel, layout: Layout) -> None:
         self._road_map, self._model, self._layout = road_map, model, layout
@@ -54,9 +44,6 @@ class Observer:
 
     def observe(self, world: WorldState) -> dict[str, FloatArray]:
         """Return what each CAV on the road observes.
-
-        Args:
-            world: The world.
 
         Returns:
             A matrix (rows, 6) a CAV, by id: the CAV itself, then the others from near to far, then zeros.

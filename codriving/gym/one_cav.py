@@ -15,11 +15,7 @@ DRAW = 2
 
 
 class OneCav:
-    """Another scenario with a single CAV among human drivers.
-
-    Args:
-        scenario: The scenario; its CAVs but one become human drivers who want the speed that they start with.
-    """
+    """Another scenario with a single CAV among human drivers."""
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario = scenario
@@ -37,9 +33,6 @@ class OneCav:
 
     def scene(self, seed: int) -> Scene:
         """Draw the scene, and which of the CAVs is the one that is left; it is called ``CAV1`` always.
-
-        Args:
-            seed: Seed of the episode.
 
         Raises:
             ScenarioError: If the vehicles cannot be placed.

@@ -33,19 +33,9 @@ class ParallelDriving(ParallelEnv):
         name: Name of the scenario, for instance ``roundabout``.
         *overrides: ``key=value`` tokens that begin with ``scenario``, ``environment``, ``cda`` or ``plugins``.
         cda: How far the CAVs cooperate, which decides what they observe; a preset such as ``status_sharing``.
-        rows: Vehicles that an observation has room for, the CAV itself among them.
         coordinates: ``relative`` or ``absolute`` places of the other vehicles.
-        normalise: Whether the features are divided by their largest magnitudes.
-        reward: Weights of the reward, or some of them by name.
         render_mode: ``rgb_array``, or None for no pictures.
-        config_dir: A folder with YAML files of your own, in the same groups.
         **settings: Keys of the scenario, for instance ``cavs=4``.
-
-    Attributes:
-        environment: What is driven; it knows the outcome, the trajectory and the road.
-        agents: Ids of the CAVs on the road.
-        possible_agents: Ids of all CAVs.
-        lanes: Number of each lane in an observation.
 
     Raises:
         ConfigError: If a setting cannot be used.
@@ -101,19 +91,11 @@ class ParallelDriving(ParallelEnv):
         return self._drive.world
 
     def observation_space(self, agent: str) -> Box:
-        """Return the space of an agent's observations.
-
-        Args:
-            agent: Id of a CAV.
-        """
+        """Return the space of an agent's observations."""
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> Discrete:
-        """Return the space of an agent's actions.
-
-        Args:
-            agent: Id of a CAV.
-        """
+        """Return the space of an agent's actions."""
         return self.action_spaces[agent]
 
     def reset(
@@ -124,7 +106,6 @@ class ParallelDriving(ParallelEnv):
         Args:
             seed: Begins exactly the episode that `codriving run` drives with this seed, and seeds the generator from
                 which later episodes are drawn; None draws one.
-            options: Not used.
 
         Returns:
             Observations and infos by agent.
@@ -194,9 +175,5 @@ class ParallelDriving(ParallelEnv):
         self._picture = None
 
     def infos(self, agents: Sequence[str]) -> Infos:
-        """Return what there is to say besides, also of agents that have left.
-
-        Args:
-            agents: Ids of CAVs.
-        """
+        """Return what there is to say besides, also of agents that have left."""
         return {agent: self._drive.info(agent) for agent in agents}

@@ -14,20 +14,12 @@ ENTRY_POINT = "codriving.gym.joint:JointDriving"
 
 
 def env_id(scenario: str) -> str:
-    """Return the name under which Gymnasium knows a scenario.
-
-    Args:
-        scenario: Name of its YAML.
-    """
+    """Return the name under which Gymnasium knows a scenario."""
     return f"codriving/{scenario}-v0"
 
 
 def register_scenarios(config_dir: str | Path | None = None) -> None:
-    """Tell Gymnasium of every scenario; again does no harm.
-
-    Args:
-        config_dir: A folder with YAML files of your own, whose scenarios are registered too.
-    """
+    """Tell Gymnasium of every scenario; again does no harm."""
     import gymnasium
 
     from codriving.config.choices import choices

@@ -15,13 +15,9 @@ class RewardWeights:
     """What is added to the reward of a CAV for one decision; the defaults are those of the learning baseline.
 
     Attributes:
-        arrival: Once, when it arrives.
-        collision: When it takes part in a collision or leaves the road.
         time: For each second on the road [1/s].
         speed: For each second at the highest target speed, in proportion below it [1/s].
-        lane_change: For each lane change that it begins.
         comfort: For each second, times the square of its mean acceleration in the step [s3/m2].
-        cooperation: Share of the mean of all CAVs on the road in each one's own reward, 0 to 1.
 
     Raises:
         ConfigError: If a weight is not a finite number, or the share is not one.
@@ -49,10 +45,7 @@ class Driven:
     """What one CAV did in one decision step.
 
     Attributes:
-        before: Its state when it decided.
         after: Its state now; None if it has arrived and left the road.
-        action: What it carried out.
-        failed: Whether it took part in a collision or left the road.
     """
 
     before: VehicleState
@@ -63,9 +56,6 @@ class Driven:
 
 def reward_weights(given: RewardWeights | Mapping[str, Any] | None) -> RewardWeights:
     """Return the weights, the defaults where nothing is said.
-
-    Args:
-        given: Weights, or some of them by name.
 
     Raises:
         ConfigError: If there is no such weight, or a value cannot be used.
@@ -85,13 +75,8 @@ def rewards(weights: RewardWeights, driven: Sequence[Driven], duration: float, t
     """Reward one decision step.
 
     Args:
-        weights: What counts how much.
-        driven: What each CAV on the road did.
         duration: Simulated time of the step [s].
         top_speed: Highest target speed [m/s].
-
-    Returns:
-        One reward for each CAV, in the same order.
     """
     own = [_reward(weights, one, duration, top_speed) for one in driven]
     if not own or not weights.cooperation:

@@ -12,19 +12,12 @@ FIRST_DRAWN = 1_000_000
 
 
 def draw_seed(rng: np.random.Generator) -> int:
-    """Draw the seed of an episode.
-
-    Args:
-        rng: The environment's own generator.
-    """
+    """Draw the seed of an episode."""
     return int(rng.integers(FIRST_DRAWN, LARGEST_SEED, endpoint=True))
 
 
 def check_seed(seed: object) -> int:
     """Return a seed that was given as a plain number.
-
-    Args:
-        seed: What was given.
 
     Raises:
         EpisodeError: If it is not a whole number of at least 0.

@@ -25,15 +25,8 @@ class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
     """One agent that drives one CAV; everybody else is a human driver.
 
     Args:
-        name: Name of the scenario.
-        eyes: What the CAV observes of the environment that is built.
-        actions: What the numbers of actions mean.
         overrides: ``key=value`` tokens, as for ``codriving.parallel_env``.
-        reward: Weights of the reward, or some of them by name.
         **settings: Keys of the scenario; of its ``cavs`` one is left, the others become human drivers.
-
-    Attributes:
-        environment: What is driven.
 
     Raises:
         ConfigError: If a setting cannot be used.
@@ -65,7 +58,6 @@ class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
         Args:
             seed: Seed of the episode, and of the generator from which later ones are drawn; None draws one of
                 1,000,000 or more.
-            options: Not used.
 
         Returns:
             Observation and info.
@@ -81,9 +73,6 @@ class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
 
     def step(self, action: np.int64) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
         """Carry out one decision; what the road does not allow is carried out as IDLE and counted.
-
-        Args:
-            action: Number of the action.
 
         Returns:
             Observation, reward, terminated, truncated, info.

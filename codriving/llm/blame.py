@@ -13,14 +13,7 @@ def must_be_mended(fault: CallError) -> bool:
 
 
 def unusable(fault: CallError, model: str, api_base: str | None, api_key_env: str | None) -> ModelError:
-    """Say that a model cannot be used, and what to set.
-
-    Args:
-        fault: What the first call failed with.
-        model: Setting of that name.
-        api_base: Setting of that name.
-        api_key_env: Setting of that name.
-    """
+    """Say that a model cannot be used, and what to set."""
     where = server(model, api_base)
     said = f" ({fault.detail})" if fault.detail else ""
     key = api_key_env or "the variable that llm.api_key_env names"
@@ -49,13 +42,7 @@ def unusable(fault: CallError, model: str, api_base: str | None, api_key_env: st
 
 
 def unavailable(fault: CallError, model: str, api_base: str | None) -> ModelUnavailableError:
-    """Say that a model did not answer this time.
-
-    Args:
-        fault: The last failure.
-        model: Setting of that name.
-        api_base: Setting of that name.
-    """
+    """Say that a model did not answer this time."""
     times = "once" if fault.attempts == 1 else f"{fault.attempts} times"
     return ModelUnavailableError(f"{model}: {server(model, api_base)} {fault}, asked {times}")
 

@@ -23,7 +23,6 @@ class AnswerCache:
     """Replies by what was asked; any number of threads and processes may share the file, and may be killed at any time.
 
     Args:
-        path: The file; it and its folder are made when the first reply is kept.
         mode: ``off``, ``use`` or ``replay``.
 
     Raises:
@@ -42,9 +41,6 @@ class AnswerCache:
 
     def find(self, request: Mapping[str, Any]) -> dict[str, Any] | None:
         """Look a reply up.
-
-        Args:
-            request: Everything that the reply depends on: model, base URL, messages, sampling options, schema, form.
 
         Returns:
             The reply; None if there is none and the model may be asked.
@@ -75,10 +71,6 @@ class AnswerCache:
 
         Args:
             request: What was asked, as for ``find``.
-            reply: The reply, of plain JSON values.
-
-        Returns:
-            The reply that is kept, and that has to be gone on with: only then will a replay come to the same end.
 
         Raises:
             ModelError: If the file cannot be used.
@@ -130,9 +122,6 @@ class AnswerCache:
 
 def key_of(request: Mapping[str, Any]) -> str:
     """Give what a request is found by: the SHA-256 of its canonical JSON.
-
-    Args:
-        request: The request, of plain JSON values.
 
     Returns:
         64 hexadecimal digits; the same whatever the order of the keys.

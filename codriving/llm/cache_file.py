@@ -19,9 +19,6 @@ _LOG_PAGES = 64
 def open_to_write(path: Path) -> sqlite3.Connection:
     """Open the file; it and its folder are made where they are missing.
 
-    Args:
-        path: The file.
-
     Raises:
         sqlite3.Error: If it is no such file.
         OSError: If it cannot be made.
@@ -41,9 +38,6 @@ def open_to_write(path: Path) -> sqlite3.Connection:
 
 def open_to_read(path: Path) -> sqlite3.Connection:
     """Open the file without ever changing it; it may lie where not even the lock beside it can be written.
-
-    Args:
-        path: The file.
 
     Raises:
         sqlite3.Error: If it is no such file.

@@ -28,17 +28,8 @@ class ModelChat:
     """A language model behind one client for the whole process; may be asked from any thread.
 
     Args:
-        settings: What it does.
         price: Cost of so many prompt and completion tokens [USD]; None where no price is known.
-        spending: Counts what is spent.
         cache: Keeps replies; None keeps none.
-        sender: Sends requests; replaced in tests.
-        sleep: Waits between attempts; replaced in tests.
-        forms: Which forms of answer each model supports.
-
-    Attributes:
-        name: Name of the model, for tables.
-        on_retry: Called with every retry, on the loop's thread; for the progress line.
     """
 
     def __init__(
@@ -62,12 +53,6 @@ class ModelChat:
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
         """Ask several questions at once and wait for all answers.
-
-        Args:
-            questions: The questions; may be empty.
-
-        Returns:
-            One answer a question, in the same order; one that cannot be used has no value.
 
         Raises:
             ModelError: If nothing has worked yet and the user has to mend it: no key, no server, no such model.

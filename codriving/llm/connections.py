@@ -23,9 +23,6 @@ class Connections(httpx.AsyncBaseTransport):
 
     A single transport asks the operating system about every idle connection whenever a request begins and ends. With
     20 episodes side by side that takes longer than all the rest.
-
-    Args:
-        make: Makes a transport.
     """
 
     def __init__(self, make: Callable[[], httpx.AsyncBaseTransport]) -> None:

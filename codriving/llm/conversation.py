@@ -16,15 +16,7 @@ _LONGEST = 2000
 
 
 async def converse(question: Question, fetch: Fetch) -> Answer:
-    """Ask a question.
-
-    Args:
-        question: The question.
-        fetch: Asks the model.
-
-    Returns:
-        The answer; without a value if the model gave none that can be used.
-    """
+    """Ask a question."""
     calls: list[Call] = []
     shortened = 0
     again: tuple[Message, ...] = ()

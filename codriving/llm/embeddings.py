@@ -23,11 +23,9 @@ class EmbeddingModel:
     """An embedding model of one server.
 
     Args:
-        model: Model, as LiteLLM calls it.
         api_base: Address of the server; None for the provider's own.
         key_env: Name of the environment variable that holds the key; None sends none.
         deadline: How long one attempt may take [s].
-        sleep: Waits between attempts; replaced in tests.
 
     Raises:
         ConfigError: If a setting breaks its rule.
@@ -47,12 +45,6 @@ class EmbeddingModel:
 
     def embed(self, texts: Sequence[str]) -> list[list[float]]:
         """Embed some texts in one request.
-
-        Args:
-            texts: The texts; may be empty.
-
-        Returns:
-            One vector a text, all of one length.
 
         Raises:
             ModelUnavailableError: If the server does not answer, retries included.

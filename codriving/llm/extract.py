@@ -27,7 +27,6 @@ def clean(text: str, longest: int = LONGEST) -> str:
     What is too long loses its middle: an answer may stand at either end.
 
     Args:
-        text: What a model said.
         longest: How much of it is kept [characters].
     """
     if len(text) > longest:
@@ -40,7 +39,6 @@ def one_line(text: str, longest: int) -> str:
     """Put a text on one line and shorten it.
 
     Args:
-        text: Any text.
         longest: Where it is cut [characters].
     """
     line = " ".join(clean(text).split())
@@ -59,9 +57,6 @@ def without_thoughts(text: str) -> str:
 
 def last_object(text: str) -> dict[str, Any] | None:
     """Read the last balanced JSON object of a text.
-
-    Args:
-        text: What a model said.
 
     Returns:
         The object, its texts without control characters; None if there is none.

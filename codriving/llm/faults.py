@@ -53,10 +53,7 @@ class CallError(Exception):
     """Raised by one attempt that failed; it never leaves this room.
 
     Attributes:
-        kind: What kind of failure it is.
-        detail: The server's or the library's own words, without keys, on one line.
         retry_after: How long the server asks to wait [s]; None if it doesn't say.
-        attempts: How often the request had been sent when it was given up.
     """
 
     def __init__(self, kind: Kind, detail: str = "", retry_after: float | None = None) -> None:
@@ -72,10 +69,6 @@ def fault_of(error: BaseException, key: str | None) -> CallError:
 
     LiteLLM names its exceptions after words in the body and gives status 500 to a connection that was never made, so
     the HTTP exception in the chain of causes decides where there is one.
-
-    Args:
-        error: What was raised.
-        key: The key that was sent; taken out of every text.
     """
     chain = list(_chain(error))
     detail = _words(str(error), key)

@@ -23,17 +23,7 @@ class Fetcher:
     """Fetches replies from the server of one model; used on the one loop alone.
 
     Args:
-        settings: What it does.
         price: Cost of so many prompt and completion tokens [USD]; None where no price is known.
-        spending: Counts what is spent.
-        sender: Sends requests.
-        sleep: Waits between attempts.
-        forms: Which forms of answer each model supports.
-        notify: Told about every retry.
-
-    Attributes:
-        key: Where the key is found.
-        worked: Whether the server has replied to anything yet.
     """
 
     def __init__(
@@ -55,9 +45,6 @@ class Fetcher:
 
     async def fetch(self, request: Request) -> Reply:
         """Ask the server.
-
-        Args:
-            request: What to ask.
 
         Raises:
             CallError: If there is no reply, retries included.

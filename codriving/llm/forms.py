@@ -22,12 +22,6 @@ def schema_of(model: "type[BaseModel]") -> dict[str, Any]:
     """Write a form of answer as a JSON schema that the strict mode of servers takes.
 
     Strict mode wants every property required and none beside them.
-
-    Args:
-        model: The form.
-
-    Returns:
-        The schema; shared, so it must not be changed.
     """
     strict = _strict(model.model_json_schema())
     assert isinstance(strict, dict)
@@ -68,7 +62,6 @@ def worded(messages: tuple[Message, ...], form: str, schema: Mapping[str, Any] |
     """Describe the schema in the first user message where the form does not carry it.
 
     Args:
-        messages: The conversation.
         form: One of ``FORMS``.
         schema: Schema of the answer; None if any text will do.
     """
@@ -92,25 +85,11 @@ class Forms:
         self._known: dict[tuple[str, str | None], int] = {}
 
     def best(self, model: str, api_base: str | None) -> str:
-        """Return the form to ask in.
-
-        Args:
-            model: The model.
-            api_base: Where it is served.
-        """
+        """Return the form to ask in."""
         return FORMS[self._known.get((model, api_base), 0)]
 
     def step_down(self, model: str, api_base: str | None, refused: str) -> bool:
-        """Remember that a form is not supported.
-
-        Args:
-            model: The model.
-            api_base: Where it is served.
-            refused: The form that was refused.
-
-        Returns:
-            Whether there is a plainer one.
-        """
+        """Remember that a form is not supported."""
         below = FORMS.index(refused) + 1
         if below == len(FORMS):
             return False

@@ -10,9 +10,6 @@ class Gate:
     """Lets a number of requests through at once; halves it on 429 and lets it grow back by one a round of answers.
 
     Used on one event loop, so it needs no lock.
-
-    Args:
-        limit: Most requests at once.
     """
 
     def __init__(self, limit: int) -> None:

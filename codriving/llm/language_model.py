@@ -25,22 +25,16 @@ class LanguageModel:
     """A model through LiteLLM.
 
     Attributes:
-        model: Model, as LiteLLM calls it; also its name in tables.
         api_base: Address of the server; None for the provider's own.
         api_key_env: Name of the environment variable that holds the key; None sends none.
         temperature: Sampling temperature; None leaves it to the server.
         max_tokens: Longest answer [tokens].
         deadline: How long one attempt may take, from sending to the last byte [s].
-        attempts: How often a request is sent at most.
-        max_concurrency: Most requests and episodes at once.
         cache: ``off``, ``use`` (asks what is not there) or ``replay`` (asks nothing).
-        cache_file: File of the cache.
         max_cost: What the batch may cost [USD]; None sets no limit.
         max_tokens_total: Tokens that the batch may use; None sets no limit.
         input_cost_per_token: Price of a token of the prompt [USD]; None takes LiteLLM's.
         output_cost_per_token: Price of a token of the answer [USD]; None takes LiteLLM's.
-        failures_in_a_row: Episodes that may fail one after the other before the batch stops.
-        ask_plain: Whether decisions that are plain are put to the model, too.
         prompts: Folder with templates that replace ours; None takes ours.
 
     Raises:

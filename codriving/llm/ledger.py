@@ -15,12 +15,7 @@ class Ledger:
         self._asked: list[tuple[Question, Answer]] = []
 
     def note(self, question: Question, answer: Answer) -> None:
-        """Note an answer.
-
-        Args:
-            question: What was asked.
-            answer: What became of it.
-        """
+        """Note an answer."""
         self._asked.append((question, answer))
         self._counts["model_calls"] += len(answer.calls)
         self._counts["prompt_tokens"] += sum(call.prompt_tokens for call in answer.calls)
@@ -33,12 +28,7 @@ class Ledger:
             self._counts["unpriced_calls"] += unpriced
 
     def count(self, name: str, number: int = 1) -> None:
-        """Count something else, for instance a repaired order.
-
-        Args:
-            name: Its column.
-            number: How many.
-        """
+        """Count something else, for instance a repaired order."""
         self._counts[name] += number
 
     def close_step(self, time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:

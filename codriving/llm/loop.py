@@ -23,11 +23,7 @@ class Loop:
         self._thread.start()
 
     def run(self, work: Coroutine[Any, Any, Result]) -> Result:
-        """Do something on the loop and wait for it, from any other thread.
-
-        Args:
-            work: What to do; it is cancelled if the waiting is interrupted.
-        """
+        """Do something on the loop and wait for it, from any other thread."""
         future = asyncio.run_coroutine_threadsafe(work, self._loop)
         try:
             return future.result()
@@ -36,11 +32,7 @@ class Loop:
             raise
 
     def at_close(self, closing: Callable[[], Awaitable[None]]) -> None:
-        """Note what is to be closed with the loop.
-
-        Args:
-            closing: Called on the loop.
-        """
+        """Note what is to be closed with the loop."""
         self._closing.append(closing)
 
     def close(self) -> None:

@@ -2,12 +2,7 @@
 
 
 class Offline:
-    """The built-in rule reasoner; no network, no key, deterministic.
-
-    Attributes:
-        name: Name for tables.
-        max_concurrency: Episodes that one process drives at once: the rules never wait.
-    """
+    """The built-in rule reasoner; no network, no key, deterministic."""
 
     name = "rules"
     max_concurrency = 1

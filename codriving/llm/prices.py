@@ -18,9 +18,6 @@ def cost_of(
     """Work out what a call costs.
 
     Args:
-        model: Model, as LiteLLM calls it.
-        prompt_tokens: Tokens of the prompt.
-        completion_tokens: Tokens of the answer.
         input_price: Price of the prompt by the config [USD/token]; None where it has none.
         output_price: Price of the answer by the config [USD/token]; None where it has none.
 

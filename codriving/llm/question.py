@@ -14,7 +14,6 @@ class Message:
 
     Attributes:
         role: ``system``, ``user`` or ``assistant``.
-        content: The text.
     """
 
     role: str
@@ -27,10 +26,6 @@ class Question:
 
     Attributes:
         purpose: ``negotiate``, ``decide`` or ``reflect``.
-        subject: Whom it is about, for instance the id of a CAV; empty if about all.
-        messages: The conversation so far.
-        schema: The form that the answer must have.
-        check: Says what is wrong with an answer of that form, in words that the model is told; empty if nothing is.
         shorter: Gives the same question with less in it, if the model's context is too short; None if nothing more
             can be left out.
     """
@@ -48,16 +43,9 @@ class Call:
     """One request that was answered or failed for good.
 
     Attributes:
-        messages: What was sent.
-        text: What came back; empty if nothing did.
         form: How the answer was asked for: ``json_schema``, ``json_object`` or ``text``.
-        prompt_tokens: Tokens of the prompt.
-        completion_tokens: Tokens of the answer.
         cost: What it cost [USD]; None where no price is known.
         seconds: How long it took, retries included [s]; of a cached answer, how long it took when it was asked.
-        attempts: How often it was sent.
-        cached: Whether it came from the cache.
-        problem: What was wrong with the answer; empty if nothing was.
     """
 
     messages: tuple[Message, ...]
@@ -78,9 +66,6 @@ class Answer:
 
     Attributes:
         value: The answer, or None if the model gave none that can be used.
-        calls: Every call that was made for it, in order; two if it was asked again.
-        problem: Why there is no answer; empty if there is one.
-        shortened: How often the question had to be shortened.
     """
 
     value: "BaseModel | None"
@@ -95,22 +80,12 @@ class Answer:
 
 
 class Chat(Protocol):
-    """A language model that answers questions.
-
-    Attributes:
-        name: Name of the model, for tables.
-    """
+    """A language model that answers questions."""
 
     name: str
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
         """Ask several questions at once and wait for all answers.
-
-        Args:
-            questions: The questions; may be empty.
-
-        Returns:
-            One answer a question, in the same order; one that cannot be used has no value.
 
         Raises:
             ModelUnavailableError: If the server cannot be reached, refuses or is too slow, retries included.
@@ -123,10 +98,7 @@ def as_line(purpose: str, subject: str, time: float, answer: Answer) -> dict[str
     """Write an answer down as one JSON-ready line of ``transcript.jsonl``.
 
     Args:
-        purpose: What was asked for.
-        subject: Whom it was about.
         time: Simulated time [s].
-        answer: What became of it.
     """
     return {
         "time": time,

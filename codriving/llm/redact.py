@@ -17,7 +17,6 @@ def without_key(text: str, key: str | None) -> str:
     """Take one key out of a text, as it is and as it stands in an address.
 
     Args:
-        text: Any text.
         key: The key; None or empty takes nothing out.
     """
     for written in {key, quote(key, safe="")} if key else ():
@@ -26,11 +25,6 @@ def without_key(text: str, key: str | None) -> str:
 
 
 def redacted(text: str, key: str | None) -> str:
-    """Take everything out of an error text that is a key or looks like one.
-
-    Args:
-        text: Words of a server or of a library.
-        key: The key that was sent, if any.
-    """
+    """Take everything out of an error text that is a key or looks like one."""
     text = _BEARER.sub(rf"\1 {HIDDEN}", without_key(text, key))
     return _SECRET.sub(HIDDEN, _HEADER.sub(rf"\1\2{HIDDEN}", text))

@@ -19,9 +19,7 @@ class Request:
     """What is asked of a server, apart from the form of the answer.
 
     Attributes:
-        model: Model, as LiteLLM calls it.
         api_base: Address of the server; None for the provider's own.
-        messages: The conversation.
         temperature: Sampling temperature; None leaves it to the server.
         max_tokens: Longest answer [tokens].
         schema: JSON schema of the answer; None if any text will do.
@@ -51,15 +49,8 @@ class Reply:
     """What a server sent.
 
     Attributes:
-        text: Text of the answer; empty if there is none.
-        finish_reason: Why it ends, in the server's word; empty if there is no answer at all.
-        refusal: The model's words for refusing; empty if it doesn't.
-        prompt_tokens: Tokens of the prompt.
-        completion_tokens: Tokens of the answer.
         cost: What it cost [USD]; None where no price is known.
-        form: The form in which the answer was asked for.
         seconds: How long it took, retries included [s].
-        attempts: How often the request was sent.
     """
 
     text: str
@@ -79,9 +70,6 @@ class Reply:
     @classmethod
     def from_dict(cls, stored: Mapping[str, Any]) -> "Reply":
         """Read what ``as_dict`` wrote.
-
-        Args:
-            stored: The data.
 
         Raises:
             ModelError: If it was not written by this version.

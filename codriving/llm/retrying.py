@@ -28,11 +28,7 @@ class Retry:
     """A retry that is about to be made.
 
     Attributes:
-        model: Which model is asked.
-        attempt: Which attempt failed, from 1.
-        attempts: How many there may be.
         wait: How long until the next one [s].
-        reason: Why it failed, without keys.
     """
 
     model: str
@@ -50,12 +46,7 @@ class Retries:
     """How a request is tried again.
 
     Attributes:
-        model: Which model is asked, for messages.
-        attempts: How often a request is sent at most.
         deadline: How long one attempt may take, from sending to the last byte [s].
-        sleep: Waits; replaced in tests.
-        jitter: Draws from [0, 1), so that callers who failed together don't return together.
-        notify: Told about every retry.
     """
 
     model: str
@@ -67,13 +58,6 @@ class Retries:
 
     async def run(self, attempt: Callable[[], Awaitable[Result]], may_pass: Callable[[CallError], bool]) -> Result:
         """Try until it works, fails for good, or the attempts are used up.
-
-        Args:
-            attempt: Sends the request once.
-            may_pass: Whether a failure is worth another attempt.
-
-        Returns:
-            What the attempt that worked gave.
 
         Raises:
             CallError: The last failure; its ``attempts`` says how many there were.
@@ -105,9 +89,6 @@ class Retries:
         """Wait for one attempt and no longer than the deadline.
 
         A server that sends a byte now and then never makes a read time out; only this ends it.
-
-        Args:
-            attempt: The attempt.
 
         Raises:
             CallError: If it took too long, or failed by itself.

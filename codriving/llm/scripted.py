@@ -15,16 +15,7 @@ Script = Callable[[Question], "BaseModel | str | Exception"]
 
 
 class ScriptedChat:
-    """Answers as its script says, and reads what the script says as if a model had said it.
-
-    Args:
-        script: Gives the answers. If one cannot be used it is called again, with the complaint in the messages.
-        name: Name for tables.
-
-    Attributes:
-        questions: Everything that was asked, re-asks included, in order.
-        rounds: How often something was asked at once.
-    """
+    """Answers as its script says, and reads what the script says as if a model had said it."""
 
     def __init__(self, script: Script, name: str = "scripted") -> None:
         self.name = name
@@ -38,11 +29,7 @@ class ScriptedChat:
         return len(self.questions)
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
-        """Answer by the script.
-
-        Args:
-            questions: The questions.
-        """
+        """Answer by the script."""
         self.rounds += bool(questions)
         return [asyncio.run(converse(question, self._reply)) for question in questions]
 

@@ -31,9 +31,6 @@ class Sender(Protocol):
         """Send a request once.
 
         Args:
-            request: What to send.
-            form: Form of the answer.
-            key: Key of the server, if it has one.
             deadline: How long one read may take [s].
 
         Raises:
@@ -125,7 +122,6 @@ def provider_of(model: str, api_base: str | None) -> str | None:
     """Name the protocol where a server of one's own is given and the model's name does not say it.
 
     Args:
-        model: Model, as LiteLLM calls it.
         api_base: Address of the server; None for the provider's own.
     """
     if api_base is None:

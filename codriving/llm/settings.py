@@ -10,15 +10,11 @@ class Settings:
     """What a client does.
 
     Attributes:
-        model: Model, as LiteLLM calls it.
         api_base: Address of the server; None for the provider's own.
         api_key_env: Name of the environment variable with the key; None if no key is needed.
         temperature: Sampling temperature; None leaves it to the server.
         max_tokens: Longest answer [tokens].
         deadline: How long one attempt may take [s].
-        attempts: How often a request is sent at most.
-        max_concurrency: Most requests at once.
-        replay: Whether the cache alone answers.
     """
 
     model: str

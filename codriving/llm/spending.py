@@ -13,9 +13,6 @@ class Totals:
     """What has been used up; answers from the cache are free and not in it.
 
     Attributes:
-        calls: Calls that were answered.
-        prompt_tokens: Tokens of the prompts.
-        completion_tokens: Tokens of the answers.
         cost: Money [USD]; None if the price of a call is not known.
     """
 
@@ -82,8 +79,6 @@ class Spending:
         """Add a call that was answered.
 
         Args:
-            prompt_tokens: Tokens of its prompt.
-            completion_tokens: Tokens of its answer.
             cost: What it cost [USD]; None where no price is known.
         """
         with self._lock:

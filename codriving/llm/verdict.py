@@ -14,10 +14,6 @@ _FILTERED = ("content_filter", "safety", "refusal")
 def judge(reply: Reply, question: Question) -> tuple[BaseModel | None, str]:
     """Read an answer out of a reply.
 
-    Args:
-        reply: What came back.
-        question: What was asked.
-
     Returns:
         The answer and an empty text, or None and what is wrong with the reply.
     """

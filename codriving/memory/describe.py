@@ -13,11 +13,7 @@ DRIVERS = {"CAV": "CAV", "HDV": "human", None: "unknown"}
 
 
 def describe(situation: Situation) -> Description:
-    """Describe a situation.
-
-    Args:
-        situation: What the CAV is told; nothing else is used.
-    """
+    """Describe a situation."""
     numbers: dict[str, float] = {}
     kinds: dict[str, str] = {}
     scene = _scene(situation, numbers, kinds)
@@ -134,12 +130,7 @@ def _order(situation: Situation, numbers: dict[str, float], kinds: dict[str, str
 
 
 def brief(description: Description, action: Action) -> str:
-    """Say in one line what a situation was and what was done, short enough for a prompt.
-
-    Args:
-        description: The situation.
-        action: What was done.
-    """
+    """Say in one line what a situation was and what was done, short enough for a prompt."""
     n, k = description.numbers, description.kinds
     if k["relation"] == "none":
         lead = f", {n['lead_gap']:.0f} m behind {n['lead_speed']:.1f} m/s" if "lead_gap" in n else ""

@@ -31,15 +31,7 @@ FREE = 2.0
 
 
 def effect_of(way: Way, k: int) -> Effect:
-    """Judge one action.
-
-    Args:
-        way: The CAV's way through the episode.
-        k: Which of its moments; it has to have an action.
-
-    Returns:
-        What came of it, from the world after the step.
-    """
+    """Judge one action."""
     now, after = way.moments[k], _at(way, k + 1)
     collision = _collision(way, k)
     conflict = _judged(now, None if collision is None or way.crash is None else way.crash.other)
@@ -64,8 +56,6 @@ def own_change(before: Conflict, after: Conflict, kept: float) -> float:
     one did is on both sides.
 
     Args:
-        before: The conflict when the CAV decided.
-        after: The same conflict a step later.
         kept: How far the CAV would have got at the same speed [m].
 
     Returns:
@@ -103,12 +93,7 @@ def _collision(way: Way, k: int) -> float | None:
 
 
 def _is_to_blame(way: Way, k: int, conflict: Conflict | None, change: float) -> bool:
-    """Whether an action led to the collision that came soon after.
-
-    If the CAV began to change lanes before it, that did. Otherwise whatever it did but brake if their ways met, or if
-    it ran into somebody ahead; whoever is run into from behind on its lane did nothing wrong. Braking did if it brought
-    the two closer together.
-    """
+    """Whether an action led to the collision that came soon after."""
     assert way.crash is not None
     end = min(len(way.moments), 1 + int(way.crash.time / way.interval))
     before = way.moments[max(0, end - 1 - round(HORIZON / way.interval)) : end]
@@ -166,11 +151,7 @@ def _is_behind(way: Way, k: int, name: str) -> bool:
 
 
 def _needless(way: Way, k: int) -> bool:
-    """Whether the CAV waited although it could have gone and nobody then used the way.
-
-    Those with whom it was in conflict all stood outside the zone for as long as is looked ahead, or were in no danger
-    with it and would not have been there by then; and nobody drove close ahead of it.
-    """
+    """Whether the CAV waited although it could have gone and nobody then used the way."""
     now = way.moments[k]
     waits = now.action is Action.SLOWER or (now.action is Action.IDLE and now.ego.speed < SLOW)
     if not waits or not now.could_go or _collision(way, k) is not None:

@@ -15,7 +15,6 @@ class Embedder(Protocol):
     """Turns descriptions into vectors.
 
     Attributes:
-        name: Name and version; vectors of another name cannot be compared.
         dimension: Length of the vectors; None if that is known only after the first call.
     """
 
@@ -28,9 +27,6 @@ class Embedder(Protocol):
 
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
         """Return one vector a description, each of length 1.
-
-        Args:
-            descriptions: What to embed; may be empty.
 
         Returns:
             Vectors (n, dimension); a description without anything to go by gives zeros.

@@ -20,7 +20,6 @@ class EmbeddingServer:
     """Where an embedding model is.
 
     Attributes:
-        model: Model, as LiteLLM calls it.
         api_base: Address of the server; None for the provider's own.
         api_key_env: Name of the environment variable that holds the key; None sends none.
         deadline: How long one attempt may take [s].

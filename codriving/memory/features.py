@@ -14,15 +14,7 @@ from codriving.memory.embedder import Vectors, unit
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """How a number becomes a part of the vector.
-
-    Attributes:
-        name: Its name in descriptions.
-        weight: Share of it in the similarity, relative to the others.
-        scale: Below it differences count as they are, above it by their ratio, in the unit of the number.
-        span: Largest magnitude that is told apart from larger ones.
-        turns: Quarter turns over the span of each circle that it lies on; faster ones tell near values apart.
-    """
+    """How a number becomes a part of the vector."""
 
     name: str
     weight: float
@@ -98,9 +90,6 @@ class Features:
 
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
         """Return one vector a description, each of length 1.
-
-        Args:
-            descriptions: What to embed; may be empty.
 
         Returns:
             Vectors (n, dimension).

@@ -19,22 +19,13 @@ class FrozenMemory:
     """A snapshot, as ``codriving memory build`` leaves it.
 
     Args:
-        file: The file.
         snapshot: SHA-256 of its contents, or ``auto`` for what they are when a run begins.
         interactions: How many of its first interactions count; None for all.
-        shots: Experiences that each CAV is told at most.
-        least_similarity: Below this cosine an experience says nothing of a situation.
         embedder: ``features``, ``words`` or ``litellm``; has to be the file's.
         embedding_model: For ``litellm``: model, as LiteLLM calls it.
         embedding_api_base: For ``litellm``: address of the server; None for the provider's own.
         embedding_key_env: For ``litellm``: name of the environment variable that holds the key; None sends none.
         embedding_deadline: For ``litellm``: how long one attempt may take [s].
-
-    Attributes:
-        learns: Whether it grows; it does not.
-        reflections: Mistakes that a model is asked about; none.
-        digest: SHA-256 of what is recalled from.
-        label: What tables say of it.
 
     Raises:
         ConfigError: If a setting breaks its rule.
@@ -74,17 +65,10 @@ class FrozenMemory:
         self.label = f"frozen {self.digest[:8]}, {self._recollection.interactions} interactions"
 
     def begin(self, seed: int) -> None:
-        """Begin an episode; nothing depends on which.
-
-        Args:
-            seed: Seed of the episode.
-        """
+        """Begin an episode; nothing depends on which."""
 
     def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
         """Find what is like each situation.
-
-        Args:
-            situations: What each CAV is told.
 
         Returns:
             The memories of each, most similar first.
@@ -93,10 +77,6 @@ class FrozenMemory:
 
     def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
         """Learn nothing.
-
-        Args:
-            interaction: Not used.
-            experiences: Not used.
 
         Returns:
             0.

@@ -18,11 +18,7 @@ Hit = tuple[int, float]
 
 
 class Index:
-    """A flat index in memory: exact, and made anew whenever a file is opened.
-
-    Args:
-        dimension: Length of the vectors.
-    """
+    """A flat index in memory: exact, and made anew whenever a file is opened."""
 
     def __init__(self, dimension: int) -> None:
         import faiss
@@ -42,7 +38,6 @@ class Index:
         """Add vectors of length 1.
 
         Args:
-            ids: Numbers of their experiences, rising.
             vectors: Vectors (n, dimension).
 
         Raises:
@@ -64,10 +59,6 @@ class Index:
 
         Args:
             queries: Vectors (n, dimension).
-            k: How many are wanted.
-
-        Returns:
-            At most k a query.
 
         Raises:
             ValueError: If the queries have another length, or hold what is no finite number.

@@ -11,12 +11,7 @@ NEAR = 1.0
 
 
 def same_kind(one: Description, other: Description) -> bool:
-    """Whether two situations are of the same kind: same relation, same order, similar difference of the times.
-
-    Args:
-        one: A situation.
-        other: Another one.
-    """
+    """Whether two situations are of the same kind: same relation, same order, similar difference of the times."""
     if any(one.kinds.get(name) != other.kinds.get(name) for name in ("relation", "order")):
         return False
     first, second = one.numbers.get("dttcp"), other.numbers.get("dttcp")
@@ -28,14 +23,7 @@ def same_kind(one: Description, other: Description) -> bool:
 def precision_at(
     embedder: Embedder, kept: Sequence[Description], held_back: Sequence[Description], ks: Sequence[int]
 ) -> dict[int, float]:
-    """Return the mean share of situations of the same kind among the k most similar ones.
-
-    Args:
-        embedder: The embedder.
-        kept: What is searched, at least as many as the largest k.
-        held_back: What is searched for, at least one; of other episodes.
-        ks: How many are retrieved.
-    """
+    """Return the mean share of situations of the same kind among the k most similar ones."""
     vectors = embedder.embed(kept)
     index = Index(vectors.shape[1])
     index.add(range(len(kept)), vectors)
@@ -47,10 +35,5 @@ def precision_at(
 
 
 def chance(kept: Sequence[Description], held_back: Sequence[Description]) -> float:
-    """Return the precision of whoever draws blindly: the mean share of situations of the same kind.
-
-    Args:
-        kept: What is searched, at least one.
-        held_back: What is searched for, at least one.
-    """
+    """Return the precision of whoever draws blindly: the mean share of situations of the same kind."""
     return sum(sum(same_kind(query, d) for d in kept) / len(kept) for query in held_back) / len(held_back)

@@ -16,15 +16,6 @@ from codriving.memory.store_file import about, open_file
 def merge(sources: list[Path], target: Path, embedder: Embedder, duplicates: float) -> int:
     """Merge memories into a new file.
 
-    Args:
-        sources: The files; the interactions of the first come first.
-        target: The file to make; it must not be there yet.
-        embedder: The embedder of all of them.
-        duplicates: Similarity from which on two experiences with the same action and verdict are one.
-
-    Returns:
-        Number of interactions in the new file. One that several sources have counts once, as the last has it.
-
     Raises:
         MemoryFileError: If a source cannot be used, the embedders differ, or the target is there or cannot be written.
     """
@@ -40,10 +31,6 @@ def merge(sources: list[Path], target: Path, embedder: Embedder, duplicates: flo
 
 def read(path: Path, embedder: Embedder) -> Iterator[tuple[Interaction, list[Experience], Vectors]]:
     """Read a memory interaction by interaction, with every sighting.
-
-    Args:
-        path: The file.
-        embedder: Its embedder.
 
     Yields:
         An interaction, what was learnt in it, and the vectors of that (n, dimension).

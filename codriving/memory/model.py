@@ -16,7 +16,6 @@ class ModelEmbedder:
     """An embedding model through LiteLLM.
 
     Args:
-        model: Model, as LiteLLM calls it.
         api_base: Address of the server; None for the provider's own.
         api_key_env: Name of the environment variable that holds the key; None sends none.
         deadline: How long one attempt may take [s].
@@ -33,9 +32,6 @@ class ModelEmbedder:
 
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
         """Return one vector a description, each of length 1.
-
-        Args:
-            descriptions: What to embed; may be empty.
 
         Returns:
             Vectors (n, dimension).

@@ -13,12 +13,8 @@ class Moment:
     """The world when one CAV decided, and what it decided.
 
     Attributes:
-        ego: Its state.
-        others: Everybody else on the road, by id.
-        conflicts: Its conflicts, most urgent first.
         lead_gap: Free distance to whoever drives ahead on its lane [m]; None if nobody does.
         action: What it decided; None at the end of the episode.
-        could_go: Whether going faster was among the actions that were allowed.
     """
 
     ego: VehicleState
@@ -35,8 +31,6 @@ class Crash:
 
     Attributes:
         time: When it was, counted from the first moment [s].
-        other: Id of the other one.
-        striker: Whether it ran into the other, and not the other into it.
     """
 
     time: float
@@ -49,7 +43,6 @@ class Way:
     """The moments of one CAV, a decision step apart, until it arrived or the episode ended.
 
     Attributes:
-        moments: One a decision; the last one may be the end of the episode.
         interval: Time between two of them [s].
         crash: The collision that it was in; None if in none.
     """

@@ -22,21 +22,12 @@ class OnlineMemory:
 
     Args:
         file: The file that it grows in; None takes one in the run folder.
-        shots: Experiences that each CAV is told at most.
-        least_similarity: Below this cosine an experience says nothing of a situation.
-        duplicates: Similarity from which on two experiences with the same action and verdict are kept as one.
         reflection: Who writes the lessons: ``rules``, or ``llm`` for those of mistakes.
-        reflections: Mistakes of an episode that a model is asked about at most, the worst first.
         embedder: ``features``, ``words`` or ``litellm``.
         embedding_model: For ``litellm``: model, as LiteLLM calls it.
         embedding_api_base: For ``litellm``: address of the server; None for the provider's own.
         embedding_key_env: For ``litellm``: name of the environment variable that holds the key; None sends none.
         embedding_deadline: For ``litellm``: how long one attempt may take [s].
-
-    Attributes:
-        learns: Whether it grows.
-        reflections: Mistakes of an episode that a model is asked about; 0 if the rules write all lessons.
-        label: What tables say of it.
 
     Raises:
         ConfigError: If a setting breaks its rule.
@@ -74,9 +65,6 @@ class OnlineMemory:
     def begin(self, seed: int) -> None:
         """Begin an episode: what was learnt with smaller seeds is what can be recalled.
 
-        Args:
-            seed: Seed of the episode.
-
         Raises:
             MemoryFileError: If the file cannot be used.
         """
@@ -85,9 +73,6 @@ class OnlineMemory:
 
     def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
         """Find what is like each situation.
-
-        Args:
-            situations: What each CAV is told.
 
         Returns:
             The memories of each, most similar first.
@@ -98,13 +83,6 @@ class OnlineMemory:
 
     def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
         """Keep what was learnt in an episode.
-
-        Args:
-            interaction: The episode.
-            experiences: What to keep of it.
-
-        Returns:
-            How many were new.
 
         Raises:
             MemoryFileError: If the file cannot be written.

@@ -16,15 +16,7 @@ from codriving.memory.words import Words
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """A file of memories that was read.
-
-    Attributes:
-        path: The file.
-        embedder: Name of the embedder of its vectors.
-        dimension: Length of its vectors.
-        interactions: The episodes that it is from, in order.
-        recollection: What is in it.
-    """
+    """A file of memories that was read."""
 
     path: Path
     embedder: str
@@ -44,9 +36,6 @@ class Reading:
 def read_memory(path: Path) -> Reading:
     """Read a file, whatever its embedder.
 
-    Args:
-        path: The file.
-
     Raises:
         MemoryFileError: If it is missing, damaged or of another version.
     """
@@ -63,9 +52,6 @@ def read_memory(path: Path) -> Reading:
 
 def own_embedder(reading: Reading) -> Embedder:
     """Return an embedder of the same name that is never asked to embed anything, for copying vectors.
-
-    Args:
-        reading: The file.
 
     Raises:
         MemoryFileError: If no such embedder is known.
@@ -93,11 +79,6 @@ class _Named(Words):
 
 def search(recollection: Recollection, text: str, most: int) -> list[tuple[float, Kept]]:
     """Find the experiences that speak of some words; numbers count by the band that they lie in.
-
-    Args:
-        recollection: What is searched.
-        text: The words.
-        most: How many are wanted.
 
     Returns:
         Similarity and experience, the most similar first, the older first if equal; none that has nothing in common.

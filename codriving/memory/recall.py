@@ -15,10 +15,6 @@ from codriving.memory.recollection import Recollection
 class Recall:
     """Memory retrieval (paper Section III-D.2): the most similar experiences by cosine.
 
-    Attributes:
-        shots: Experiences that each CAV is told at most.
-        least_similarity: Below this cosine an experience says nothing of a situation.
-
     Raises:
         ConfigError: If a setting is out of range.
     """
@@ -36,11 +32,6 @@ class Recall:
         self, recollection: Recollection, embedder: Embedder, situations: Sequence[Situation]
     ) -> list[tuple[Memory, ...]]:
         """Find what is like each situation.
-
-        Args:
-            recollection: What there is to be recalled.
-            embedder: Who embeds the situations.
-            situations: What each CAV is told.
 
         Returns:
             The memories of each, most similar first.

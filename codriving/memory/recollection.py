@@ -19,19 +19,7 @@ from codriving.memory.store_file import about, open_file
 
 
 class Kept:
-    """An experience of a file; what is in it is read when it is first asked for.
-
-    Args:
-        id: Its number.
-        row: Its row of the file.
-        count: How often it was made.
-        step: Where it was made first: number of decisions taken before.
-        ego: By whom.
-
-    Attributes:
-        id: Its number.
-        count: How often it was made.
-    """
+    """An experience of a file; what is in it is read when it is first asked for."""
 
     __slots__ = ("_ego", "_experience", "_row", "_step", "count", "id")
 
@@ -59,10 +47,7 @@ class Recollection:
     """Experiences that can be searched; a file that grows meanwhile does not change it.
 
     Args:
-        kept: The experiences, by rising number.
         vectors: Their vectors (n, dimension).
-        digest: SHA-256 of the contents.
-        interactions: Episodes that they are from.
     """
 
     def __init__(self, kept: Sequence[Kept], vectors: Vectors, digest: str, interactions: int) -> None:
@@ -82,8 +67,6 @@ class Recollection:
 
         Args:
             queries: Vectors of the situations (n, dimension).
-            shots: How many are wanted for each.
-            least: Similarity below which an experience says nothing of a situation.
 
         Returns:
             At most so many for each, the most similar first.
@@ -103,8 +86,6 @@ def open_recollection(path: Path, embedder: Embedder, interactions: int | None =
     """Read a file, or what it held after its first interactions.
 
     Args:
-        path: The file.
-        embedder: Who embeds what is searched for.
         interactions: How many interactions count; None for all.
 
     Raises:
@@ -125,25 +106,12 @@ def open_recollection(path: Path, embedder: Embedder, interactions: int | None =
 
 
 def damaged(path: Path, error: Exception) -> MemoryFileError:
-    """The error for a file whose contents cannot be used.
-
-    Args:
-        path: The file.
-        error: What is wrong with it.
-    """
+    """The error for a file whose contents cannot be used."""
     return MemoryFileError(f"{path} is damaged ({error}); build it again, or name another one")
 
 
 def check_embedder(path: Path, told: dict[str, str], embedder: Embedder) -> int:
     """Refuse a file whose vectors are another embedder's.
-
-    Args:
-        path: The file.
-        told: What it says of itself.
-        embedder: Who embeds what is searched for.
-
-    Returns:
-        Length of its vectors.
 
     Raises:
         MemoryFileError: If the embedder or the length differ.
@@ -169,12 +137,6 @@ def _chosen(connection: sqlite3.Connection, interactions: int | None) -> list[in
 
 def load(connection: sqlite3.Connection, dimension: int, embedder: str, chosen: Sequence[int]) -> Recollection:
     """Read what was seen in some interactions.
-
-    Args:
-        connection: The open file.
-        dimension: Length of its vectors.
-        embedder: Name of its embedder.
-        chosen: Numbers of the interactions, rising.
 
     Raises:
         ValueError: If something in it cannot be read.

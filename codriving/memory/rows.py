@@ -18,10 +18,6 @@ COLUMNS = ("vector", "action", "verdict", "scene", "conflict", "passing", "numbe
 def to_row(experience: Experience, vector: Vectors) -> tuple[Any, ...]:
     """Write an experience as the values of ``COLUMNS``.
 
-    Args:
-        experience: The experience.
-        vector: Its vector (dimension,).
-
     Raises:
         ValueError: If a number in it is not finite.
     """
@@ -43,11 +39,6 @@ def to_row(experience: Experience, vector: Vectors) -> tuple[Any, ...]:
 def from_row(row: tuple[Any, ...], step: int = 0, ego: str = "") -> Experience:
     """Read an experience from the values of ``COLUMNS``.
 
-    Args:
-        row: The values.
-        step: Where it was made first.
-        ego: By whom.
-
     Raises:
         ValueError: If something in it cannot be read.
     """
@@ -63,10 +54,6 @@ def from_row(row: tuple[Any, ...], step: int = 0, ego: str = "") -> Experience:
 
 def vectors_of(blobs: list[bytes], dimension: int) -> Vectors:
     """Join vectors as they are stored into one array.
-
-    Args:
-        blobs: One vector each.
-        dimension: Length of a vector.
 
     Returns:
         Vectors (n, dimension).

@@ -25,11 +25,6 @@ Result = TypeVar("Result")
 class MemoryStore:
     """A file of memories that is open for writing; a context manager. Several may have the same file open.
 
-    Args:
-        path: The file; made if it is missing.
-        embedder: Who embeds what is added.
-        duplicates: Similarity from which on two experiences with the same action and verdict are one; above 1 none are.
-
     Raises:
         MemoryFileError: If the file cannot be used or written, or is of another embedder or version.
     """
@@ -47,12 +42,7 @@ class MemoryStore:
         """Add what was learnt in one episode, all of it or nothing; the same episode driven again replaces itself.
 
         Args:
-            interaction: The episode.
-            experiences: What to keep of it; may be empty.
             vectors: Their vectors (n, dimension), if they are known.
-
-        Returns:
-            How many were new, not like one that was there.
 
         Raises:
             MemoryFileError: If the file cannot be written, or a vector cannot be stored.

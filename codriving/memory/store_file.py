@@ -40,11 +40,6 @@ CREATE INDEX sightings_of ON sightings (experience);
 def create(path: Path, embedder: str, dimension: int) -> None:
     """Make an empty file; if several processes do, the first wins and nobody ever sees half of it.
 
-    Args:
-        path: The file; its folder is made where it is missing.
-        embedder: Name of the embedder of its vectors.
-        dimension: Length of the vectors.
-
     Raises:
         MemoryFileError: If it cannot be written.
     """
@@ -71,10 +66,6 @@ def open_file(path: Path, write: bool) -> sqlite3.Connection:
 
     A writer that was killed may have left a journal beside it; whoever opens it next puts it back as it was.
 
-    Args:
-        path: The file.
-        write: Whether it is to be written; otherwise it is never changed.
-
     Raises:
         MemoryFileError: If it is missing, no such file, or of another version.
     """
@@ -96,30 +87,17 @@ def open_file(path: Path, write: bool) -> sqlite3.Connection:
 
 
 def connect(uri: str) -> sqlite3.Connection:
-    """Open a connection in which nothing begins a transaction but us.
-
-    Args:
-        uri: Address of the file.
-    """
+    """Open a connection in which nothing begins a transaction but us."""
     return sqlite3.connect(uri, uri=True, timeout=BUSY, isolation_level=None, check_same_thread=False)
 
 
 def about(connection: sqlite3.Connection) -> dict[str, str]:
-    """Read what a file says of itself: ``embedder`` and ``dimension``.
-
-    Args:
-        connection: The open file.
-    """
+    """Read what a file says of itself: ``embedder`` and ``dimension``."""
     return {str(key): str(value) for key, value in connection.execute("SELECT key, value FROM about")}
 
 
 def unwritable(path: Path, error: Exception) -> MemoryFileError:
-    """The error for a file that cannot be written.
-
-    Args:
-        path: The file.
-        error: What the system said.
-    """
+    """The error for a file that cannot be written."""
     return MemoryFileError(f"cannot write the memory {path}: {error}; make room, or name another file")
 
 

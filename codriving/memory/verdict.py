@@ -29,10 +29,6 @@ def verdict_of(effect: Effect, action: Action) -> Verdict:
     from it; if it has narrowed the difference of the times to the conflict point and the danger is in a worse band; or
     if somebody then had to brake hard for it. It has *eased* it if it has widened that difference in serious or general
     danger. It was *too cautious* if the CAV waited and nobody used the way.
-
-    Args:
-        effect: What came of it.
-        action: The action.
     """
     if effect.to_blame and effect.own_change <= CLEARLY:
         return Verdict.INTENSIFIED

@@ -18,11 +18,7 @@ _TOKEN = re.compile(r"-?\d+(?:\.\d+)?|[a-z]+(?:_[a-z]+)*", re.IGNORECASE)
 
 
 class Words:
-    """A bag of words and pairs of words, hashed to 256 places (Weinberger et al., 2009, feature hashing).
-
-    Args:
-        banded: Whether a number is read as the band that it lies in, so that near numbers are the same word.
-    """
+    """A bag of words and pairs of words, hashed to 256 places (Weinberger et al., 2009, feature hashing)."""
 
     def __init__(self, banded: bool = True) -> None:
         self.banded = banded
@@ -36,9 +32,6 @@ class Words:
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
         """Return one vector a description, each of length 1.
 
-        Args:
-            descriptions: What to embed; may be empty.
-
         Returns:
             Vectors (n, 256).
         """
@@ -46,9 +39,6 @@ class Words:
 
     def embed_texts(self, texts: Sequence[str]) -> Vectors:
         """Return one vector a text, each of length 1; a text without words gives zeros.
-
-        Args:
-            texts: Any texts.
 
         Returns:
             Vectors (n, 256).

@@ -21,8 +21,6 @@ class BruteForce(SearchedOrder):
 
     Args:
         hysteresis: J that another order must save to be taken, 0 to 10 [s].
-        evacuation_weight: Weight of the evacuation time in J, 0 to 10.
-        fairness: Weight of a vehicle's delay in J, by id; 1 for whoever is not named.
 
     Raises:
         ConfigError: If a value is out of range.
@@ -41,10 +39,6 @@ class BruteForce(SearchedOrder):
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
         """Return the best order.
 
-        Args:
-            instance: The problem of this moment.
-            planner: Not used; orders are judged by their schedules.
-
         Raises:
             EpisodeError: If more than ten vehicles are to be ordered.
         """
@@ -56,12 +50,7 @@ class BruteForce(SearchedOrder):
         return super().order(instance, planner)
 
     def search(self, problem: Coded, seeds: Sequence[Sequence[str]]) -> Found:
-        """Go through the tree of orders, whoever can pass first before the others.
-
-        Args:
-            problem: The instance and what a good order is.
-            seeds: Orders to begin with.
-        """
+        """Go through the tree of orders, whoever can pass first before the others."""
         runs = [problem.run(seed) for seed in seeds]
         best = min(runs, key=problem.cost)
         least, tried = problem.cost(best), 0

@@ -30,8 +30,6 @@ class CoDriving:
     """The framework of the paper.
 
     Args:
-        cda: Which sub-modules of the reasoning are there.
-        llm: Who reasons.
         memory: Experiences to recall, and perhaps to learn from; None for the framework without its memory module.
         margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
 
@@ -54,13 +52,7 @@ class CoDriving:
         self.remembers = memory.label if memory is not None else ""
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
-        """Fill the slots for a new episode.
-
-        Args:
-            road_map: The precomputed road.
-            model: How CAVs answer to actions.
-            seed: Seed of the episode.
-        """
+        """Fill the slots for a new episode."""
         forecast = Forecast(model, (*CONTINUATIONS, *PLANS))
         coordinator, decider, ledger = ports(
             llm=self.llm,
@@ -96,11 +88,7 @@ class CoDriving:
             self.memory.begin(seed)
 
     def act(self, world: WorldState) -> Deliberation:
-        """Decide for every CAV on the road.
-
-        Args:
-            world: The world.
-        """
+        """Decide for every CAV on the road."""
         deliberation = self._pipeline.act(world)
         if self._log is not None:
             self._log.note(world, deliberation.situations, deliberation.decisions)
@@ -108,10 +96,6 @@ class CoDriving:
 
     def conclude(self, world: WorldState, outcome: Outcome) -> tuple[dict[str, float], list[dict[str, Any]]]:
         """Learn from an episode that has come to its end, if there is a memory that learns.
-
-        Args:
-            world: The world at the end.
-            outcome: How it ended.
 
         Returns:
             Counters by column, and lines of the transcript.

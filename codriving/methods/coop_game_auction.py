@@ -23,7 +23,6 @@ def bid(entrant: Entrant, waited: float) -> float:
     """Return what a vehicle bids for going first.
 
     Args:
-        entrant: The vehicle.
         waited: How long it has been waiting [s].
     """
     soon = entrant.distance / max(entrant.speed, STANDING)
@@ -32,10 +31,6 @@ def bid(entrant: Entrant, waited: float) -> float:
 
 class Auction:
     """Vehicles go by decreasing bid.
-
-    Args:
-        hysteresis: Of two vehicles the one that went first in the step before goes first unless the other one bids
-            more than this above it, 0 to 10.
 
     Raises:
         ConfigError: If the hysteresis is out of range.
@@ -51,21 +46,12 @@ class Auction:
         self.reset(0)
 
     def reset(self, seed: int) -> None:
-        """Begin an episode; nothing is remembered from the one before.
-
-        Args:
-            seed: Not used; nothing is drawn.
-        """
+        """Begin an episode; nothing is remembered from the one before."""
         self._stopped: dict[str, float] = {}
         self._agreed: tuple[str, ...] = ()
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-        """Return everybody by decreasing bid, as far as what is physically fixed allows.
-
-        Args:
-            instance: The problem of this moment.
-            planner: Tells whether the order of the step before can still be kept.
-        """
+        """Return everybody by decreasing bid, as far as what is physically fixed allows."""
         waited = self._wait(instance)
         bids = {name: bid(entrant, waited[name]) for name, entrant in instance.entrants.items()}
         fresh = repaired(instance, sorted(bids, key=lambda name: (-bids[name], name)))
@@ -86,11 +72,7 @@ class Auction:
         )
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Grant the requests that do not overlap and gain most together.
-
-        Args:
-            requests: Lane changes that are wanted, in the order in which they were first asked for.
-        """
+        """Grant the requests that do not overlap and gain most together."""
         return best_subset(requests)
 
     def _wait(self, instance: Instance) -> dict[str, float]:
@@ -110,13 +92,7 @@ class Auction:
 
 
 def overtaken(ranking: Sequence[str], bids: Mapping[str, float], by: float) -> list[str]:
-    """Let whoever bids enough more than the one right before it go first, until nobody does.
-
-    Args:
-        ranking: Everybody, the one who went first at the front.
-        bids: Bid of each, by id.
-        by: How much more has to be bid.
-    """
+    """Let whoever bids enough more than the one right before it go first, until nobody does."""
     order = list(ranking)
     moved = True
     while moved:

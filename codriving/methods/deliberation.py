@@ -18,11 +18,6 @@ class Deliberation:
 
     Attributes:
         time: Simulated time [s].
-        step: Number of decisions taken before.
-        situations: What each CAV was told.
-        decisions: What each CAV decided, in the same order.
-        counts: Counters of the step (fallbacks, re-asks, ...).
-        transcript: What was asked of a language model, one JSON-ready line an answer.
     """
 
     time: float
@@ -78,11 +73,7 @@ def _entry(situation: Situation, decision: Decision, order: dict[str, Any]) -> d
 
 
 def _plain(value: Any) -> Any:  # noqa: ANN401 - any JSON value
-    """Turn dataclasses into dicts, round floats to a millionth, and turn what is no finite number into None.
-
-    So every line is valid JSON. A line has a thousand values, so that the frequent kinds come first, and nothing is
-    copied on the way as `dataclasses.asdict` would.
-    """
+    """Turn dataclasses into dicts, round floats to a millionth, and turn what is no finite number into None."""
     if isinstance(value, float):
         return round(value, 6) if isfinite(value) else None
     kind = type(value)

@@ -32,10 +32,6 @@ class ExperienceLog:
     Effects are judged with all states and the intents of all CAVs, whatever the CDA level hides from those who decide:
     what came of an action is seen from outside. A human driver's route is not known here either. What is *remembered*
     of a situation is only what the CAV was told.
-
-    Args:
-        road_map: The precomputed road.
-        model: How CAVs answer to actions.
     """
 
     def __init__(self, road_map: RoadMap, model: DrivingModel) -> None:
@@ -46,13 +42,7 @@ class ExperienceLog:
         self._begun: float | None = None
 
     def note(self, world: WorldState, situations: Sequence[Situation], decisions: Sequence[Decision]) -> None:
-        """Note one decision step.
-
-        Args:
-            world: The world in which it was decided.
-            situations: What each CAV was told.
-            decisions: What each decided, in the same order.
-        """
+        """Note one decision step."""
         told = {s.scene.ego.id: (s, d.action) for s, d in zip(situations, decisions, strict=True)}
         self._look(world, told)
         for name, (situation, _) in told.items():
@@ -60,10 +50,6 @@ class ExperienceLog:
 
     def conclude(self, world: WorldState, collision: Collision | None) -> list[Experience]:
         """Judge everything that was decided.
-
-        Args:
-            world: The world at the end of the episode.
-            collision: The collision that ended it, if one did.
 
         Returns:
             What is worth keeping, by step and id of the CAV.

@@ -38,20 +38,11 @@ class FirstComeFirstServed:
         self.variant: str = "" if mode == "conflict" else mode
 
     def reset(self, seed: int) -> None:
-        """Begin an episode: nobody holds a ticket.
-
-        Args:
-            seed: Not used; nothing is drawn.
-        """
+        """Begin an episode: nobody holds a ticket."""
         self.tickets.reset()
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-        """Return everybody by ticket, as far as what is physically fixed allows.
-
-        Args:
-            instance: The problem of this moment.
-            planner: Not used.
-        """
+        """Return everybody by ticket, as far as what is physically fixed allows."""
         ranking = self.tickets.ranking(instance)
         if self.mode == "reservation":
             ranking = sequence(instance, inserted(instance, ranking, {}))
@@ -64,11 +55,7 @@ class FirstComeFirstServed:
         )
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Grant the earliest request, then each next one that overlaps with none granted.
-
-        Args:
-            requests: Lane changes that are wanted, in the order in which they were first asked for.
-        """
+        """Grant the earliest request, then each next one that overlaps with none granted."""
         return in_order(requests)
 
     def _reason(self, times: dict[str, float], one: str, other: str) -> str:
@@ -78,10 +65,6 @@ class FirstComeFirstServed:
 
 def group_times(instance: Instance, order: Sequence[str]) -> dict[str, float]:
     """Schedule an order group by group: nobody passes before all of the group before have left their zones.
-
-    Args:
-        instance: The problem.
-        order: Everybody, first to last; a group ends where a vehicle is in conflict with one of it.
 
     Returns:
         When each vehicle passes, in that order [s].

@@ -16,12 +16,7 @@ class MonteCarloTreeSearch(SearchedOrder):
     """Tries orders where good ones have been found.
 
     Args:
-        iterations: Number of orders that are tried at each step at most, 1 to 100000.
-        exploration: Weight of trying what has been tried less often, 0 to 10.
-        heuristic: Share of the steps of a rollout in which whoever can pass first goes next, 0 to 1.
         hysteresis: J that another order must save to be taken, 0 to 10 [s].
-        evacuation_weight: Weight of the evacuation time in J, 0 to 10.
-        fairness: Weight of a vehicle's delay in J, by id; 1 for whoever is not named.
 
     Raises:
         ConfigError: If a value is out of range.
@@ -48,11 +43,6 @@ class MonteCarloTreeSearch(SearchedOrder):
         self.iterations, self.exploration, self.heuristic = iterations, exploration, heuristic
 
     def search(self, problem: Coded, seeds: Sequence[Sequence[str]]) -> Found:
-        """Search the tree of orders from the seeds on.
-
-        Args:
-            problem: The instance and what a good order is.
-            seeds: Orders to begin with.
-        """
+        """Search the tree of orders from the seeds on."""
         draw = Random(self.seed * STRIDE + self.calls)
         return TreeSearch(problem, self.exploration, self.heuristic, draw).search(seeds, self.iterations)

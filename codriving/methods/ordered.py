@@ -26,10 +26,6 @@ class Ordered:
     """A method that orders all CAVs jointly.
 
     States and intents are shared as in the full framework. Only the choice of the order differs between such methods.
-
-    Args:
-        rule: Says who passes first, and who may change lanes.
-        executor: Turns the order into actions.
     """
 
     reasoner = "none"
@@ -41,13 +37,7 @@ class Ordered:
         self.variant = "/".join(word for word in (rule.variant, driven) if word)
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
-        """Begin an episode; nothing is remembered from the one before.
-
-        Args:
-            road_map: The precomputed road.
-            model: How CAVs answer to actions.
-            seed: Seed of the episode, for rules that draw.
-        """
+        """Begin an episode; nothing is remembered from the one before."""
         forecast = Forecast(model, (*CONTINUATIONS, *PLANS, *getattr(self.executor, "library", ())))
         self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SharedIntents())
         self._problems = ProblemMaker(road_map, forecast, self.executor.gap)
@@ -57,11 +47,7 @@ class Ordered:
         self.executor.reset()
 
     def act(self, world: WorldState) -> Deliberation:
-        """Order everybody, and decide for every CAV on the road.
-
-        Args:
-            world: The world.
-        """
+        """Order everybody, and decide for every CAV on the road."""
         perceived = self._perception.perceive(world)
         stage = Stage(
             perceived.scenes,

@@ -18,13 +18,7 @@ from codriving.reasoning.sharing.tracking import Tracking
 
 @dataclass(frozen=True, slots=True)
 class Perceived:
-    """What is known at one moment.
-
-    Attributes:
-        scenes: What each CAV knows, by id.
-        conflicts: Conflicts of each CAV, most urgent first, by id.
-        known: The vehicles that each CAV knows of, itself included, by id of the CAV.
-    """
+    """What is known at one moment."""
 
     scenes: Mapping[str, SceneDescription]
     conflicts: Mapping[str, tuple[Conflict, ...]]
@@ -33,15 +27,7 @@ class Perceived:
 
 @dataclass(slots=True)
 class Perception:
-    """The first half of every method: share states, share intents, find conflicts.
-
-    Attributes:
-        road_map: The precomputed road.
-        forecast: Predictions of the present step.
-        tracking: What each CAV remembers of the others.
-        state_sharing: Class A.
-        intent_sharing: Class B.
-    """
+    """The first half of every method: share states, share intents, find conflicts."""
 
     road_map: RoadMap
     forecast: Forecast
@@ -50,11 +36,7 @@ class Perception:
     intent_sharing: IntentSharing
 
     def perceive(self, world: WorldState) -> Perceived:
-        """Return what every CAV knows, and begin the predictions of this step.
-
-        Args:
-            world: The world.
-        """
+        """Return what every CAV knows, and begin the predictions of this step."""
         self.forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
         views = self.state_sharing.views(world, self.forecast.model)
         intents = self.intent_sharing.intents(world)
@@ -72,9 +54,5 @@ def single_vehicle_perception(road_map: RoadMap, forecast: Forecast) -> Percepti
     It knows position, speed and heading of everybody within the detection range, cannot tell a CAV from a human
     driver, and knows the ways that each may take from the map, narrowed down as it watches. Routes, intents, actions
     and negotiated orders of others stay hidden.
-
-    Args:
-        road_map: The precomputed road.
-        forecast: Predictions of the present step.
     """
     return Perception(road_map, forecast, Tracking(road_map), WatchedStates(), GuessedIntents())

@@ -49,7 +49,6 @@ class ProjectedIdm:
         clear: Time that whoever moves towards that zone must be away from it beyond what the start takes [s].
         window: Time over which what an action leads to is compared with what is wished [s].
         brake_at: Braking beyond which the answer is always SLOWER [m/s2].
-        lanes: Chooses lanes.
 
     Raises:
         ConfigError: If a setting is out of range.
@@ -92,11 +91,7 @@ class ProjectedIdm:
         self.lanes.reset()
 
     def decide(self, view: View) -> Choice:
-        """Follow whoever is most in the way, or change lanes if that is better.
-
-        Args:
-            view: What the CAV sees.
-        """
+        """Follow whoever is most in the way, or change lanes if that is better."""
         scene = view.scene
         waited = self._patience.waited(scene.ego.id, scene.ego.speed, view.time)
         change, refused = self.lanes.choose(view, self.idm)
@@ -110,19 +105,13 @@ class ProjectedIdm:
         return Choice(action, reason, precedences, refused, {"creeps": int(self.may_start(view, met, waited))})
 
     def met(self, view: View) -> tuple[Encounter, ...]:
-        """Return where it is open who goes first, most urgent first.
-
-        Args:
-            view: What the CAV sees.
-        """
+        """Return where it is open who goes first, most urgent first."""
         return encounters(view, float(view.forecast.reach(view.scene.ego.speed, True).least[-1]), self.firm)
 
     def wish(self, view: View, met: tuple[Encounter, ...], waited: float) -> tuple[float, str, tuple[Precedence, ...]]:
         """Return the acceleration that is wished.
 
         Args:
-            view: What the CAV sees.
-            met: Where it is open who goes first.
             waited: How long it has been standing [s].
 
         Returns:
@@ -160,10 +149,7 @@ class ProjectedIdm:
         return line
 
     def _behind(self, e: Encounter, line: float, view: View) -> float:
-        """The acceleration behind somebody who goes first: to follow its projection, or to stop before the zone.
-
-        Either is safe, so the vehicle may take the one that costs it less.
-        """
+        """The acceleration behind somebody who goes first: to follow its projection, or to stop before the zone."""
         speed = view.scene.ego.speed
         waiting = inf if e.inside else self.idm.accelerate(speed, view.top, line, 0.0)
         if e.other_inside and not e.merges():
@@ -177,8 +163,6 @@ class ProjectedIdm:
         """Whether the CAV has waited long enough, and nobody is in the zones ahead or will be before it is through.
 
         Args:
-            view: What the CAV sees.
-            met: Where it is open who goes first.
             waited: How long it has been standing [s].
         """
         return may_start(view, met, waited, self.patience, self.clear)

@@ -29,10 +29,6 @@ class Pipeline:
     """One episode of the paper's reasoning; an ablation puts another object into a slot.
 
     Attributes:
-        perception: Classes A and B, and who is in conflict with whom.
-        negotiation: Class C or D, or each CAV's own order.
-        safety: The three-layer check, or none.
-        decider: Rules or a language model.
         margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
         memory: Experiences of like situations; None without the memory module.
         ledger: What is asked of a language model; None if none is.
@@ -47,11 +43,7 @@ class Pipeline:
     ledger: Ledger | None = None
 
     def act(self, world: WorldState) -> Deliberation:
-        """Decide for every CAV on the road.
-
-        Args:
-            world: The world.
-        """
+        """Decide for every CAV on the road."""
         perceived = self.perception.perceive(world)
         scenes, conflicts, known = perceived.scenes, perceived.conflicts, perceived.known
         orders = self.negotiation.orders(scenes, conflicts)

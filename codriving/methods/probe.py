@@ -26,12 +26,6 @@ class Probe:
     def act(self, road_map: RoadMap, model: DrivingModel, seed: int, world: WorldState) -> Deliberation:
         """Decide for every CAV on the road, as at the beginning of an episode.
 
-        Args:
-            road_map: The precomputed road.
-            model: How CAVs answer to actions.
-            seed: Seed of the episode.
-            world: The world.
-
         Raises:
             ModelUnavailableError: If a language model is asked and does not answer.
             ModelError: If it must not be used.

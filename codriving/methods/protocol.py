@@ -12,8 +12,6 @@ class Method(Protocol):
     """Decides for all CAVs, one decision step after another.
 
     Attributes:
-        name: Name of the method in tables.
-        variant: Name of the variant in tables.
         reasoner: Who reasons: ``rules`` or the name of a model.
     """
 
@@ -22,19 +20,9 @@ class Method(Protocol):
     reasoner: str
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
-        """Begin an episode; nothing is remembered from the one before.
-
-        Args:
-            road_map: The precomputed road.
-            model: How CAVs answer to actions.
-            seed: Seed of the episode, for methods that draw.
-        """
+        """Begin an episode; nothing is remembered from the one before."""
         ...
 
     def act(self, world: WorldState) -> Deliberation:
-        """Decide for every CAV on the road.
-
-        Args:
-            world: The world.
-        """
+        """Decide for every CAV on the road."""
         ...

@@ -38,13 +38,7 @@ class AuthorsMetrics:
         self.rows = rows
 
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
-        """Return the score of an episode.
-
-        Args:
-            trajectory: What was driven.
-            outcome: How it ended.
-            road: Where it was driven; not looked at.
-        """
+        """Return the score of an episode."""
         stride = max(1, round(self.row_interval / trajectory.step))
         logs = [log for log in (_log(track, stride) for track in trajectory.tracks) if len(log.x)]
         return self.score_logs(logs, outcome.ending is Ending.SUCCESS, stride * trajectory.step)
@@ -53,8 +47,6 @@ class AuthorsMetrics:
         """Return the score of logged vehicles.
 
         Args:
-            logs: Logged vehicles, each with at least one row.
-            success: Whether the episode was a success.
             row_interval: Time between two rows [s].
         """
         pets = []

@@ -14,11 +14,9 @@ class Log:
     """The logged rows of one vehicle, as in the authors' recordings.
 
     Attributes:
-        id: Vehicle id.
         x: Position relative to the middle of the intersection (n,) [m].
         y: Position relative to the middle of the intersection (n,) [m].
         speed: Speed (n,) [m/s].
-        first_row: Number of the first row.
     """
 
     id: str
@@ -30,14 +28,7 @@ class Log:
 
 @dataclass(frozen=True, slots=True)
 class Encounter:
-    """Two vehicles at nearly the same place.
-
-    Attributes:
-        one: Id of the vehicle that is logged first.
-        other: Id of the other vehicle.
-        row: Row in which the one was there.
-        other_row: Row in which the other was there.
-    """
+    """Two vehicles at nearly the same place."""
 
     one: str
     other: str
@@ -51,7 +42,6 @@ def encounters(logs: Sequence[Log], box: float, distance: float) -> tuple[Encoun
     The first is that of the earliest row of the one vehicle, and among these of the earliest row of the other.
 
     Args:
-        logs: Logged vehicles; rows of the first of a pair are compared first.
         box: Half the side of the square around the middle in which encounters count [m].
         distance: Distance between the two centres below which they meet [m].
     """

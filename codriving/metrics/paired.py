@@ -24,10 +24,6 @@ def mcnemar(only_first: int, only_second: int) -> float:
     other's, so the number of the one's is binomial with probability 1/2. Seeds on which both succeed or both fail say
     nothing.
 
-    Args:
-        only_first: Number of seeds on which only the first succeeds.
-        only_second: Number of seeds on which only the second succeeds.
-
     Returns:
         The p-value; 1 where there is no such seed.
     """
@@ -43,11 +39,6 @@ def mean_interval(
     differences: Sequence[float], confidence: float = 0.95, resamples: int = RESAMPLES
 ) -> tuple[float, float] | None:
     """Bootstrap the mean of paired differences (B. Efron, 1979; percentiles).
-
-    Args:
-        differences: One difference a pair; the pairs are what is resampled.
-        confidence: Share of intervals that cover the true mean.
-        resamples: Number of resamples.
 
     Returns:
         Lower and upper limit; None of fewer than ``FEWEST`` pairs. The same differences give the same interval.

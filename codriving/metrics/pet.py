@@ -26,7 +26,6 @@ class Passage(NamedTuple):
     Attributes:
         entry: Time of entering [s].
         exit: Time of leaving [s].
-        id: Vehicle id; last, so that passages sort by time.
     """
 
     entry: float
@@ -39,10 +38,6 @@ def post_encroachment_times(trajectory: Trajectory, road: RoadMap) -> tuple[Pet,
 
     Counted are pairs with at least one CAV whose routes cross or merge; each conflict area of a pair, first pass only.
     A pair of which one did not pass the area is absent. The value is negative if both were in the area at once.
-
-    Args:
-        trajectory: What was driven.
-        road: Where it was driven.
     """
     places = {track.id: _progress(track, road) for track in trajectory.tracks}
     pets = []
@@ -71,11 +66,7 @@ def _progress(track: Track, road: RoadMap) -> FloatArray:
 def _areas(
     zone: ConflictZone, length_i: float, length_j: float
 ) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Return the stretch of each route [m] on which a centre is while the vehicle is in the conflict area.
-
-    Where routes cross, this is the whole zone. Where they merge they stay together, so that the zone has no end; the
-    conflict area is the merge point, occupied from nose to tail.
-    """
+    """Return the stretch of each route [m] on which a centre is while the vehicle is in the conflict area."""
     if zone.relation is Relation.CROSSING:
         return (zone.entry_i, zone.exit_i), (zone.entry_j, zone.exit_j)
     # Only routes that converge or weave have a merge point.
@@ -88,10 +79,7 @@ def _areas(
 
 
 def _passage(track: Track, s: FloatArray, area: tuple[float, float], path: Path, step: float) -> Passage | None:
-    """Return when a track passed through a stretch of its route, or None if it did not come from before to beyond.
-
-    A vehicle that had changed lanes passed beside the area.
-    """
+    """Return when a track passed through a stretch of its route, or None if it did not come from before to beyond."""
     start, end = area
     if not (s[0] <= start and s[-1] >= end):
         return None

@@ -9,20 +9,10 @@ from codriving.geometry.road_map import RoadMap
 
 
 class Metrics(Protocol):
-    """Judges one driven episode.
-
-    Attributes:
-        name: Name for tables.
-    """
+    """Judges one driven episode."""
 
     name: str
 
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
-        """Return the score of an episode.
-
-        Args:
-            trajectory: What was driven.
-            outcome: How it ended.
-            road: Where it was driven.
-        """
+        """Return the score of an episode."""
         ...

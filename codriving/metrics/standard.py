@@ -30,13 +30,7 @@ class StandardMetrics:
         self.free_speed = free_speed
 
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
-        """Return the score of an episode.
-
-        Args:
-            trajectory: What was driven.
-            outcome: How it ended.
-            road: Where it was driven.
-        """
+        """Return the score of an episode."""
         return Score(
             success=outcome.ending is Ending.SUCCESS,
             pets=post_encroachment_times(trajectory, road),

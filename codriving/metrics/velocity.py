@@ -12,8 +12,6 @@ def travels(trajectory: Trajectory, road: RoadMap, free_speed: float | None = No
     """Return how each CAV travelled; one that did not arrive is absent.
 
     Args:
-        trajectory: What was driven.
-        road: Where it was driven.
         free_speed: Speed of free flow that delays are counted against [m/s]; None takes the highest speed limit on
             the route of each CAV.
     """

@@ -7,11 +7,6 @@ from statistics import NormalDist
 def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> tuple[float, float]:
     """Return the Wilson score interval of a success rate (E. B. Wilson, 1927).
 
-    Args:
-        successes: Number of successes, 0 to `trials`.
-        trials: Number of trials.
-        confidence: Share of intervals that cover the true rate.
-
     Returns:
         Lower and upper limit, within 0 and 1; NaN without a trial, where there is no rate either.
 

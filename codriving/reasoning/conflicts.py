@@ -11,12 +11,7 @@ OPEN = (Relation.CROSSING, Relation.CONVERGING, Relation.WEAVING)
 
 
 def find_conflicts(scene: SceneDescription, road_map: RoadMap) -> tuple[Conflict, ...]:
-    """Find the conflicts of one CAV, most urgent first.
-
-    Args:
-        scene: What the CAV knows.
-        road_map: The precomputed road.
-    """
+    """Find the conflicts of one CAV, most urgent first."""
     found = []
     for neighbour in scene.neighbours:
         certain = neighbour.intent is not None or len(neighbour.routes) == 1
@@ -33,7 +28,6 @@ def is_open(zone: ConflictZone, place_i: float, place_j: float) -> bool:
     Vehicles that have already merged follow one another, whatever the map says.
 
     Args:
-        zone: The zone, seen from i.
         place_i: Arc length of i on its route [m].
         place_j: Arc length of j on its route [m].
     """

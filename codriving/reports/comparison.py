@@ -49,8 +49,6 @@ class Entry:
     """One cell that is compared.
 
     Attributes:
-        records: Its episodes, at least one.
-        swept: Its value of each swept key that needs a column.
         cpu: CPU time of a decision [s], or None where that is lost; it goes into no file that has to repeat.
     """
 
@@ -74,7 +72,6 @@ class Compared:
     """One row of the comparison.
 
     Attributes:
-        row: Its columns.
         cpu: CPU time of a decision [s], or None.
     """
 
@@ -83,12 +80,7 @@ class Compared:
 
 
 def comparison_columns(swept: Sequence[str] = (), model: bool = False) -> tuple[str, ...]:
-    """Give the columns of ``comparison.csv``.
-
-    Args:
-        swept: Swept keys that need a column.
-        model: Whether a language model reasons in any row.
-    """
+    """Give the columns of ``comparison.csv``."""
     quoted = (f"paper_{name}" for name in QUOTED)
     labels = ("scenario", "method", "variant", "reasoner", "status")
     asked = (FALLBACK_RATE,) if model else ()
@@ -97,11 +89,6 @@ def comparison_columns(swept: Sequence[str] = (), model: bool = False) -> tuple[
 
 def comparison_rows(block: Sequence[Entry], methods: Sequence[str], paper: Paper) -> list[Compared]:
     """Compare the methods of one block: cells on the same seeds that differ in the method alone.
-
-    Args:
-        block: Its cells, at least one.
-        methods: Methods that the table has to have, in its order; those without a cell get a row that says so.
-        paper: The paper's numbers.
 
     Returns:
         The rows: ``methods`` in their order, then all others as they come.
@@ -118,11 +105,7 @@ def comparison_rows(block: Sequence[Entry], methods: Sequence[str], paper: Paper
 
 
 def takes_place_of(name: str) -> str:
-    """Return the method whose place in a table something takes, by what it calls itself.
-
-    Args:
-        name: What it calls itself.
-    """
+    """Return the method whose place in a table something takes, by what it calls itself."""
     return STANDS_IN.get(name, name)
 
 

@@ -42,18 +42,7 @@ CPU_NOTE = "CPU: computing time of one decision for all CAVs, of this machine; i
 def measured_display(
     rows: Sequence[Compared], paper: Paper, metrics: str, swept: Sequence[str] = (), cpu: bool = False
 ) -> Display:
-    """Prepare the table of what was measured.
-
-    Args:
-        rows: Rows of the comparison, those of a block together.
-        paper: The paper's numbers.
-        metrics: Name of the definitions by which it was measured.
-        swept: Swept keys that need a column.
-        cpu: Whether to show the computing time, which no file that has to repeat may hold.
-
-    Returns:
-        The table, the paper's row below each of ours.
-    """
+    """Prepare the table of what was measured."""
     asked = [FALLBACKS] if any(FALLBACK_RATE in compared.row for compared in rows) else []
     columns = (*labels(rows, swept), *_MEASURED, *asked, *([CPU] if cpu else []))
     lines: list[Line] = []
@@ -81,7 +70,6 @@ def further_notes(rows: Sequence[Row], cpu: bool) -> list[str]:
 
     Args:
         rows: Rows with the columns ``method``, ``reasoner`` and ``status``.
-        cpu: Whether computing times are shown.
     """
     missing = dict.fromkeys(str(row["method"]) for row in rows if row["status"] == MISSING)
     return [

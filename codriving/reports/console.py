@@ -13,12 +13,7 @@ _GAP = 2
 
 
 def print_table(table: Display, stream: TextIO | None = None) -> None:
-    """Print a table.
-
-    Args:
-        table: What to print.
-        stream: Where; standard output by default.
-    """
+    """Print a table."""
     from rich import box
     from rich.console import Console
     from rich.table import Table
@@ -49,15 +44,7 @@ def print_table(table: Display, stream: TextIO | None = None) -> None:
 
 
 def _widths(table: Display, room: int) -> list[int]:
-    """Share a terminal's width among the columns: numbers may go into several lines, no word is broken.
-
-    Args:
-        table: What to print.
-        room: Characters that there are, without the gaps.
-
-    Returns:
-        The width of each column; more than there is room for if a word a line still needs more.
-    """
+    """Share a terminal's width among the columns: numbers may go into several lines, no word is broken."""
     columns = [[head, *cells] for head, cells in zip(table.columns, _transposed(table), strict=True)]
     widths = [max(map(len, texts)) for texts in columns]
     least = [max(len(word) for text in texts for word in text.split() or [""]) for texts in columns]

@@ -21,13 +21,7 @@ CLAIM = "the paper says"
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One printed row.
-
-    Attributes:
-        cells: Text of each column.
-        ours: Whether it is measured here; False for the paper's.
-        last: Whether the rows of a scenario end with it.
-    """
+    """One printed row."""
 
     cells: tuple[str, ...]
     ours: bool = True
@@ -36,15 +30,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Display:
-    """A table that only has to be drawn.
-
-    Attributes:
-        title: What it shows and who reasoned.
-        columns: Heads of the columns.
-        words: Those of the columns that hold words; numbers are in the others.
-        lines: The rows.
-        notes: What a reader has to know.
-    """
+    """A table that only has to be drawn."""
 
     title: str
     columns: tuple[str, ...]
@@ -64,16 +50,8 @@ def display(
     """Prepare the summary for people.
 
     Args:
-        rows: Rows of the summary, at least one.
-        paper: The paper's numbers.
-        metrics: Name of the definitions by which it was measured.
-        swept: Swept keys that need a column.
-        notes: What a reader has to know of these rows.
         seconds: Wall-clock time of a decision step in each row [s], shown where a language model reasons; nothing for
             what has to repeat to the byte.
-
-    Returns:
-        The table. A column of scenarios or of statements is there only where it says something.
     """
     scenarios = list(dict.fromkeys(str(row["scenario"]) for row in rows))
     many = len(scenarios) > 1

@@ -37,39 +37,19 @@ TEXT = frozenset({*LABELS, "outcome", "collision_pair", "striker", "struck", "of
 
 
 def episode_columns(records: Iterable[EpisodeRecord], swept: Sequence[str] = ()) -> tuple[str, ...]:
-    """Give the columns of ``episodes.csv``: fixed ones, swept keys, more fixed ones, and counters that methods report.
-
-    Args:
-        records: All records of the table.
-        swept: Swept keys that need a column.
-
-    Returns:
-        Columns in order.
-    """
+    """Give the columns of ``episodes.csv``: fixed ones, swept keys, and the counters of methods."""
     records = list(records)
     known = (*LEADING, *swept, *FURTHER, *memory_column(records))
     return (*known, *counter_columns(records, known))
 
 
 def memory_column(records: Iterable[EpisodeRecord]) -> tuple[str, ...]:
-    """Give the column of what was recalled from, if any episode had a memory.
-
-    Args:
-        records: All records of the table.
-    """
+    """Give the column of what was recalled from, if any episode had a memory."""
     return (MEMORY,) if any(record.memory for record in records) else ()
 
 
 def episode_rows(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | None = None) -> list[Row]:
-    """Give the rows of one cell, or of several that are swept alike.
-
-    Args:
-        records: The records in the order of the table.
-        swept: Their value of each swept key that needs a column.
-
-    Returns:
-        One row a record.
-    """
+    """Give the rows of one cell, or of several that are swept alike."""
     return [{**_row(record), **(swept or {})} for record in records]
 
 

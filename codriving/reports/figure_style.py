@@ -36,10 +36,6 @@ def plain_settings() -> Iterator[None]:
 def saved(figure: "Figure", name: str) -> Mapping[str, bytes]:
     """Write a figure as PNG and SVG.
 
-    Args:
-        figure: The figure.
-        name: Name of the files, without ending.
-
     Returns:
         The content of both, by file name; the same figure gives the same bytes.
     """

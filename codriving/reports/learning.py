@@ -31,15 +31,7 @@ TEXTS = ("scenario", "method", "variant", "reasoner", "memory", "paper")
 
 @dataclass(frozen=True, slots=True)
 class LearningCell:
-    """One cell of the tests.
-
-    Attributes:
-        records: Its episodes.
-        interactions: How many interactions it recalls from.
-        setting: Number of its setting: cells with the same number differ in the interactions alone.
-        swept: Its value of each further swept key.
-        shots: Experiences that each CAV is told at most.
-    """
+    """One cell of the tests."""
 
     records: Sequence[EpisodeRecord]
     interactions: int
@@ -49,25 +41,13 @@ class LearningCell:
 
 
 def learning_columns(swept: Sequence[str] = ()) -> tuple[str, ...]:
-    """Give the columns of ``learn.csv``.
-
-    Args:
-        swept: Further swept keys.
-    """
+    """Give the columns of ``learn.csv``."""
     labels = ("scenario", "method", "variant", "reasoner", *swept, "interactions", "shots", "memory")
     return (*labels, *QUALITY, *AGAINST.values(), "paper")
 
 
 def learning_rows(cells: Sequence[LearningCell], paper: Sequence[LearningStatement]) -> list[Row]:
-    """Make the rows.
-
-    Args:
-        cells: The cells, those of one setting together.
-        paper: The paper's statements.
-
-    Returns:
-        One row a cell. Gains are against the fewest interactions of the same setting; that row itself has none.
-    """
+    """Make the rows."""
     first: dict[int, LearningCell] = {}
     for cell in cells:
         first.setdefault(cell.setting, cell)

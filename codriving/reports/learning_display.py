@@ -16,8 +16,6 @@ def learning_display(rows: Sequence[Row], metrics: str, swept: Sequence[str] = (
 
     Args:
         rows: Rows of ``learn.csv``, at least one.
-        metrics: Name of the definitions by which it was measured.
-        swept: Further swept keys.
     """
     columns = (
         "scenario", "method", *swept, "interactions", "episodes", "success", "95 % interval", "gain [points] (p)",

@@ -28,8 +28,6 @@ def learning_figure(rows: Sequence[Row], paper: Sequence[LearningStatement], met
 
     Args:
         rows: Rows of ``learn.csv``, at least one.
-        paper: The paper's statements.
-        metrics: Name of the definitions by which it was measured.
 
     Returns:
         The content of ``learn.png`` and ``learn.svg``; the same rows give the same bytes.

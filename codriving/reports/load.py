@@ -25,8 +25,6 @@ class Loaded:
     """One row of the table of loads.
 
     Attributes:
-        labels: Scenario, method, variant, reasoner, status and swept keys.
-        at: Columns of the summary at each number of CAVs.
         cpu: CPU time of a decision at each number of CAVs [s], or None.
     """
 
@@ -51,13 +49,7 @@ class Loaded:
 
 
 def load_columns(loads: Sequence[int], swept: Sequence[str] = (), model: bool = False) -> tuple[str, ...]:
-    """Give the columns of ``load.csv``.
-
-    Args:
-        loads: The numbers of CAVs.
-        swept: Swept keys that need a column, without the number of CAVs.
-        model: Whether a language model reasons in any row.
-    """
+    """Give the columns of ``load.csv``."""
     at_each = (*AT_EACH, *([FALLBACK_RATE] if model else []))
     labels = ("scenario", "method", "variant", "reasoner", "status")
     return (*labels, *swept, "episodes", *(f"{name}_{cavs}" for name in at_each for cavs in loads))
@@ -65,10 +57,6 @@ def load_columns(loads: Sequence[int], swept: Sequence[str] = (), model: bool = 
 
 def load_rows(cells: Sequence[tuple[int, Entry]], methods: Sequence[str]) -> list[Loaded]:
     """Put the cells of one method and setting into a row.
-
-    Args:
-        cells: Number of CAVs and episodes of each cell; the number of CAVs is not among its swept keys.
-        methods: Methods that the table has to have, in its order; those without a cell get a row that says so.
 
     Returns:
         The rows: those of a scenario and setting together, ``methods`` in their order, then all others as they come.

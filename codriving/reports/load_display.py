@@ -19,18 +19,7 @@ NOTE = "Rates are over completed episodes, with Wilson 95 % intervals; velocity 
 def load_display(
     rows: Sequence[Loaded], loads: Sequence[int], metrics: str, swept: Sequence[str] = (), cpu: bool = False
 ) -> Display:
-    """Prepare the table of loads.
-
-    Args:
-        rows: Its rows, those of a scenario and setting together.
-        loads: The numbers of CAVs.
-        metrics: Name of the definitions by which it was measured.
-        swept: Swept keys that need a column, without the number of CAVs.
-        cpu: Whether to show the computing time, which no file that has to repeat may hold.
-
-    Returns:
-        The table.
-    """
+    """Prepare the table of loads."""
     model = any(row.model for row in rows)
     asked = [FALLBACKS] if model else []
     measures = ("success (95 %)", "velocity [m/s]", *asked, *(["CPU [ms]"] if cpu else []))
@@ -47,12 +36,7 @@ def load_display(
 
 
 def load_title(rows: Sequence[Loaded], metrics: str) -> str:
-    """Say what is shown and who reasoned.
-
-    Args:
-        rows: Rows of the table.
-        metrics: Name of the definitions by which it was measured.
-    """
+    """Say what is shown and who reasoned."""
     scenarios = ", ".join(dict.fromkeys(str(row.labels["scenario"]) for row in rows))
     driven = [row for row in rows if row.labels["status"] != MISSING]
     reasoners = ", ".join(dict.fromkeys(reasoner_text(str(row.labels["reasoner"])) for row in driven))

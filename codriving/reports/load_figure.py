@@ -34,11 +34,6 @@ _SPREAD = 0.06
 def load_figure(rows: Sequence[Loaded], loads: Sequence[int], metrics: str) -> Mapping[str, bytes]:
     """Draw the loads.
 
-    Args:
-        rows: Rows of the table.
-        loads: The numbers of CAVs, at least one.
-        metrics: Name of the definitions by which it was measured.
-
     Returns:
         The content of ``load.png`` and ``load.svg``; the same rows give the same bytes.
     """

@@ -4,15 +4,7 @@ from codriving.reports.display import Display
 
 
 def markdown_text(table: Display, level: int = 1) -> str:
-    """Write a table as Markdown.
-
-    Args:
-        table: What to write.
-        level: Level of its heading, 1 for that of the page.
-
-    Returns:
-        Title, table and notes; the paper's rows are in italics.
-    """
+    """Write a table as Markdown."""
     rules = ["---" if head in table.words else "---:" for head in table.columns]
     lines = [f"{'#' * level} {table.title}", "", _line(table.columns), _line(rules)]
     for line in table.lines:

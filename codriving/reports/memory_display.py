@@ -15,15 +15,7 @@ VERDICTS = ("intensified", "eased", "too cautious")
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """One memory that was built.
-
-    Attributes:
-        scenario: Name of the scenario.
-        method: Name of the method, with its variant.
-        reasoner: Who reasoned.
-        swept: Its value of each swept key.
-        reading: What is in it.
-    """
+    """One memory that was built."""
 
     scenario: str
     method: str
@@ -33,11 +25,7 @@ class Built:
 
 
 def built_display(rows: Sequence[Built]) -> Display:
-    """Prepare the table of memories that were built.
-
-    Args:
-        rows: The memories, at least one.
-    """
+    """Prepare the table of memories that were built."""
     swept = tuple(dict.fromkeys(key for row in rows for key in row.swept))
     words = ("scenario", "method", *swept, "snapshot", "file")
     columns = (

@@ -43,13 +43,7 @@ def reasoned(record: EpisodeRecord) -> bool:
 
 
 def counter_columns(records: Iterable[EpisodeRecord], known: Sequence[str], rate: bool = False) -> tuple[str, ...]:
-    """List the columns of counters: those of a language model first, all others by name.
-
-    Args:
-        records: All records of the table.
-        known: Columns that the table has anyway; a counter never takes their place.
-        rate: Whether the table has the share of fallbacks.
-    """
+    """List the columns of counters: those of a language model first, all others by name."""
     records = list(records)
     names = {name for record in records for name in record.counts} - {UNPRICED, WAITED}
     model = any(map(reasoned, records))
@@ -59,15 +53,7 @@ def counter_columns(records: Iterable[EpisodeRecord], known: Sequence[str], rate
 
 
 def counted(records: Sequence[EpisodeRecord]) -> dict[str, Value]:
-    """Add up what was counted, failed episodes included: they have been paid for.
-
-    Args:
-        records: The records of a row.
-
-    Returns:
-        The sum of each counter. Where a model was asked there are all of its columns, with no cost if a price is not
-        known.
-    """
+    """Add up what was counted, failed episodes included: they have been paid for."""
     values: dict[str, list[int | float]] = {}
     for record in records:
         for name, number in record.counts.items():
@@ -84,9 +70,6 @@ def counted(records: Sequence[EpisodeRecord]) -> dict[str, Value]:
 
 def fallback_rate(sums: dict[str, Value]) -> float | None:
     """Give the share of questions that ended in a fallback, each question counting once however often it was asked.
-
-    Args:
-        sums: Sums of counters.
 
     Returns:
         The share, or None if nothing was asked.

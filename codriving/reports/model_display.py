@@ -26,15 +26,7 @@ def asks(row: Row) -> bool:
 
 
 def model_heads(rows: Sequence[Row], timed: bool) -> tuple[str, ...]:
-    """Give the heads of the columns of a language model.
-
-    Args:
-        rows: Rows of the summary.
-        timed: Whether the time of a step is known.
-
-    Returns:
-        The heads; none where no model reasons.
-    """
+    """Give the heads of the columns of a language model."""
     if not any(map(asks, rows)):
         return ()
     return (CALLS, TOKENS, MONEY, FALLBACKS, *([STEP] if timed else []))
@@ -44,7 +36,6 @@ def model_texts(row: Row, seconds: float | None = None) -> dict[str, str]:
     """Give the texts of these columns; none where no model reasons.
 
     Args:
-        row: A row of the summary.
         seconds: Wall-clock time of a decision step [s], if known.
     """
     if not asks(row):
@@ -59,15 +50,7 @@ def model_texts(row: Row, seconds: float | None = None) -> dict[str, str]:
 
 
 def model_notes(rows: Sequence[Row], timed: bool) -> list[str]:
-    """Sum up what the models of all rows were asked.
-
-    Args:
-        rows: Rows of the summary.
-        timed: Whether the time of a step is shown.
-
-    Returns:
-        A line of totals and one on what the columns mean; none where no model reasons.
-    """
+    """Sum up what the models of all rows were asked."""
     found = [row for row in rows if asks(row)]
     if not found:
         return []

@@ -32,10 +32,6 @@ PAIRED = (
 def paired(records: Sequence[EpisodeRecord], reference: Sequence[EpisodeRecord]) -> Mapping[str, Value]:
     """Compare the episodes of a method with those of codriving.
 
-    Args:
-        records: Episodes of the method.
-        reference: Episodes of codriving; only seeds that are in both count.
-
     Returns:
         A value for each column of ``PAIRED``; None where nothing defines it. Pairs of which one ended in an error are
         left out. PET and velocity are means of an episode, over the seeds on which both succeed.

@@ -33,11 +33,6 @@ _NOTES = (
 def paired_display(rows: Sequence[Compared], metrics: str, swept: Sequence[str] = ()) -> Display | None:
     """Prepare the table of differences to codriving on the same seeds.
 
-    Args:
-        rows: Rows of the comparison, those of a block together.
-        metrics: Name of the definitions by which it was measured.
-        swept: Swept keys that need a column.
-
     Returns:
         The table, with a note on every method that is better than codriving in something; None where there is no
         other method.

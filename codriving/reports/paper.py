@@ -20,9 +20,6 @@ class PaperRow:
 
     Attributes:
         scenario: Name of the scenario; the paper compares methods at the intersection alone.
-        method: Our name of the method.
-        label: Its name in the paper.
-        numbers: What the paper prints, by the names of our summary's columns; what it leaves out is missing.
         episodes: How many seeds it drove; None where that is not told.
     """
 
@@ -40,13 +37,7 @@ class PaperRow:
 
 @dataclass(frozen=True, slots=True)
 class PaperStatement:
-    """What the paper says of one ablation.
-
-    Attributes:
-        scenario: Name of the scenario.
-        variant: What was removed.
-        statement: The claim in words.
-    """
+    """What the paper says of one ablation."""
 
     scenario: str
     variant: str
@@ -55,13 +46,7 @@ class PaperStatement:
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """Everything of the paper that tables quote.
-
-    Attributes:
-        comparison: Rows of the comparison of methods.
-        ablation: Statements on the ablations.
-        single_vehicle: Rows of the extra comparison.
-    """
+    """Everything of the paper that tables quote."""
 
     comparison: tuple[PaperRow, ...] = ()
     ablation: tuple[PaperStatement, ...] = ()
@@ -69,11 +54,6 @@ class Paper:
 
     def row(self, scenario: str, method: str, variant: str) -> PaperRow | None:
         """Find the paper's row for one of ours.
-
-        Args:
-            scenario: Our scenario.
-            method: Our method.
-            variant: Our variant; a row with something removed has none beside it.
 
         Returns:
             The row, or None if the paper has none.
@@ -86,10 +66,6 @@ class Paper:
     def statement(self, scenario: str, variant: str) -> str:
         """Find what the paper says of an ablation.
 
-        Args:
-            scenario: Our scenario.
-            variant: Our variant; what follows a slash is our reading of it, which the paper leaves open.
-
         Returns:
             The claim, empty if there is none.
         """
@@ -101,14 +77,7 @@ class Paper:
 
 
 def read_paper(folder: Path) -> Paper:
-    """Read the paper's numbers.
-
-    Args:
-        folder: Folder of the experiments.
-
-    Returns:
-        What is there; a file that is missing gives no rows.
-    """
+    """Read the paper's numbers."""
     comparison = tuple(_row(row) for row in _read(folder / COMPARISON))
     ablation = tuple(
         PaperStatement(row["scenario"], row["variant"], row["statement"]) for row in _read(folder / ABLATION)

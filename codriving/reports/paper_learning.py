@@ -12,10 +12,7 @@ class LearningStatement:
     """One statement of the paper on its learning figure.
 
     Attributes:
-        scenario: Name of the scenario.
         interactions: After how many interactions; None where it gives no number.
-        statement: The claim in words.
-        success: The success rate, if it gives one.
     """
 
     scenario: str
@@ -25,14 +22,7 @@ class LearningStatement:
 
 
 def read_learning(folder: Path) -> tuple[LearningStatement, ...]:
-    """Read the paper's statements.
-
-    Args:
-        folder: Folder of the experiments.
-
-    Returns:
-        What is there; nothing if the file is missing.
-    """
+    """Read the paper's statements."""
     path = folder / LEARNING
     if not path.is_file():
         return ()

@@ -13,15 +13,7 @@ Row: TypeAlias = Mapping[str, Value]
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Row]) -> str:
-    """Write rows as CSV.
-
-    Args:
-        columns: Columns in order.
-        rows: The rows; a column that a row lacks is empty.
-
-    Returns:
-        CSV with a header; the same rows give the same bytes.
-    """
+    """Write rows as CSV."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(columns)

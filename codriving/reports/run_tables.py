@@ -21,14 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Columns and rows.
-
-    Attributes:
-        columns: Columns in order.
-        rows: The rows.
-        swept: Those of the columns that are swept keys.
-        text: Columns of words; all others are numbers.
-    """
+    """Columns and rows."""
 
     columns: tuple[str, ...]
     rows: tuple[Row, ...]
@@ -59,10 +52,7 @@ class RunTables:
     """The tables of one run.
 
     Attributes:
-        episodes: One row an episode.
-        summary: One row a cell.
         display: The summary as people read it, of ``summary.md``.
-        printed: The same as it is printed, with what differs from run to run.
     """
 
     episodes: Table
@@ -82,16 +72,8 @@ def run_tables(
     """Make all tables of a run.
 
     Args:
-        cells: The records of each cell, by seed; cells in the order of the tables, none of them empty.
-        paper: The paper's numbers.
-        metrics: Name of the definitions by which they were scored.
-        swept: Each cell's value of the swept keys that need a column, by key; nothing where no key was swept.
-        notes: What a reader has to know of these cells.
         seconds: Wall-clock time of a decision step in each cell [s], None where that is lost; nothing where it is not
             to be shown.
-
-    Returns:
-        The tables; they depend on nothing else.
     """
     values = swept or [{}] * len(cells)
     keys = tuple(dict.fromkeys(key for cell in values for key in cell))
@@ -108,10 +90,6 @@ def run_tables(
 
 def write_tables(tables: RunTables, folder: Path) -> None:
     """Write ``episodes.csv``, ``summary.csv`` and ``summary.md``.
-
-    Args:
-        tables: What to write.
-        folder: The run folder.
 
     Raises:
         OSError: If the folder cannot be written.

@@ -8,9 +8,6 @@ from collections.abc import Sequence
 def mean(values: Sequence[float]) -> float | None:
     """Give the mean; exact summation makes it the same in any order.
 
-    Args:
-        values: The values.
-
     Returns:
         The mean, or None of no values.
     """
@@ -20,9 +17,6 @@ def mean(values: Sequence[float]) -> float | None:
 def median(values: Sequence[float]) -> float | None:
     """Give the median.
 
-    Args:
-        values: The values.
-
     Returns:
         The median, or None of no values.
     """
@@ -31,10 +25,6 @@ def median(values: Sequence[float]) -> float | None:
 
 def share(part: int, whole: int) -> float | None:
     """Give a rate.
-
-    Args:
-        part: How many.
-        whole: Of how many.
 
     Returns:
         Their ratio, or None of none.

@@ -53,15 +53,7 @@ FURTHER = (
 
 
 def summary_columns(records: Iterable[EpisodeRecord], swept: Sequence[str] = ()) -> tuple[str, ...]:
-    """Give the columns of ``summary.csv``: fixed ones, swept keys, more fixed ones, and counters that methods report.
-
-    Args:
-        records: All records of the table.
-        swept: Swept keys that need a column.
-
-    Returns:
-        Columns in order.
-    """
+    """Give the columns of ``summary.csv``: fixed ones, swept keys, and the counters of methods."""
     records = list(records)
     known = (*LEADING, *swept, *FURTHER, *memory_column(records))
     return (*known, *counter_columns(records, known, rate=True))
@@ -69,10 +61,6 @@ def summary_columns(records: Iterable[EpisodeRecord], swept: Sequence[str] = ())
 
 def summary_row(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | None = None) -> Row:
     """Sum up one cell.
-
-    Args:
-        records: The records of the cell, at least one.
-        swept: Its value of each swept key that needs a column.
 
     Returns:
         Its row. Rates are over completed episodes, ``success_planned`` is over all; what nothing defines is None.

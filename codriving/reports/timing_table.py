@@ -20,11 +20,7 @@ MEASURED = (
 
 
 def timing_columns(swept: Sequence[str] = ()) -> tuple[str, ...]:
-    """Give the columns of ``timing.csv``.
-
-    Args:
-        swept: Swept keys that need a column.
-    """
+    """Give the columns of ``timing.csv``."""
     return (*LEADING, *swept, *MEASURED)
 
 
@@ -35,7 +31,6 @@ def timing_rows(
 
     Args:
         timed: Each record with its timing, None where that is lost.
-        swept: The cell's value of each swept key that needs a column.
 
     Returns:
         One row a record [s].

@@ -25,7 +25,6 @@ def three(numbers: Row, what: str) -> str:
     """Write mean, maximum and minimum; a dash where one is not defined.
 
     Args:
-        numbers: A row of the summary or of the paper.
         what: Beginning of its columns, for instance ``pet``.
     """
     return " / ".join(fixed(numbers.get(f"{what}_{which}")) or "-" for which in ("mean", "max", "min"))

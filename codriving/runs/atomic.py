@@ -28,10 +28,6 @@ def _sync(path: Path) -> None:
 def write_text(path: Path, text: str) -> None:
     """Write a file so that a reader sees the old content or the new, never a part.
 
-    Args:
-        path: File to write; its folder must exist.
-        text: Content, written as UTF-8 with the line ends it has.
-
     Raises:
         OSError: If the file cannot be written; nothing is left behind.
     """
@@ -52,13 +48,6 @@ def write_text(path: Path, text: str) -> None:
 def whole_file(path: Path, beside: Path | None = None) -> Iterator[Path]:
     """Give a name to write a file under, which takes the place of ``path`` once the block has ended well.
 
-    Args:
-        path: File to make; one that exists already is replaced.
-        beside: Where the unfinished file lies, in the same file system: a folder that is swept; by default the file's.
-
-    Yields:
-        The file to write.
-
     Raises:
         OSError: If it cannot be written; nothing is left behind and an existing ``path`` stays.
     """
@@ -76,12 +65,6 @@ def whole_file(path: Path, beside: Path | None = None) -> Iterator[Path]:
 @contextmanager
 def whole_folder(path: Path) -> Iterator[Path]:
     """Give a folder to fill, which takes the place of ``path`` once the block has ended well.
-
-    Args:
-        path: Folder to make; one that exists already is replaced.
-
-    Yields:
-        The folder to write into.
 
     Raises:
         OSError: If it cannot be written; nothing is left behind and an existing ``path`` stays.
@@ -108,11 +91,7 @@ def whole_folder(path: Path) -> Iterator[Path]:
 
 
 def sweep(folder: Path) -> None:
-    """Remove what a killed run left unfinished directly in a folder.
-
-    Args:
-        folder: Folder to clean; one that does not exist is clean.
-    """
+    """Remove what a killed run left unfinished directly in a folder."""
     for item in folder.glob(f"{PARTIAL}*"):
         if item.is_dir():
             shutil.rmtree(item, ignore_errors=True)

@@ -14,14 +14,6 @@ def continued(folder: Path, there: Manifest, here: Manifest) -> Manifest:
     Any number of episodes may be asked for, and cells beside those that are there, as long as one of them is there: it
     shows that the same experiment is meant. A cell keeps its folder, whatever it would be called now.
 
-    Args:
-        folder: The run folder.
-        there: Its manifest.
-        here: The manifest of the run that wants to go on in it.
-
-    Returns:
-        The manifest of both; its rows are those asked for now.
-
     Raises:
         RunFolderError: If no cell of the one is a cell of the other, or the folder has another layout.
     """
@@ -48,15 +40,7 @@ def continued(folder: Path, there: Manifest, here: Manifest) -> Manifest:
 
 
 def changed_versions(there: Manifest, here: Manifest) -> tuple[str, ...]:
-    """Compare what a run began with and what it goes on with.
-
-    Args:
-        there: The manifest of the folder.
-        here: The manifest of the run that goes on in it.
-
-    Returns:
-        Each package and the commit that differ, with both versions.
-    """
+    """Compare what a run began with and what it goes on with."""
     before = {**there.versions, "commit": (there.commit or "none")}
     now = {**here.versions, "commit": (here.commit or "none")}
     names = sorted(before.keys() | now.keys())

@@ -15,9 +15,6 @@ def decisions_text(lines: Iterable[Mapping[str, object]]) -> str:
     Args:
         lines: One mapping a decision step. A number that is not finite (no conflict in sight, say) becomes null.
 
-    Returns:
-        One JSON object a line.
-
     Raises:
         ValueError: If a value has no place in JSON.
     """
@@ -26,12 +23,6 @@ def decisions_text(lines: Iterable[Mapping[str, object]]) -> str:
 
 def read_decisions(folder: Path) -> tuple[dict[str, Any], ...]:
     """Read what was decided in one episode.
-
-    Args:
-        folder: Folder of the episode.
-
-    Returns:
-        One mapping a decision step.
 
     Raises:
         RunFolderError: If it is missing, damaged or cannot be read.

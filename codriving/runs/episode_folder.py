@@ -31,14 +31,7 @@ def write_episode(
     """Write the folder of one episode, in place of an earlier attempt.
 
     Args:
-        folder: Folder of the episode.
-        record: Its result.
         trajectory: What was driven, or None where nothing was.
-        decisions: One mapping a decision step.
-        timing: Wall-clock times.
-        traceback: Where it went wrong, if it did.
-        transcript: One mapping a question that a language model was asked; without any there is no file of it.
-        secrets: What must be in none of the files, whoever said it.
 
     Raises:
         ValueError: If something cannot be written as it is (not finite, wrong type); nothing is left behind.

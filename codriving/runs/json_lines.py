@@ -19,13 +19,6 @@ _HARMFUL = re.compile(
 def lines_text(name: str, lines: Iterable[Mapping[str, object]]) -> str:
     """Give the content of such a file.
 
-    Args:
-        name: Name of the file, for errors.
-        lines: One mapping a line. A number that is not finite becomes null.
-
-    Returns:
-        One JSON object a line.
-
     Raises:
         ValueError: If a value has no place in JSON.
     """
@@ -60,12 +53,6 @@ def _finite(value: object) -> object:
 
 def read_lines(path: Path) -> tuple[dict[str, Any], ...]:
     """Read such a file of an episode.
-
-    Args:
-        path: The file.
-
-    Returns:
-        One mapping a line.
 
     Raises:
         RunFolderError: If it is missing, damaged or cannot be read.

@@ -18,13 +18,7 @@ class CellEntry:
 
     Attributes:
         folder: Name of its folder under ``episodes/``.
-        scenario: Name of the scenario.
-        method: Name of the method.
-        variant: Name of the CDA variant.
         reasoner: Who reasons: ``rules`` or the name of a model.
-        fingerprint: Hash of the settings that results depend on.
-        swept: What tells its row from others with the same labels: value of each swept key, by key.
-        settings: Those settings without secrets: JSON of each value, by dotted key.
     """
 
     folder: str
@@ -42,16 +36,7 @@ class Manifest:
     """What a run was made of and with.
 
     Attributes:
-        format: Layout of the folder.
-        experiment: Name of the experiment.
-        created: When the run began, UTC in ISO 8601.
-        first_seed: Seed of the first episode of each cell.
-        episodes: Episodes of each row of the tables, as last asked for; there may be more.
-        rows: Folders of the cells that are rows of the tables, as last asked for, in their order.
-        cells: All cells that the folder holds.
-        versions: Version of each package that matters, by name.
         commit: Commit of the checkout, with ``+changes`` if it was not clean; None for an installed package.
-        machine: Operating system, processor and number of cores.
     """
 
     format: int
@@ -67,22 +52,12 @@ class Manifest:
 
 
 def manifest_text(manifest: Manifest) -> str:
-    """Give the content of ``manifest.json``.
-
-    Args:
-        manifest: What the run is made of.
-
-    Returns:
-        JSON text.
-    """
+    """Give the content of ``manifest.json``."""
     return encode(manifest)
 
 
 def read_manifest(folder: Path) -> Manifest | None:
     """Read the manifest of a run folder.
-
-    Args:
-        folder: The run folder.
 
     Returns:
         The manifest, or None if there is none.

@@ -12,12 +12,6 @@ RECORD = "record.json"
 def record_text(record: EpisodeRecord) -> str:
     """Give the content of ``record.json``.
 
-    Args:
-        record: The result of an episode.
-
-    Returns:
-        JSON text; the same record gives the same bytes.
-
     Raises:
         ValueError: If a value is of the wrong type or not finite.
     """
@@ -26,12 +20,6 @@ def record_text(record: EpisodeRecord) -> str:
 
 def read_record(folder: Path) -> EpisodeRecord:
     """Read the record of one episode.
-
-    Args:
-        folder: Folder of the episode.
-
-    Returns:
-        The record.
 
     Raises:
         RunFolderError: If it is missing or damaged; nothing is changed on disk.
@@ -48,15 +36,7 @@ def read_record(folder: Path) -> EpisodeRecord:
 
 
 def damaged(path: Path, reason: str) -> RunFolderError:
-    """The error for a file of an episode that cannot be trusted, with its cure.
-
-    Args:
-        path: The file.
-        reason: What is wrong with it.
-
-    Returns:
-        The error to raise.
-    """
+    """The error for a file of an episode that cannot be trusted, with its cure."""
     return RunFolderError(
         f"{path} is damaged ({reason}); delete the folder {path.parent} and run again: only this episode is repeated"
     )

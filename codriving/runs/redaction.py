@@ -16,12 +16,6 @@ def redact(settings: Mapping[str, object]) -> dict[str, object]:
     """Mask secrets in a resolved config.
 
     Numbers, switches and null stay: ``max_tokens: 500`` gives nothing away.
-
-    Args:
-        settings: Resolved config of plain values.
-
-    Returns:
-        A copy without secrets.
     """
     return {name: _mask(name, value) for name, value in settings.items()}
 
@@ -41,14 +35,7 @@ SHORTEST = 8
 
 
 def variables_in(settings: object) -> tuple[str, ...]:
-    """List the environment variables that hold secrets, as a resolved config names them.
-
-    Args:
-        settings: Resolved config of plain values.
-
-    Returns:
-        Their names, each once.
-    """
+    """List the environment variables that hold secrets, as a resolved config names them."""
     return tuple(dict.fromkeys(_variables(settings)))
 
 
@@ -65,28 +52,13 @@ def _variables(node: object) -> Iterator[str]:
 
 
 def secrets_of(variables: Iterable[str]) -> tuple[str, ...]:
-    """Read the secrets that environment variables hold at this moment, the longest first.
-
-    Args:
-        variables: Names of the variables.
-
-    Returns:
-        Their values; one that is too short to be a secret is left out.
-    """
+    """Read the secrets that environment variables hold at this moment, the longest first."""
     values = {os.environ.get(name, "").strip() for name in variables}
     return tuple(sorted((value for value in values if len(value) >= SHORTEST), key=len, reverse=True))
 
 
 def scrubbed(value: object, secrets: Iterable[str]) -> object:
-    """Take secrets out of every text of plain values, wherever they came from.
-
-    Args:
-        value: Plain values; keys of mappings are ours and stay.
-        secrets: What must not be there.
-
-    Returns:
-        A copy without them.
-    """
+    """Take secrets out of every text of plain values, wherever they came from."""
     if isinstance(value, str):
         for secret in secrets:
             value = value.replace(secret, MASK)
@@ -100,10 +72,6 @@ def scrubbed(value: object, secrets: Iterable[str]) -> object:
 
 def flat(settings: Mapping[str, object], prefix: str = "") -> dict[str, str]:
     """Write nested settings as ``scenario.cavs -> 4``, so that two runs can be compared key by key.
-
-    Args:
-        settings: Nested plain values.
-        prefix: What to put before each name.
 
     Returns:
         JSON of each value, by dotted key.
@@ -119,12 +87,6 @@ def flat(settings: Mapping[str, object], prefix: str = "") -> dict[str, str]:
 
 def nested(pairs: Mapping[str, str]) -> dict[str, object]:
     """Undo ``flat``.
-
-    Args:
-        pairs: JSON of each value, by dotted key.
-
-    Returns:
-        Nested plain values; what was masked stays masked.
 
     Raises:
         ValueError: If a value is not JSON.

@@ -19,20 +19,10 @@ EPISODES = "episodes"
 
 
 class RunFolder:
-    """An open run folder; a context manager that holds the folder's lock.
-
-    Attributes:
-        path: The folder.
-        manifest: What the run in it is made of.
-    """
+    """An open run folder; a context manager that holds the folder's lock."""
 
     def __init__(self, path: Path, manifest: Manifest, configs: Mapping[str, str]) -> None:
         """Open a folder, making it or going on in it.
-
-        Args:
-            path: The run folder.
-            manifest: What is asked for: its cells are its rows.
-            configs: The resolved config of each cell as YAML, without secrets, by the name of the cell's folder.
 
         Raises:
             RunFolderError: If it cannot be written, is in use, holds something else or a run of another config.
@@ -87,20 +77,11 @@ class RunFolder:
             sweep(cell)
 
     def episode(self, cell: str, seed: int) -> Path:
-        """Give the folder of one episode.
-
-        Args:
-            cell: Name of the cell's folder.
-            seed: Seed of the episode.
-        """
+        """Give the folder of one episode."""
         return self.path / EPISODES / cell / str(seed)
 
     def record(self, cell: CellEntry, seed: int) -> EpisodeRecord | None:
         """Read the record of one episode and check that it is the one that belongs there.
-
-        Args:
-            cell: The cell.
-            seed: Seed of the episode.
 
         Returns:
             The record, or None if the episode has not been driven.
@@ -119,11 +100,7 @@ class RunFolder:
         return record
 
     def further(self, seeds: Collection[int]) -> int:
-        """Count the episodes that the folder holds beyond those that are asked for.
-
-        Args:
-            seeds: Seeds asked for, of each row.
-        """
+        """Count the episodes that the folder holds beyond those that are asked for."""
         asked = {str(seed) for seed in seeds}
         count = 0
         for cell in self.manifest.cells:
@@ -143,15 +120,7 @@ class RunFolder:
 
 
 def unwritable(path: Path, error: OSError) -> RunFolderError:
-    """The error for a folder that cannot be written.
-
-    Args:
-        path: The folder.
-        error: What the system said.
-
-    Returns:
-        The error to raise.
-    """
+    """The error for a folder that cannot be written."""
     return RunFolderError(
         f"cannot write the run folder {path}: {error.strerror or error}; choose another output=<folder>"
     )
@@ -159,10 +128,6 @@ def unwritable(path: Path, error: OSError) -> RunFolderError:
 
 def new_run_path(experiment: Path, now: datetime) -> Path:
     """Choose a folder for a run without a name: its local time, made at once so that no other run takes it.
-
-    Args:
-        experiment: Folder of the experiment.
-        now: Local time.
 
     Returns:
         The folder, new and empty.

@@ -16,12 +16,6 @@ T = TypeVar("T")
 def encode(value: object) -> str:
     """Write a dataclass as JSON.
 
-    Args:
-        value: Instance of a frozen dataclass of plain types, enums, tuples, dicts and such dataclasses.
-
-    Returns:
-        JSON text, one field a line, ending in a new line.
-
     Raises:
         ValueError: If a field is of another type than declared, or not finite.
     """
@@ -38,13 +32,6 @@ def encode(value: object) -> str:
 
 def decode(kind: type[T], text: str) -> T:
     """Read a dataclass from JSON.
-
-    Args:
-        kind: Dataclass to read.
-        text: JSON text.
-
-    Returns:
-        The instance.
 
     Raises:
         ValueError: If the text is not JSON, a field is missing, unknown, of another type, or not finite.

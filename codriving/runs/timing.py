@@ -19,7 +19,6 @@ class Timing:
 
     Attributes:
         seconds: The whole episode [s].
-        decisions: Number of decisions timed.
         decision_mean: Mean time of a decision [s], or None without decisions.
         decision_max: Longest decision [s], or None without decisions.
         decision_cpu_mean: Mean CPU time of a decision, of the thread that decides [s]; None where it was not measured.
@@ -41,9 +40,6 @@ def timing_of(seconds: float, decision_seconds: Sequence[float], decision_cpu: S
         seconds: Wall-clock time of the episode [s].
         decision_seconds: Wall-clock time of each decision [s].
         decision_cpu: CPU time of each decision [s]; nothing where it was not measured.
-
-    Returns:
-        The summary.
     """
     mean, longest = _mean_and_max(decision_seconds)
     return Timing(seconds, len(decision_seconds), mean, longest, *_mean_and_max(decision_cpu))
@@ -54,22 +50,12 @@ def _mean_and_max(values: Sequence[float]) -> tuple[float | None, float | None]:
 
 
 def timing_text(timing: Timing) -> str:
-    """Give the content of ``timing.json``.
-
-    Args:
-        timing: What was measured.
-
-    Returns:
-        JSON text.
-    """
+    """Give the content of ``timing.json``."""
     return encode(timing)
 
 
 def read_timing(folder: Path) -> Timing | None:
     """Read the timing of one episode.
-
-    Args:
-        folder: Folder of the episode.
 
     Returns:
         The timing, or None where there is none to read: no result depends on it. What an earlier version did not

@@ -20,9 +20,6 @@ COLUMNS = ("time", "id", "kind", "x", "y", "heading", "speed", "acceleration", "
 def trajectory_text(trajectory: Trajectory) -> str:
     """Give the content of ``trajectory.csv``.
 
-    Args:
-        trajectory: What was driven.
-
     Returns:
         CSV with a header, rows by time and then in the order of the tracks; metres, radians, seconds to 4 decimals.
 
@@ -56,10 +53,6 @@ def _track_rows(track: Track, step: float) -> list[str]:
 
 def read_trajectory(folder: Path, record: EpisodeRecord) -> Trajectory | None:
     """Read what was driven in one episode.
-
-    Args:
-        folder: Folder of the episode.
-        record: Its record, which knows the routes and the arrivals.
 
     Returns:
         The trajectory, with the sizes of a car; None if nothing was driven.

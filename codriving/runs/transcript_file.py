@@ -12,12 +12,6 @@ TRANSCRIPT = "transcript.jsonl"
 def transcript_text(lines: Iterable[Mapping[str, object]]) -> str:
     """Give the content of ``transcript.jsonl``.
 
-    Args:
-        lines: One mapping a question.
-
-    Returns:
-        One JSON object a line.
-
     Raises:
         ValueError: If a value has no place in JSON.
     """
@@ -26,12 +20,6 @@ def transcript_text(lines: Iterable[Mapping[str, object]]) -> str:
 
 def read_transcript(folder: Path) -> tuple[dict[str, Any], ...]:
     """Read what a language model was asked in one episode.
-
-    Args:
-        folder: Folder of the episode.
-
-    Returns:
-        One mapping a question; nothing if no model was asked.
 
     Raises:
         RunFolderError: If it is damaged or cannot be read.

@@ -11,13 +11,7 @@ from codriving.training.perceptron import perceptron
 
 
 class AttentionActor(nn.Module):
-    """One layer of attention over slots, then a perceptron (the same function as ``learning.attention.Attention``).
-
-    Args:
-        features: Numbers in the features.
-        hidden: Units of each hidden layer of the perceptron.
-        outputs: Number of actions.
-    """
+    """One layer of attention over slots, then a perceptron (the same function as ``learning.attention.Attention``)."""
 
     def __init__(self, features: int, hidden: tuple[int, ...], outputs: int) -> None:
         super().__init__()

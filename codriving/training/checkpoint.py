@@ -23,13 +23,7 @@ class Resumable(Protocol):
 
 
 def store(folder: Path, trainer: Resumable, more: dict[str, Any]) -> None:
-    """Write a checkpoint.
-
-    Args:
-        folder: Its folder; the one before is replaced.
-        trainer: The training, where it can be stopped.
-        more: What else is to be remembered, JSON-ready.
-    """
+    """Write a checkpoint."""
     with whole_folder(folder) as partial:
         state = trainer.write(partial)
         write_text(partial / STATE, json.dumps({"trainer": state, "more": more}))
@@ -37,13 +31,6 @@ def store(folder: Path, trainer: Resumable, more: dict[str, Any]) -> None:
 
 def recall(folder: Path, trainer: Resumable) -> dict[str, Any]:
     """Go on from a checkpoint.
-
-    Args:
-        folder: Its folder.
-        trainer: A training with the same settings, which takes its state.
-
-    Returns:
-        What else was remembered.
 
     Raises:
         TrainingError: If the checkpoint is damaged.

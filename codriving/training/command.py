@@ -28,11 +28,7 @@ def run_training(
     """Train a learner, or go on with a training that was stopped: ``codriving train``.
 
     Args:
-        learner: Its name.
-        family: Family of roads that it is trained for.
         overrides: ``key=value`` tokens; ``run`` and ``output`` name the folder.
-        smoke: Whether it is only a short test of the machinery.
-        config_dir: A folder of the user's own configs.
 
     Returns:
         Exit code: 0, or 130 if the user stopped it.
@@ -76,11 +72,6 @@ def run_training(
 
 def named(learner: str, family: str, config_dir: Path | None = None) -> str:
     """Return the name of the config of a training.
-
-    Args:
-        learner: What is trained.
-        family: Family of roads.
-        config_dir: A folder of the user's own configs.
 
     Raises:
         ConfigError: If there is no such learner or family.

@@ -12,11 +12,7 @@ SUCCESS, COLLISION, DURATION = "success", "collision", "duration"
 
 
 def curve_csv(rows: Sequence[Row]) -> str:
-    """Write the curve; the columns are those of the first row.
-
-    Args:
-        rows: At least one row.
-    """
+    """Write the curve; the columns are those of the first row."""
     text = io.StringIO()
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()
@@ -26,12 +22,7 @@ def curve_csv(rows: Sequence[Row]) -> str:
 
 
 def curve_png(rows: Sequence[Row], title: str) -> bytes:
-    """Draw the share of successful episodes against the decisions that were driven.
-
-    Args:
-        rows: At least one row.
-        title: What was trained.
-    """
+    """Draw the share of successful episodes against the decisions that were driven."""
     import matplotlib
     from matplotlib.figure import Figure
 

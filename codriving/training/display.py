@@ -15,8 +15,6 @@ class Display:
     """Tells how far a training is.
 
     Args:
-        name: What is trained.
-        total: Decisions of the whole training.
         stream: Where to; standard error if None.
     """
 
@@ -36,38 +34,22 @@ class Display:
         self._bar.stop()
 
     def advance(self, decisions: int) -> None:
-        """Tell how many decisions have been driven.
-
-        Args:
-            decisions: Decisions in all.
-        """
+        """Tell how many decisions have been driven."""
         self._done = decisions
         self._bar.update(self._task, completed=min(decisions, self._total))
 
     def note(self, text: str) -> None:
-        """Say something in a line of its own.
-
-        Args:
-            text: What.
-        """
+        """Say something in a line of its own."""
         self._console.print(text, markup=False)
 
     def validated(self, row: Mapping[str, Any]) -> None:
-        """Tell what a validation said.
-
-        Args:
-            row: Its row of the curve.
-        """
+        """Tell what a validation said."""
         self._bar.update(self._task, note=f"success {row['score']:.0%}")
         more = [f"{name} {row[name]:.4g}" for name in ("epsilon", "loss", "pull") if row.get(name) is not None]
         self.note(", ".join([f"{row['decisions']:>9} of {self._total} decisions", *more, _said(row)]))
 
     def final(self, row: Mapping[str, Any]) -> None:
-        """Tell what the last validation said of one state.
-
-        Args:
-            row: Its row.
-        """
+        """Tell what the last validation said of one state."""
         self.note(f"state after {row['decisions']} decisions, on further seeds: {_said(row)}")
 
 

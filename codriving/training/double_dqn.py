@@ -14,14 +14,7 @@ from codriving.training.replay import Batch
 
 
 class DoubleDqn:
-    """A network that judges actions, and its slow average, which judges what comes later and is what is kept.
-
-    Args:
-        sizes: Number of inputs, of units in each hidden layer, and of outputs.
-        average: Share of the network in its average at each update, 0 to 1.
-        clip: Largest norm of the gradient.
-        seed: Seed of the first weights.
-    """
+    """A network that judges actions, and its slow average, which judges what comes later and is what is kept."""
 
     def __init__(self, sizes: Sequence[int], average: float, clip: float, seed: int) -> None:
         torch.set_num_threads(1)
@@ -39,13 +32,6 @@ class DoubleDqn:
         """Learn from a batch.
 
         The network chooses the later action, its average judges it; Huber loss; the norm of the gradient is clipped.
-
-        Args:
-            batch: Transitions.
-            rate: Learning rate.
-
-        Returns:
-            The loss.
         """
         observations, later = torch.from_numpy(batch.observations), torch.from_numpy(batch.later)
         with torch.no_grad():
@@ -74,23 +60,14 @@ class DoubleDqn:
         }
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Go on with the state of another one.
-
-        Args:
-            state: Its state.
-        """
+        """Go on with the state of another one."""
         self.online.load_state_dict(state["online"])
         self.target.load_state_dict(state["target"])
         self._optimizer.load_state_dict(state["optimizer"])
 
 
 def as_numpy(module: nn.Sequential, live: bool) -> Network:
-    """Return a network as numpy computes it.
-
-    Args:
-        module: Linear layers with rectifiers between them.
-        live: Whether the result shares its memory with the module, and so learns with it.
-    """
+    """Return a network as numpy computes it."""
     layers = [layer for layer in module if isinstance(layer, nn.Linear)]
     weights = [layer.weight.detach().numpy().T for layer in layers]
     biases = [layer.bias.detach().numpy() for layer in layers]

@@ -27,16 +27,9 @@ class Moment:
     """One decision step of all agents on the road, and what it brought them; a row an agent.
 
     Attributes:
-        agents: Their ids.
         observations: What they observed (n, features).
         masks: What they were allowed (n, actions).
-        actions: What they did.
-        rewards: Rewards.
-        arrived: Ids of those who arrived.
-        failed: Ids of those who took part in a collision or left the road.
         ending: How the episode ended with this step; None if it goes on.
-        later: What those who are still on the road observe now, by id.
-        allowed: What they are allowed now, by id.
     """
 
     agents: list[str]
@@ -52,18 +45,7 @@ class Moment:
 
 
 def drive(env: "ParallelDriving", seed: int, features: Features, family: str, policy: Policy) -> Iterator[Moment]:
-    """Drive one episode.
-
-    Args:
-        env: The environment.
-        seed: Seed of the episode.
-        features: What is observed; for the road of the environment.
-        family: Family of the road, for the meaning of actions.
-        policy: Who decides.
-
-    Yields:
-        Step after step.
-    """
+    """Drive one episode."""
     numbers = [NUMBERS.index(action) for action in ACTIONS[family]]
     env.reset(seed=seed)
     features.reset()

@@ -18,14 +18,7 @@ from codriving.runs.lock import FolderLock
 
 @dataclass(frozen=True, slots=True)
 class TrainingFolder:
-    """Where a training is kept.
-
-    Attributes:
-        path: The folder.
-        command: The command that makes the same training from nothing.
-        fingerprint: What tells its config from all others.
-        best: File of the chosen weights; there once the training is finished.
-    """
+    """Where a training is kept."""
 
     path: Path
     command: str
@@ -38,35 +31,18 @@ class TrainingFolder:
         return self.path / "checkpoint"
 
     def state(self, decisions: int) -> Path:
-        """Return the file of the weights as they were validated after some decisions.
-
-        Args:
-            decisions: Decisions of single agents.
-        """
+        """Return the file of the weights as they were validated after some decisions."""
         return self.path / "states" / f"{decisions:09d}.safetensors"
 
 
 def fingerprint(config: Mapping[str, Any]) -> str:
-    """Reduce the config of a training to a short text that differs with every setting.
-
-    Args:
-        config: The config of plain values.
-    """
+    """Reduce the config of a training to a short text that differs with every setting."""
     return hashlib.sha256(json.dumps(config, sort_keys=True).encode()).hexdigest()[:16]
 
 
 @contextmanager
 def open_folder(path: Path, name: str, command: str, config: Mapping[str, Any]) -> Iterator[TrainingFolder]:
     """Make the folder of a training, or open it again.
-
-    Args:
-        path: The folder.
-        name: Name of the weights that come out of it.
-        command: The command that makes the same training.
-        config: Its config of plain values.
-
-    Yields:
-        The folder, which nobody else writes meanwhile.
 
     Raises:
         RunFolderError: If it cannot be written, or is of another training.
@@ -87,11 +63,7 @@ def open_folder(path: Path, name: str, command: str, config: Mapping[str, Any]) 
 
 
 class Stop:
-    """Whether the user wants a training to stop; the first Ctrl-C asks for it, the second one insists.
-
-    Attributes:
-        wanted: Whether it is wanted.
-    """
+    """Whether the user wants a training to stop; the first Ctrl-C asks for it, the second one insists."""
 
     def __init__(self) -> None:
         self.wanted = False

@@ -10,16 +10,7 @@ from codriving.methods.learned.features import Observation
 
 
 class Transition(NamedTuple):
-    """What the learning rule learns from.
-
-    Attributes:
-        observation: What was observed.
-        action: Number of the action that was taken.
-        gain: Discounted sum of the rewards of up to n steps.
-        discount: What the value of the last observation counts; 0 if the episode ended there for this agent.
-        later: Observation after these steps.
-        mask: Actions that are allowed then.
-    """
+    """What the learning rule learns from."""
 
     observation: Observation
     action: int
@@ -38,35 +29,18 @@ class _Step:
 
 
 class Trail:
-    """What one agent has gone through in the present episode.
-
-    Args:
-        steps: n, number of steps that a transition spans at most.
-        discount: Discount of one decision.
-    """
+    """What one agent has gone through in the present episode."""
 
     def __init__(self, steps: int, discount: float) -> None:
         self._n, self._discount = steps, discount
         self._steps: list[_Step] = []
 
     def add(self, observation: Observation, mask: NDArray[np.bool_], action: int, reward: float) -> None:
-        """Note one decision and what it brought.
-
-        Args:
-            observation: What was observed.
-            mask: Actions that were allowed.
-            action: Number of the one that was taken.
-            reward: Reward.
-        """
+        """Note one decision and what it brought."""
         self._steps.append(_Step(observation, mask, action, reward))
 
     def full(self, later: Observation, mask: NDArray[np.bool_]) -> list[Transition]:
-        """Return the transition that spans n steps up to now, if there are so many.
-
-        Args:
-            later: What is observed now.
-            mask: Actions that are allowed now.
-        """
+        """Return the transition that spans n steps up to now, if there are so many."""
         if len(self._steps) < self._n:
             return []
         found = self._sum(0, later, mask, ended=False)
@@ -80,12 +54,7 @@ class Trail:
         return found
 
     def cut(self, later: Observation, mask: NDArray[np.bool_]) -> list[Transition]:
-        """Return what is left of an agent whose episode was cut off by the time limit: it would have gone on.
-
-        Args:
-            later: What is observed now.
-            mask: Actions that are allowed now.
-        """
+        """Return what is left of an agent whose episode was cut off by the time limit: it would have gone on."""
         found = [self._sum(k, later, mask, ended=False) for k in range(len(self._steps))]
         self._steps = []
         return found

@@ -7,11 +7,7 @@ from torch import nn
 
 
 def perceptron(sizes: Sequence[int]) -> nn.Sequential:
-    """Return a multilayer perceptron.
-
-    Args:
-        sizes: Number of inputs, of units in each hidden layer, and of outputs.
-    """
+    """Return a multilayer perceptron."""
     layers: list[nn.Module] = []
     for inputs, outputs in pairwise(sizes):
         layers += [nn.Linear(inputs, outputs), nn.ReLU()]

@@ -22,13 +22,6 @@ class DriverPolicy(ActorCriticPolicy):
     Stable-Baselines3 adds to its loss what ``evaluate_actions`` returns as entropy, times a coefficient. The divergence
     from the teacher enters by the same door: entropy - pull KL(teacher || policy), with the pull in units of that
     coefficient. So the loss is that of PPO plus beta KL (TeLL, Xu et al., 2025).
-
-    Args:
-        *args: As Stable-Baselines3 gives them.
-        features: Numbers in the features.
-        hidden: Units of each hidden layer.
-        attends: Whether the actor attends to others one by one.
-        **kwargs: As Stable-Baselines3 gives them.
     """
 
     def __init__(self, *args: Any, features: int, hidden: tuple[int, ...], attends: bool, **kwargs: Any) -> None:  # noqa: ANN401
@@ -62,7 +55,6 @@ class DriverPolicy(ActorCriticPolicy):
 
         Args:
             obs: Observations (n, features + 2 actions).
-            deterministic: Whether the likeliest action is taken.
         """
         logs = self._logs(obs)
         actions = logs.argmax(1) if deterministic else torch.multinomial(logs.exp(), 1).squeeze(1)

@@ -32,13 +32,7 @@ class Batch:
 
 
 class Replay:
-    """A ring of transitions; the oldest is overwritten first.
-
-    Args:
-        capacity: Number of transitions that it holds.
-        features: Numbers in an observation.
-        actions: Number of actions.
-    """
+    """A ring of transitions; the oldest is overwritten first."""
 
     def __init__(self, capacity: int, features: int, actions: int) -> None:
         self.capacity = capacity
@@ -56,11 +50,7 @@ class Replay:
         return min(self.added, self.capacity)
 
     def add(self, transition: Transition) -> None:
-        """Take one in.
-
-        Args:
-            transition: The transition.
-        """
+        """Take one in."""
         k = self.added % self.capacity
         values: tuple[Any, ...] = transition
         for column, value in zip(self._columns.values(), values, strict=True):
@@ -68,12 +58,7 @@ class Replay:
         self.added += 1
 
     def draw(self, size: int, rng: np.random.Generator) -> Batch:
-        """Draw a batch; a transition may be in it twice.
-
-        Args:
-            size: Number of transitions.
-            rng: Generator.
-        """
+        """Draw a batch; a transition may be in it twice."""
         chosen = rng.integers(len(self), size=size)
         return Batch(**{name: column[chosen] for name, column in self._columns.items()})  # type: ignore[arg-type]
 
@@ -83,11 +68,7 @@ class Replay:
         return {**filled, "added": np.array(self.added)}
 
     def restore(self, state: dict[str, NDArray[np.generic]]) -> None:
-        """Go on with what another one held.
-
-        Args:
-            state: Its state.
-        """
+        """Go on with what another one held."""
         self.added = int(state["added"])
         for name, column in self._columns.items():
             column[: len(self)] = state[name]

@@ -33,15 +33,6 @@ FINAL_SEEDS = 100_000
 def train(settings: Settings, folder: TrainingFolder, display: Display, stop: Stop) -> Path:
     """Train, validate and choose.
 
-    Args:
-        settings: How.
-        folder: Where to.
-        display: Who is told how far it is.
-        stop: Asked now and then whether the user wants to stop.
-
-    Returns:
-        The file of the chosen weights.
-
     Raises:
         TrainingError: If a checkpoint is damaged.
         KeyboardInterrupt: If it was stopped; the checkpoint is written.

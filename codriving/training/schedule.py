@@ -9,11 +9,6 @@ from codriving.errors import ConfigError
 class Linear:
     """A number that goes from one value to another in a straight line, and then stays.
 
-    Attributes:
-        start: Value at the beginning.
-        end: Value at the end.
-        over: Number of decisions of single agents over which it changes, counted from the beginning of the training.
-
     Raises:
         ConfigError: If ``over`` is not positive.
     """
@@ -27,10 +22,6 @@ class Linear:
             raise ConfigError(f"over must be 1 or more, got {self.over}")
 
     def at(self, decisions: int) -> float:
-        """Return the value after some decisions.
-
-        Args:
-            decisions: Decisions so far, in all episodes together.
-        """
+        """Return the value after some decisions."""
         share = min(max(decisions, 0) / self.over, 1.0)
         return self.start + share * (self.end - self.start)

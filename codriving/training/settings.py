@@ -25,27 +25,6 @@ class MadqnSettings:
 
     Attributes:
         family: ``junction`` or ``lanes``.
-        seed: Seed of weights, exploration and episodes.
-        decisions: Decisions of single agents after which the training ends.
-        hidden: Units of each hidden layer.
-        steps: Steps that a transition spans at most.
-        discount: Discount of one decision, 0 to 1.
-        capacity: Transitions that are kept.
-        warm_up: Transitions before the first update.
-        batch: Transitions an update.
-        every: Transitions between two updates.
-        average: Share of the network that enters its slow average at each update.
-        clip: Largest norm of the gradient.
-        rate: Learning rate.
-        exploration: Share of decisions that are drawn.
-        faster: How much more often an exploring agent draws FASTER than each other action.
-        reward: Weights of the reward.
-        traffic: What is driven.
-        exams: What is validated.
-        exam_every: Decisions between two validations.
-        exam_seed: First seed of a validation; each exam has its own range from it on.
-        finalists: Best states that are validated once more, on further seeds.
-        final_episodes: Episodes of each exam then.
 
     Raises:
         ConfigError: If a value is out of range.

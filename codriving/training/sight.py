@@ -20,8 +20,6 @@ class Sight:
     of a step.
 
     Args:
-        road_map: The precomputed road.
-        model: How CAVs answer to actions.
         family: ``junction`` or ``lanes``.
         teacher: Who gives advice; None for nobody.
     """
@@ -36,11 +34,7 @@ class Sight:
         return self._nothing.copy()
 
     def observe(self, world: WorldState) -> dict[str, FloatArray]:
-        """Return what each CAV on the road is handed.
-
-        Args:
-            world: The world; call once a decision, from the beginning of an episode.
-        """
+        """Return what each CAV on the road is handed."""
         if world.step == 0:
             self._features.reset()
         advice = {} if self._teacher is None else self._teacher.advise(world)

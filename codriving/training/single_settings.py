@@ -25,13 +25,6 @@ LEARNERS = ("ppo", "tell")
 class SingleTraffic:
     """One kind of traffic, in which a single CAV is left and all others are human drivers.
 
-    Attributes:
-        scenario: Name of the scenario.
-        cavs: Number of CAVs of the scenario, of which one is left.
-        hdvs: Smallest and largest number of human drivers besides.
-        copies: How many of the environments, which are driven at once, are of this kind.
-        settings: Further keys of the scenario.
-
     Raises:
         ConfigError: If there are no copies.
     """
@@ -49,11 +42,6 @@ class SingleTraffic:
     def environment(self, eyes: "EyesOf", family: str, reward: RewardWeights) -> "SingleDriving":
         """Return an environment of this kind.
 
-        Args:
-            eyes: What the CAV observes.
-            family: Family of the road, for the meaning of actions.
-            reward: What is rewarded.
-
         Raises:
             ConfigError: If the scenario refuses a setting.
         """
@@ -70,26 +58,8 @@ class SingleSettings:
     Attributes:
         learner: ``ppo`` or ``tell``.
         family: ``junction`` or ``lanes``.
-        seed: Seed of weights, exploration and episodes.
-        decisions: Decisions after which the training ends.
         form: Kind of the actor, ``perceptron`` or ``attention``.
-        hidden: Units of each hidden layer.
-        rollout: Decisions of each environment between two updates.
-        batch: Decisions a gradient step.
-        epochs: How often each decision is learned from.
-        discount: Discount of one decision, 0 to 1.
-        trace: Weight of longer returns in advantages (lambda), 0 to 1.
-        clip: How far the probability of an action may move in an update.
-        entropy: Weight of the policy's entropy in the loss, above 0.
-        rate: Learning rate of Adam.
         guidance: Who teaches; None for nobody.
-        reward: Weights of the reward.
-        traffic: What is driven.
-        exams: What is validated: the same policy on every CAV.
-        exam_every: Decisions between two validations.
-        exam_seed: First seed of a validation; each exam has its own range from it on.
-        finalists: Best states that are validated once more, on further seeds.
-        final_episodes: Episodes of each exam then.
 
     Raises:
         ConfigError: If a value is out of range.

@@ -27,16 +27,7 @@ TRIES = 100
 
 
 class SingleTrainer:
-    """Trains a policy; every rollout begins with new episodes and its own seed, so that it can go on from any of them.
-
-    Args:
-        settings: How.
-
-    Attributes:
-        settings: How.
-        decisions: Decisions so far.
-        rollouts: Rollouts so far.
-    """
+    """Trains a policy; every rollout begins with new episodes and its own seed, so training resumes at any rollout."""
 
     def __init__(self, settings: SingleSettings) -> None:
         torch.set_num_threads(1)
@@ -118,23 +109,14 @@ class SingleTrainer:
         return row
 
     def write(self, folder: Path) -> dict[str, Any]:
-        """Write the networks, and return what else the training goes on from.
-
-        Args:
-            folder: Where to.
-        """
+        """Write the networks, and return what else the training goes on from."""
         torch.save(
             {"policy": self._policy.state_dict(), "optimizer": self._policy.optimizer.state_dict()}, folder / NETWORK
         )
         return {"decisions": self.decisions, "rollouts": self.rollouts, "endings": list(map(str, self._endings.found))}
 
     def read(self, folder: Path, state: dict[str, Any]) -> None:
-        """Go on from what another one has written.
-
-        Args:
-            folder: Where to.
-            state: What it returned.
-        """
+        """Go on from what another one has written."""
         held = torch.load(folder / NETWORK, weights_only=True)
         self.decisions, self.rollouts = int(state["decisions"]), int(state["rollouts"])
         self._endings.found = [Ending(ending) for ending in state["endings"]]

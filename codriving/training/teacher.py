@@ -28,12 +28,7 @@ class Teacher(Protocol):
     """Says what it would do."""
 
     def advise(self, world: WorldState) -> Mapping[str, Action]:
-        """Return what CAVs should do, by id; nothing where it is not asked.
-
-        Args:
-            world: The world, of which each CAV sees its own part; call once a decision, from the beginning of an
-                episode.
-        """
+        """Return what CAVs should do, by id; nothing where it is not asked."""
         ...
 
 
@@ -43,9 +38,6 @@ class Guidance:
 
     Attributes:
         llm: Who teaches: a language model, or ``offline`` for the driver below.
-        driver: The rule that judges every action; it decides where no model is asked, and tells a model what it found.
-        every: A teacher is asked at every so many decisions of an episode.
-        pull: Weight of the divergence from the teacher in the loss, by decisions.
 
     Raises:
         ConfigError: If a value is out of range.
@@ -63,26 +55,12 @@ class Guidance:
             raise ConfigError(f"pull must be 0 or more, got {self.pull.start:g} to {self.pull.end:g}")
 
     def teacher(self, road_map: RoadMap, model: DrivingModel) -> "Advisor":
-        """Return a teacher for one of the environments.
-
-        Args:
-            road_map: Its road, precomputed.
-            model: How CAVs answer to actions.
-        """
+        """Return a teacher for one of the environments."""
         return Advisor(self, road_map, model)
 
 
 class Advisor:
-    """Decides for a CAV as a driver who is on its own would: by a rule, or by what a model says.
-
-    Args:
-        guidance: Who is asked, and how often.
-        road_map: The precomputed road.
-        model: How CAVs answer to actions.
-
-    Attributes:
-        asks: Whether advice is still wanted; nobody is asked once it has no weight.
-    """
+    """Decides for a CAV as a driver who is on its own would: by a rule, or by what a model says."""
 
     def __init__(self, guidance: Guidance, road_map: RoadMap, model: DrivingModel) -> None:
         # Drivers remember their CAVs by name, which is the same in all environments.
@@ -93,9 +71,6 @@ class Advisor:
 
     def advise(self, world: WorldState) -> Mapping[str, Action]:
         """Return what CAVs should do, by id.
-
-        Args:
-            world: The world; call once a decision, from the beginning of an episode.
 
         Raises:
             ModelUnavailableError: If a model is asked and does not answer.

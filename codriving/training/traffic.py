@@ -15,14 +15,6 @@ if TYPE_CHECKING:
 class Traffic:
     """One kind of traffic; each number of CAVs is an environment of its own.
 
-    Attributes:
-        scenario: Name of the scenario.
-        cavs: Smallest and largest number of CAVs.
-        hdvs: Smallest and largest number of human drivers.
-        weight: How often it is driven in proportion to the others; at least 0.
-        since: Share of the training from which on it is driven, 0 to 1.
-        settings: Further keys of the scenario, for instance wider ranges of start speeds.
-
     Raises:
         ConfigError: If a value is out of range.
     """
@@ -45,9 +37,6 @@ class Traffic:
     def environments(self, reward: RewardWeights) -> "tuple[ParallelDriving, ...]":
         """Return an environment for each number of CAVs.
 
-        Args:
-            reward: What is rewarded.
-
         Raises:
             ConfigError: If the scenario refuses a setting.
         """
@@ -59,11 +48,6 @@ class Traffic:
 
 
 def shares(kinds: tuple[Traffic, ...], progress: float) -> list[float]:
-    """Return how often each kind of traffic is driven at a moment of the training; the sum is 1.
-
-    Args:
-        kinds: Kinds of traffic, of which at least one is driven from the beginning.
-        progress: Share of the training that is done, 0 to 1.
-    """
+    """Return how often each kind of traffic is driven at a moment of the training; the sum is 1."""
     weights = [kind.weight if progress >= kind.since else 0.0 for kind in kinds]
     return [weight / sum(weights) for weight in weights]

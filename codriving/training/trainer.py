@@ -27,18 +27,7 @@ NETWORK, REPLAY = "network.pt", "replay.npz"
 
 @dataclass(slots=True)
 class Counts:
-    """How far a training is.
-
-    Attributes:
-        decisions: Decisions of single agents.
-        episodes: Episodes.
-        updates: Updates of the network.
-        waiting: Transitions since the last update.
-        losses: Sum of the losses since the last validation.
-        learned: Updates since then.
-        driven: Episodes since then.
-        arrived: Successful ones among them.
-    """
+    """How far a training is."""
 
     decisions: int = 0
     episodes: int = 0
@@ -55,18 +44,7 @@ class Counts:
 
 
 class Trainer:
-    """Trains a network; all that it draws comes from one seeded generator.
-
-    Args:
-        settings: How.
-
-    Attributes:
-        settings: How.
-        counts: How far it is.
-        learner: The network.
-        replay: The last transitions.
-        rng: The generator.
-    """
+    """Trains a network; all that it draws comes from one seeded generator."""
 
     def __init__(self, settings: MadqnSettings) -> None:
         self.settings, self.counts = settings, Counts()
@@ -152,23 +130,14 @@ class Trainer:
         return row
 
     def write(self, folder: Path) -> dict[str, Any]:
-        """Write the network and the replay, and return what else the training goes on from.
-
-        Args:
-            folder: Where to.
-        """
+        """Write the network and the replay, and return what else the training goes on from."""
         torch.save(self.learner.state(), folder / NETWORK)
         np.savez(folder / REPLAY, **self.replay.state())  # type: ignore[arg-type]
         counts = {name: getattr(self.counts, name) for name in self.counts.__slots__}
         return {"counts": counts, "rng": self.rng.bit_generator.state}
 
     def read(self, folder: Path, state: dict[str, Any]) -> None:
-        """Go on from what another one has written.
-
-        Args:
-            folder: Where to.
-            state: What it returned.
-        """
+        """Go on from what another one has written."""
         self.learner.restore(torch.load(folder / NETWORK, weights_only=True))
         with np.load(folder / REPLAY, allow_pickle=False) as replay:
             self.replay.restore(dict(replay))
@@ -181,15 +150,6 @@ def remember(moment: Moment, trails: dict[str, Trail], steps: int, discount: flo
 
     Who has arrived or crashed has nothing to come. At the time limit everybody else would have gone on. When others
     crash, the last step of who had no part in it is dropped.
-
-    Args:
-        moment: The step.
-        trails: What each agent has gone through, by id.
-        steps: Steps that a transition spans at most.
-        discount: Discount of one decision.
-
-    Yields:
-        Transitions.
     """
     for k, name in enumerate(moment.agents):
         trail = trails.setdefault(name, Trail(steps, discount))

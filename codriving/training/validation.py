@@ -20,14 +20,6 @@ if TYPE_CHECKING:
 class Exam:
     """One kind of traffic that is validated.
 
-    Attributes:
-        name: Its column in the curve.
-        scenario: Name of the scenario.
-        cavs: Number of CAVs.
-        hdvs: Smallest and largest number of human drivers.
-        episodes: Episodes a validation.
-        settings: Further keys of the scenario.
-
     Raises:
         ConfigError: If the number of episodes is not positive.
     """
@@ -60,8 +52,6 @@ class Grade:
     """The result of an exam.
 
     Attributes:
-        success: Share of episodes in which all CAVs arrived.
-        collision: Share that ended in a collision.
         duration: Mean duration of the successful ones [s]; None without any.
     """
 
@@ -71,16 +61,7 @@ class Grade:
 
 
 def examine(exam: Exam, network: AnyNetwork, family: str, shared: bool, first_seed: int, episodes: int) -> Grade:
-    """Drive an exam greedily.
-
-    Args:
-        exam: What is driven.
-        network: Who decides.
-        family: Family of the road.
-        shared: Whether CAVs share states and intents.
-        first_seed: Seed of the first episode; the others follow it one by one.
-        episodes: Number of episodes.
-    """
+    """Drive an exam greedily."""
     env = exam.environment
     features = features_of(env, family, shared)
     endings, durations = [], []
@@ -100,20 +81,10 @@ def examine(exam: Exam, network: AnyNetwork, family: str, shared: bool, first_se
 
 
 def features_of(env: "ParallelDriving", family: str, shared: bool) -> Features:
-    """Return what agents observe of an environment.
-
-    Args:
-        env: The environment.
-        family: Family of its road.
-        shared: Whether they share states and intents.
-    """
+    """Return what agents observe of an environment."""
     return Features(env.environment.road_map, env.environment.driving_model, family, shared)
 
 
 def overall(grades: Sequence[Grade]) -> float:
-    """Return the mean success of all exams, each counting the same.
-
-    Args:
-        grades: Their results.
-    """
+    """Return the mean success of all exams, each counting the same."""
     return sum(grade.success for grade in grades) / len(grades)

@@ -16,8 +16,6 @@ class Crowd:
     """How many CAVs and human drivers there are, and how they start.
 
     Attributes:
-        cavs: Number of CAVs.
-        hdvs: Smallest and largest number of HDVs; the number is drawn from the seed.
         start: Nearest and farthest start along a route [m].
         cav_speed: Lowest and highest start speed of CAVs [m/s].
         hdv_speed: Lowest and highest start speed of HDVs, which is also the speed they want [m/s].
@@ -35,10 +33,7 @@ class Crowd:
         """Refuse what is out of range.
 
         Args:
-            cavs: Largest number of CAVs; the smallest is 2.
-            hdvs: Largest number of HDVs.
             latest: Farthest start allowed [m].
-            why: Why not farther, in words.
             speed_limit: Speed limit where they start [m/s].
 
         Raises:
@@ -61,10 +56,7 @@ class Crowd:
         """Refuse more vehicles than can start, even if all draws fall as they should.
 
         Args:
-            lanes: Number of lanes on which they start.
             where: The lanes in words, for instance ``4 legs``.
-            cavs: How many of the CAVs start there; all if not given.
-            hdvs: How many of the HDVs start there at most; all if not given.
 
         Raises:
             ScenarioError: If there is not enough room.
@@ -88,10 +80,6 @@ class Crowd:
         """Draw place and speed of one vehicle.
 
         Args:
-            rng: Where randomness comes from.
-            name: Name of the vehicle.
-            kind: CAV or HDV.
-            route: Id of its route.
             between: Nearest and farthest start along the route, if not ``start`` [m].
         """
         position = float(rng.uniform(*(between or self.start)))

@@ -31,9 +31,6 @@ def leaves_room(
     """Whether a start keeps its distance from the others on the same lane.
 
     Args:
-        start: The candidate.
-        others: Starts already placed.
-        spot: Tells where a start stands.
         spacing: Smallest distance between two centres [m].
         loops: Length of each lane that runs in a circle [m].
     """

@@ -28,9 +28,6 @@ class Highway:
     """Several CAVs and human drivers on parallel lanes; everybody may change lanes.
 
     Args:
-        cavs: Number of CAVs, 2 to 10.
-        hdvs: Smallest and largest number of HDVs; the number is drawn from the seed.
-        lanes: Number of lanes, 1 to 6.
         finish: Distance after which a vehicle has arrived [m].
         start: Nearest and farthest start along a lane [m].
         cav_speed: Lowest and highest start speed of CAVs [m/s].
@@ -86,9 +83,6 @@ class Highway:
 
     def scene(self, seed: int) -> Scene:
         """Draw lane, place and speed of every vehicle.
-
-        Args:
-            seed: Seed of the episode.
 
         Raises:
             ScenarioError: If the vehicles do not fit.

@@ -91,8 +91,6 @@ class Intersection:
     """Several CAVs among human drivers, each with a random leg, destination, place and speed.
 
     Args:
-        cavs: Number of CAVs, 2 to 12.
-        hdvs: Smallest and largest number of HDVs; the number is drawn from the seed.
         leg_length: Length of each leg before the junction [m].
         start: Nearest and farthest start along a leg [m].
         cav_speed: Lowest and highest start speed of CAVs [m/s].
@@ -144,9 +142,6 @@ class Intersection:
 
     def scene(self, seed: int) -> Scene:
         """Draw leg, destination, place and speed of every vehicle.
-
-        Args:
-            seed: Seed of the episode.
 
         Raises:
             ScenarioError: If the vehicles do not fit on the legs.

@@ -30,10 +30,6 @@ class Merge:
     """Several CAVs on the main road and on the ramp, among human drivers.
 
     Args:
-        cavs: Number of CAVs, 2 to 10; the second half of them starts on the ramp.
-        hdvs: Smallest and largest number of HDVs; the number is drawn from the seed.
-        ramp_hdvs: Share of HDVs that start on the ramp, 0 to 1.
-        lanes: Number of main lanes, 1 to 4.
         before: Length of the road before the ramp begins to converge [m].
         converge: Length over which it converges [m].
         parallel: Length of the ramp lane beside the main road [m].
@@ -135,9 +131,6 @@ class Merge:
 
     def scene(self, seed: int) -> Scene:
         """Draw lane, place and speed of every vehicle.
-
-        Args:
-            seed: Seed of the episode.
 
         Raises:
             ScenarioError: If the vehicles do not fit.

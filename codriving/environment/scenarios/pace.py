@@ -12,10 +12,6 @@ TOP_SPEED = 40.0
 def require(condition: bool, message: str) -> None:
     """Refuse a setting.
 
-    Args:
-        condition: What must hold.
-        message: Which setting, the rule, and the value given.
-
     Raises:
         ConfigError: If the condition does not hold.
     """
@@ -26,13 +22,6 @@ def require(condition: bool, message: str) -> None:
 def require_range(name: str, value: float, low: float, high: float, unit: str = "") -> None:
     """Refuse a number outside its range.
 
-    Args:
-        name: Setting.
-        value: Value given.
-        low: Smallest allowed value.
-        high: Largest allowed value.
-        unit: Unit for the message, with a leading space.
-
     Raises:
         ConfigError: If the value is outside [low, high] or not a number.
     """
@@ -41,13 +30,6 @@ def require_range(name: str, value: float, low: float, high: float, unit: str = 
 
 def require_interval(name: str, value: tuple[float, float], low: float, high: float, unit: str = "") -> None:
     """Refuse an interval that is reversed or leaves its range.
-
-    Args:
-        name: Setting.
-        value: Smallest and largest value.
-        low: Smallest allowed value.
-        high: Largest allowed value.
-        unit: Unit for the message, with a leading space.
 
     Raises:
         ConfigError: If the rule is broken.

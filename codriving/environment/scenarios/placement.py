@@ -29,11 +29,6 @@ def place(
     """Draw a whole scene.
 
     Args:
-        seed: Seed of the episode.
-        crowd: How many vehicles, and how far apart.
-        road: The road.
-        draw: Draws one vehicle.
-        spot: Tells where a start stands; if not given, on the first lane of its route.
         loops: Length of each lane that runs in a circle [m].
 
     Raises:

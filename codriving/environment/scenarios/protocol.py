@@ -28,9 +28,6 @@ class Scenario(Protocol):
     def scene(self, seed: int) -> Scene:
         """Draw who starts where, how fast, and with which destination.
 
-        Args:
-            seed: Seed of the episode; the same seed gives the same scene on every machine.
-
         Raises:
             ScenarioError: If the vehicles cannot be placed.
         """

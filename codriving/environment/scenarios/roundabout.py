@@ -111,11 +111,7 @@ class Ring:
         return tuple(routes)
 
     def on_ring(self, steps: int) -> float:
-        """Return how far a route drives on the ring [m].
-
-        Args:
-            steps: Legs that it passes until it leaves, the last one included.
-        """
+        """Return how far a route drives on the ring [m]."""
         return self.radius * (steps * math.pi / 2 - (math.pi - 2 * self.touch))
 
     def _arc(self, start: float, end: float) -> Arc:
@@ -126,9 +122,6 @@ class Roundabout:
     """Several CAVs among human drivers, some of whom are on the ring already.
 
     Args:
-        cavs: Number of CAVs, 2 to 12.
-        hdvs: Smallest and largest number of HDVs; the number is drawn from the seed.
-        on_ring: Share of HDVs that start on the ring, 0 to 1.
         radius: Radius of the centre line of the ring [m].
         entry_radius: Radius of the arcs between the legs and the ring [m].
         leg_length: Length of the straight part of each leg [m].
@@ -193,9 +186,6 @@ class Roundabout:
 
     def scene(self, seed: int) -> Scene:
         """Draw leg, destination, place and speed of every vehicle, and who is on the ring already.
-
-        Args:
-            seed: Seed of the episode.
 
         Raises:
             ScenarioError: If the vehicles do not fit.

@@ -19,8 +19,6 @@ def body_ahead(driver: OnWay, others: Sequence[RoadObject], sight: float) -> tup
     """Find the nearest body on the route of a driver.
 
     Args:
-        driver: The driver.
-        others: Bodies on the road, vehicles and obstacles; the driver may be among them.
         sight: How far the driver looks [m].
 
     Returns:

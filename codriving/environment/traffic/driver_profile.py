@@ -18,7 +18,6 @@ class DriverProfile:
         jam_distance: Distance between the centres of two standing cars [m].
         headway: Desired time gap [s].
         sight: How far ahead along the route a driver looks for bodies [m].
-        politeness: MOBIL's politeness p, 0 to 1.
         gain_threshold: MOBIL's smallest gain for a lane change [m/s2].
         safe_braking: MOBIL's hardest braking imposed on the new follower [m/s2].
 
@@ -57,7 +56,6 @@ class DriverProfile:
         """Set the parameters.
 
         Args:
-            driver: The driver.
             to_class: Set them on the class instead, as highway-env's intersection does (a fault kept for comparison).
         """
         target = type(driver) if to_class else driver

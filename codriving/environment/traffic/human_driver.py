@@ -39,15 +39,7 @@ class HumanDriver(OnWay, IDMVehicle):
     def start(
         cls, road: Road, start: Start, ways: Mapping[str, Way], profile: DriverProfile, corrections: Corrections
     ) -> "HumanDriver":
-        """Put a human driver on the road; the start speed is the speed that the driver wants.
-
-        Args:
-            road: The road of highway-env.
-            start: Where it starts.
-            ways: Every route of the road, laid out, by id.
-            profile: Parameters of IDM and MOBIL.
-            corrections: Which faults of the simulator are corrected.
-        """
+        """Put a human driver on the road; the start speed is the speed that the driver wants."""
         way = ways[start.route]
         x, y = way.path.position(start.position)
         heading = float(way.path.heading(start.position))
@@ -59,11 +51,7 @@ class HumanDriver(OnWay, IDMVehicle):
         return driver
 
     def act(self, action: dict[str, float] | str | None = None) -> None:
-        """Steer along the route and follow whoever is ahead on it.
-
-        Args:
-            action: Ignored; a driver decides alone.
-        """
+        """Steer along the route and follow whoever is ahead on it."""
         if not self.corrections.route_leader or self.crashed:
             super().act(action)
             return
@@ -110,11 +98,7 @@ class HumanDriver(OnWay, IDMVehicle):
         return acceleration
 
     def gap_behind(self, leader: RoadObject) -> float:
-        """Return the gap that the driver wants behind a body, by how fast it is coming closer [m].
-
-        Args:
-            leader: The body.
-        """
+        """Return the gap that the driver wants behind a body, by how fast it is coming closer [m]."""
         cos, sin = float(np.cos(self.heading)), float(np.sin(self.heading))
         x = self.speed * cos - leader.speed * float(np.cos(leader.heading))
         y = self.speed * sin - leader.speed * float(np.sin(leader.heading))

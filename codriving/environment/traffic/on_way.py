@@ -17,13 +17,9 @@ class OnWay(PlainMotion):
     """Mixin over highway-env's controlled vehicles.
 
     Attributes:
-        id: Name of the vehicle, unique in the episode.
-        way: The route that it follows, laid out.
         s: Arc length along the way [m].
         offset: Lateral offset from the way [m].
         shift: Lateral offset of the present lane's centre from the way [m]; 0 on the lane of the way itself.
-        ways: Every route of the road, laid out, by id.
-        corrections: Which faults of the simulator are corrected.
     """
 
     id: str
@@ -35,13 +31,7 @@ class OnWay(PlainMotion):
     corrections: Corrections
 
     def take_way(self, start: Start, ways: Mapping[str, Way], corrections: Corrections) -> None:
-        """Put the vehicle on its way; call once after construction.
-
-        Args:
-            start: Its id, its route and where it starts.
-            ways: Every route of the road, laid out, by id.
-            corrections: Which faults of the simulator are corrected.
-        """
+        """Put the vehicle on its way; call once after construction."""
         self.id, self.ways, self.corrections = start.id, ways, corrections
         self.way, self.s, self.offset = ways[start.route], start.position, 0.0
         self._plan()
@@ -117,10 +107,6 @@ class OnWay(PlainMotion):
 
     def lane_distance_to(self, other: RoadObject | None, lane: AbstractLane | None = None) -> float:
         """Return the signed distance to another vehicle, along the way where that is corrected.
-
-        Args:
-            other: The other vehicle.
-            lane: Lane to measure along, instead of the own one.
 
         Returns:
             Distance between the centres, positive if the other is ahead [m].

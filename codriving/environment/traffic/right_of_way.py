@@ -36,11 +36,6 @@ def will_meet(road_map: RoadMap, one: OnWay, other: OnWay) -> bool:
     Vehicles that merely follow one another are left to the car-following model. A CAV is expected to keep its speed. A
     human driver may also speed up: whoever has braked to wait would else be let go for its low speed, speed up, and be
     in the way when it is too late to wait.
-
-    Args:
-        road_map: The precomputed road.
-        one: A vehicle.
-        other: Another vehicle.
     """
     return meet(road_map, one, other, motions(one), motions(other))
 
@@ -49,11 +44,7 @@ def meet(road_map: RoadMap, one: OnWay, other: OnWay, ones: Array, others: Array
     """Whether two vehicles would be in a conflict zone together, by where each may be soon.
 
     Args:
-        road_map: The precomputed road.
-        one: A vehicle.
-        other: Another vehicle.
         ones: The first one's ``motions``, handed over because they are the same against everybody.
-        others: Those of the other.
     """
     reach_one, reach_other = ones[-1, -1] + GRID, others[-1, -1] + GRID
     for zone in road_map.zones(one.way.route.id, other.way.route.id):
@@ -69,9 +60,6 @@ def meet(road_map: RoadMap, one: OnWay, other: OnWay, ones: Array, others: Array
 
 def motions(vehicle: OnWay) -> Array:
     """Where a vehicle may be on its route at the times of the horizon.
-
-    Args:
-        vehicle: A vehicle.
 
     Returns:
         Arc lengths at constant speed; for a human driver, in a second row, those of speeding up to the speed that it
@@ -89,9 +77,6 @@ def motions(vehicle: OnWay) -> Array:
 def pace(vehicle: OnWay) -> float:
     """Speed at which a vehicle is expected to go on: a driver who creeps or stands means to start.
 
-    Args:
-        vehicle: A vehicle.
-
     Returns:
         Speed [m/s].
     """
@@ -99,22 +84,13 @@ def pace(vehicle: OnWay) -> float:
 
 
 def can_wait(driver: OnWay) -> bool:
-    """Whether a driver can still stop before the junction, its front over the line by a metre at most.
-
-    Args:
-        driver: A human driver.
-    """
+    """Whether a driver can still stop before the junction, its front over the line by a metre at most."""
     room = driver.way.route.entry + OVERSHOOT - driver.s - driver.LENGTH / 2
     return bool(room > 0 and driver.speed**2 / (2 * driver.ACC_MAX) <= room)
 
 
 def occupied_ahead(road_map: RoadMap, driver: OnWay, others: Iterable[OnWay]) -> float | None:
     """Find the nearest conflict zone on a driver's way that somebody is in, if the driver can still stop before it.
-
-    Args:
-        road_map: The precomputed road.
-        driver: A human driver.
-        others: Vehicles on the road; the driver may be among them.
 
     Returns:
         Arc length of the driver's centre at which it must stand [m], or None.

@@ -24,14 +24,7 @@ ATTENTION = 5
 
 
 class Traffic(RegulatedRoad):
-    """All bodies on the road, and the rules that human drivers obey.
-
-    Args:
-        network: The road network of highway-env.
-        np_random: Generator of the drivers' individual differences.
-        road_map: The precomputed road.
-        corrections: Which faults of the simulator are corrected.
-    """
+    """All bodies on the road, and the rules that human drivers obey."""
 
     def __init__(
         self, network: RoadNetwork, np_random: np.random.Generator, road_map: RoadMap, corrections: Corrections
@@ -98,12 +91,7 @@ class Traffic(RegulatedRoad):
                     vehicle.waits_at = place + vehicle.DISTANCE_WANTED - vehicle.LENGTH / 2
 
     def is_conflict_possible(self, v1: OnWay, v2: OnWay) -> bool:
-        """Whether two vehicles would meet within three seconds at constant speed, along their routes if corrected.
-
-        Args:
-            v1: A vehicle.
-            v2: Another vehicle.
-        """
+        """Whether two vehicles would meet within three seconds at constant speed, along their routes if corrected."""
         if self.corrections.route_prediction:
             return will_meet(self.road_map, v1, v2)
         return bool(RegulatedRoad.is_conflict_possible(v1, v2))
@@ -112,10 +100,6 @@ class Traffic(RegulatedRoad):
         self, vehicle: Vehicle, lane_index: LaneIndex | None = None
     ) -> tuple[RoadObject | None, RoadObject | None]:
         """Find the vehicles ahead and behind on a lane and on the lanes physically connected to it.
-
-        Args:
-            vehicle: The vehicle whose neighbours are looked for.
-            lane_index: The lane to look on, instead of its own.
 
         Returns:
             The one ahead and the one behind, None where there is none.

@@ -28,15 +28,12 @@ class Way:
     """A route, its centre line, and where each of its lanes begins.
 
     Attributes:
-        route: The route.
-        path: Its centre line.
         starts: Arc length at which each lane of the route begins [m].
         x: The points of the centre line (n,) [m].
         y: The same (n,) [m].
         points: The same one by one, which is faster for a few of them [m].
         headings: Heading at each point [rad].
         spacing: Arc length between two points [m].
-        cells: Squares of the plane near some point of the centre line.
         lane_end: Arc length at which a lane ends that has to be left before [m]; inf if there is none.
         ending: That lane, or None.
     """
@@ -130,10 +127,6 @@ def _square(point: tuple[float, float], x: float, y: float) -> float:
 
 def way(road_map: RoadMap, route: str) -> Way:
     """Lay a route out on its road.
-
-    Args:
-        road_map: The precomputed road.
-        route: Id of the route.
 
     Raises:
         ScenarioError: If the goal lies where vehicles have already left the road.

@@ -13,12 +13,7 @@ from codriving.experiment.episodes.unit import Unit
 
 @dataclass(frozen=True, slots=True)
 class BatchReport:
-    """What became of a batch.
-
-    Attributes:
-        done: Units that have ended, failed ones included.
-        failed: Reports of those that ended in an error, by cell and seed.
-    """
+    """What became of a batch."""
 
     done: int
     failed: tuple[Report, ...]
@@ -36,16 +31,7 @@ def run_batch(
     """Drive a batch; results are kept by the job, this only counts.
 
     Args:
-        units: What to drive.
-        job: What to do with each; picklable if there are several workers.
-        launcher: Where to drive it.
         workers: Number of processes or threads, or ``auto`` for one a core.
-        preload: Modules that all workers need.
-        progress: Who is told of each unit.
-        watch: Sees each report, and may raise to stop the batch.
-
-    Returns:
-        The counts.
 
     Raises:
         UserError: If the config cannot be built, a result cannot be saved, or a language model cannot be used any more.

@@ -21,13 +21,11 @@ class EpisodeResult:
     """Everything that one episode leaves.
 
     Attributes:
-        record: What the tables are made from.
         trajectory: What was driven, or None if it never began.
         decisions: One line a decision step, for ``decisions.jsonl``.
         seconds: Wall-clock time of the episode [s].
         decision_seconds: Wall-clock time of each decision [s].
         decision_cpu: CPU time of each decision, of the thread that decides [s].
-        traceback: Where it went wrong; empty if nothing did.
         transcript: One line a question that a language model was asked, for ``transcript.jsonl``.
     """
 
@@ -74,15 +72,7 @@ def run_episode(
     a language model that must not be used any more: neither is this episode's fault.
 
     Args:
-        environment: The world.
-        method: Who decides.
-        metrics: What is judged by.
-        seed: Seed of the episode; with the same objects it determines the result.
-        labels: What the record is labelled with.
         go_on: Called before each decision; raises what is no ``Exception`` to give the episode up.
-
-    Returns:
-        Record, trajectory, decisions and timing.
 
     Raises:
         ModelError: If the language model must not be used any more.
@@ -156,7 +146,6 @@ def failure(error: BaseException, time: float) -> Outcome:
     """The outcome of an episode that could not go on.
 
     Args:
-        error: What was raised.
         time: Simulated time of the last decision [s].
 
     Returns:
@@ -169,17 +158,7 @@ def failure(error: BaseException, time: float) -> Outcome:
 
 
 def failed_result(labels: Labels, seed: int, error: BaseException, trace: str = "") -> EpisodeResult:
-    """The result of an episode of which nothing but its failure is known.
-
-    Args:
-        labels: What the record is labelled with.
-        seed: Seed of the episode.
-        error: What was raised.
-        trace: Where it was raised.
-
-    Returns:
-        A result without trajectory and decisions.
-    """
+    """The result of an episode of which nothing but its failure is known."""
     record = EpisodeRecord(
         scenario=labels.scenario,
         method=labels.method,

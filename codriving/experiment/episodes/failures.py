@@ -9,12 +9,7 @@ from codriving.experiment.episodes.job import Report
 
 
 class FailuresInARow:
-    """Counts the episodes that ended because a model did not answer, one after another as they end.
-
-    Args:
-        models: Name of the model that each cell asks, by the name of the cell.
-        most: How many failures in a row stop the batch, by the name of the model.
-    """
+    """Counts the episodes that ended because a model did not answer, one after another as they end."""
 
     def __init__(self, models: Mapping[str, str], most: Mapping[str, int]) -> None:
         self._models, self._most = models, most
@@ -22,9 +17,6 @@ class FailuresInARow:
 
     def note(self, report: Report) -> None:
         """Take note of an episode that has ended.
-
-        Args:
-            report: What became of it.
 
         Raises:
             ModelError: If its model has failed too often in a row.

@@ -29,14 +29,7 @@ class After(Protocol):
 
 @dataclass(frozen=True)
 class Job:
-    """All that a process needs for any unit of a batch; it is pickled to the workers.
-
-    Attributes:
-        labels: Labels of each cell, by name.
-        build: Builds the objects of a cell from its name.
-        save: Keeps a result; must be atomic, and raise a UserError where the user can mend what is wrong.
-        after: What is done with each episode once it is saved, if anything.
-    """
+    """All that a process needs for any unit of a batch; it is pickled to the workers."""
 
     labels: Mapping[str, Labels]
     build: Callable[[str], Objects]
@@ -49,8 +42,6 @@ class Report:
     """What the parent is told of a unit.
 
     Attributes:
-        unit: The unit.
-        ending: How it ended.
         message: What went wrong, for ``error``.
     """
 
@@ -70,7 +61,6 @@ class Worker:
         """Prepare; objects are built when the first unit of their cell comes.
 
         Args:
-            job: What to do.
             go_on: Called before each decision; raises what is no ``Exception`` to give the episode up.
         """
         self._job, self._go_on = job, go_on
@@ -78,12 +68,6 @@ class Worker:
 
     def run(self, unit: Unit) -> Report:
         """Drive one unit and save it.
-
-        Args:
-            unit: Cell and seed.
-
-        Returns:
-            How it ended; an episode that fails is saved as a record that says so.
 
         Raises:
             UserError: If the config cannot be built, the result cannot be saved, or the language model must not be used
@@ -111,13 +95,6 @@ class Worker:
 
     def abandon(self, unit: Unit, error: Exception) -> Report:
         """Save a unit as failed without driving it.
-
-        Args:
-            unit: Cell and seed.
-            error: Why.
-
-        Returns:
-            The report of it.
 
         Raises:
             UserError: If the record cannot be saved.

@@ -17,8 +17,6 @@ class Launcher(Protocol):
 
         Args:
             workers: A number, or ``auto`` for one a core.
-            units: Number of units to come.
-            preload: Modules that all workers need.
         """
         ...
 
@@ -28,13 +26,7 @@ class Launcher(Protocol):
         """Drive units.
 
         Args:
-            units: What to drive.
-            job: What to do with each.
             workers: A number, or ``auto`` for one a core.
-            preload: Modules that all workers need.
-
-        Yields:
-            A report a unit, as they end.
 
         Raises:
             UserError: If the batch has to stop.
@@ -53,15 +45,6 @@ class Serial:
     ) -> Generator[Report, None, None]:
         """Drive units; ``workers`` has no meaning here.
 
-        Args:
-            units: What to drive.
-            job: What to do with each.
-            workers: Not used.
-            preload: Not used.
-
-        Yields:
-            A report a unit, in order.
-
         Raises:
             UserError: If the batch has to stop.
         """
@@ -76,8 +59,6 @@ class Processes:
 
         Args:
             workers: A number, or ``auto`` for one a core.
-            units: Number of units to come.
-            preload: Modules that all workers need.
         """
         if worker_count(workers, units) > 1:
             warm(preload)
@@ -88,13 +69,7 @@ class Processes:
         """Drive units.
 
         Args:
-            units: What to drive.
-            job: What to do with each.
             workers: A number, or ``auto`` for one a core.
-            preload: Modules that all workers need.
-
-        Yields:
-            A report a unit, as they end.
 
         Raises:
             UserError: If the batch has to stop.
@@ -111,7 +86,6 @@ def worker_count(workers: int | str, units: int) -> int:
 
     Args:
         workers: A number, or ``auto`` for one a core that this process may use.
-        units: Number of units; no more processes than these.
 
     Returns:
         At least 1.

@@ -23,13 +23,6 @@ def available_cores() -> int:
 def run_serial(units: Sequence[Unit], job: Job) -> Generator[Report, None, None]:
     """Drive units one after another in this process.
 
-    Args:
-        units: What to drive.
-        job: What to do with each.
-
-    Yields:
-        A report a unit, in order.
-
     Raises:
         UserError: If the batch has to stop.
     """
@@ -44,15 +37,6 @@ def run_parallel(
     """Drive units in several processes.
 
     When the iterator is closed, by an exception or otherwise, the processes are ended and units in flight are lost.
-
-    Args:
-        units: What to drive.
-        job: What to do with each; must be picklable.
-        workers: Number of processes.
-        preload: Modules imported once for all of them.
-
-    Yields:
-        A report a unit, as they end.
 
     Raises:
         UserError: If the batch has to stop.

@@ -26,17 +26,11 @@ class WorkerProcess:
     """A worker as its parent sees it.
 
     Attributes:
-        connection: Readable when there is a report or the worker has died.
         unit: What it is driving, or None.
     """
 
     def __init__(self, job: Job, preload: Sequence[str]) -> None:
-        """Start the process.
-
-        Args:
-            job: What the worker does with each unit.
-            preload: Modules that the fork server imports once for all workers.
-        """
+        """Start the process."""
         context = _context(preload)
         self.connection, theirs = context.Pipe()
         self.unit: Unit | None = None
@@ -46,20 +40,13 @@ class WorkerProcess:
         theirs.close()
 
     def give(self, unit: Unit) -> None:
-        """Hand out a unit; a worker that is dead is noticed by ``take``.
-
-        Args:
-            unit: What to drive next.
-        """
+        """Hand out a unit; a worker that is dead is noticed by ``take``."""
         self.unit = unit
         with suppress(OSError):
             self.connection.send(unit)
 
     def take(self) -> Report:
         """Take the report of the unit.
-
-        Returns:
-            The report.
 
         Raises:
             WorkerDied: If the process is gone.
@@ -87,11 +74,7 @@ class WorkerProcess:
 
 
 def warm(preload: Sequence[str]) -> None:
-    """Start importing heavy modules in the background, so that workers are ready when they are wanted.
-
-    Args:
-        preload: Modules that the fork server imports once for all workers.
-    """
+    """Start importing heavy modules in the background, so that workers are ready when they are wanted."""
     _context(preload)
 
 
@@ -115,10 +98,7 @@ def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
 
 @contextmanager
 def _without_main() -> Iterator[None]:
-    """Keep workers from importing the caller's script again.
-
-    They need nothing from it, and a script without the ``if __name__ == "__main__"`` guard would start itself over.
-    """
+    """Keep workers from importing the caller's script again."""
     main = sys.modules["__main__"]
     sys.modules["__main__"] = types.ModuleType("__main__")
     try:
@@ -128,12 +108,7 @@ def _without_main() -> Iterator[None]:
 
 
 def serve(connection: Connection, job: Job) -> None:
-    """Drive units until there are no more: the main function of a worker process.
-
-    Args:
-        connection: Units come in, reports go out.
-        job: What to do with each unit.
-    """
+    """Drive units until there are no more: the main function of a worker process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_die_with_parent, daemon=True).start()
     worker = Worker(job)

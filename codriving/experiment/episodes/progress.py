@@ -10,12 +10,7 @@ class Progress(Protocol):
     """Somebody who is told of each unit that has ended."""
 
     def update(self, cell: str, failed: bool) -> None:
-        """Take note.
-
-        Args:
-            cell: The cell of a unit that has ended.
-            failed: Whether it ended in an error.
-        """
+        """Take note."""
         ...
 
 
@@ -68,16 +63,7 @@ class _Lines:
 def show_progress(
     units: Mapping[str, int], stream: TextIO | None = None, note: Callable[[], str] | None = None
 ) -> Iterator[Progress]:
-    """Show how far a batch is while the block lasts.
-
-    Args:
-        units: Number of units of each cell.
-        stream: Where to show it; standard error by default, so that a pipe gets the table alone.
-        note: Gives what else is worth knowing at the moment, in a few words; called from other threads too.
-
-    Yields:
-        Whom to tell.
-    """
+    """Show how far a batch is while the block lasts."""
     stream = stream or sys.stderr
     count = _Count(units)
     if not stream.isatty():

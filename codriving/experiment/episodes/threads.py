@@ -27,13 +27,7 @@ class Threads:
         """Drive units.
 
         Args:
-            units: What to drive.
-            job: What to do with each.
             workers: Number of threads, or ``auto`` for one a core.
-            preload: Not used.
-
-        Yields:
-            A report a unit, as they end.
 
         Raises:
             UserError: If the batch has to stop.
@@ -50,14 +44,6 @@ def run_threads(units: Sequence[Unit], job: Job, threads: int) -> Generator[Repo
 
     When the iterator is closed, by an exception or otherwise, nothing more is saved: an episode in flight ends before
     its next decision and is lost. Nobody waits for that, since it may be waiting for a server.
-
-    Args:
-        units: What to drive.
-        job: What to do with each; what comes after saving is done here, where Ctrl-C ends it.
-        threads: Number of threads.
-
-    Yields:
-        A report a unit, as they end.
 
     Raises:
         UserError: If the batch has to stop.

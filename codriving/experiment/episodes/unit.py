@@ -11,11 +11,7 @@ class Labels:
     """What the records of a cell are labelled with.
 
     Attributes:
-        scenario: Name of the scenario.
-        method: Name of the method.
-        variant: Name of the CDA variant.
         reasoner: Who reasons: ``rules`` or the name of a model.
-        memory: What is recalled from; empty without a memory.
     """
 
     scenario: str
@@ -27,25 +23,14 @@ class Labels:
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """One episode to drive.
-
-    Attributes:
-        cell: Name of the cell.
-        seed: Seed of the episode.
-    """
+    """One episode to drive."""
 
     cell: str
     seed: int
 
 
 class Objects(NamedTuple):
-    """What the episodes of one cell are driven with, built once a worker.
-
-    Attributes:
-        environment: The world.
-        method: Who decides.
-        metrics: What is judged by.
-    """
+    """What the episodes of one cell are driven with, built once a worker."""
 
     environment: Environment
     method: Method

@@ -27,11 +27,7 @@ OTHERS = 4
 
 
 def vehicles_by_distance(situation: Situation) -> list[str]:
-    """Return the ids of everybody that a CAV knows of, nearest first.
-
-    Args:
-        situation: What the CAV is told.
-    """
+    """Return the ids of everybody that a CAV knows of, nearest first."""
     ego = situation.scene.ego
     return [n.id for n in sorted(situation.scene.neighbours, key=lambda n: (hypot(n.x - ego.x, n.y - ego.y), n.id))]
 
@@ -40,9 +36,7 @@ def decision_view(situation: Situation, nearest: int | None = None, with_memorie
     """Return the variables of the decision prompt.
 
     Args:
-        situation: What the CAV is told.
         nearest: Number of vehicles, nearest first, that are mentioned; None for all.
-        with_memories: Whether memories are mentioned.
     """
     scene, names = situation.scene, names_for(situation)
     mentioned = set(vehicles_by_distance(situation)[:nearest])
@@ -84,33 +78,18 @@ def decision_view(situation: Situation, nearest: int | None = None, with_memorie
 
 
 def lane_name(lane: LaneId) -> str:
-    """Return a lane as text, for instance ``a-b/1``.
-
-    Args:
-        lane: Start node, end node and index from the left.
-    """
+    """Return a lane as text, for instance ``a-b/1``."""
     start, end, index = lane
     return f"{start}-{end}/{index}"
 
 
 def side_name(scene: SceneDescription, lane: LaneId) -> str:
-    """Return the action that leads towards a lane.
-
-    Args:
-        scene: What the CAV knows.
-        lane: The lane.
-    """
+    """Return the action that leads towards a lane."""
     return "LANE_LEFT" if lane[2] < scene.ego.lane[2] else "LANE_RIGHT"
 
 
 def lane_views(scene: SceneDescription, neighbours: Sequence[Neighbour], names: Names) -> list[LaneView]:
-    """Return the ego lane and those beside it, each with whoever is next ahead and next behind.
-
-    Args:
-        scene: What the CAV knows.
-        neighbours: The vehicles that are mentioned.
-        names: What they are called.
-    """
+    """Return the ego lane and those beside it, each with whoever is next ahead and next behind."""
     own = {n.role: VehicleView(names(n.id), DRIVERS[n.kind], n.gap or 0.0, n.speed) for n in neighbours}
     lanes = [LaneView("ego lane", own.get(Role.LEADING), own.get(Role.REARING))]
     for lane in scene.adjacent_lanes:

@@ -18,11 +18,7 @@ from codriving.llm.prompts.views import (
 
 
 def example(purpose: str) -> dict[str, Any]:
-    """Return variables of every kind: every list has an entry and every condition holds at least once.
-
-    Args:
-        purpose: What the template asks for.
-    """
+    """Return variables of every kind: every list has an entry and every condition holds at least once."""
     if purpose.startswith("dilu"):
         return seen_example(purpose)
     return {"negotiate": _negotiation, "decide": _decision, "reflect": _reflection}[purpose]()

@@ -16,12 +16,7 @@ LONGEST_MEMORY = 400
 
 
 def one_line(text: str, longest: int = LONGEST_SENTENCE) -> str:
-    """Put free text on one line: no control characters, single spaces, capped.
-
-    Args:
-        text: Any text.
-        longest: Characters that are kept at most.
-    """
+    """Put free text on one line: no control characters, single spaces, capped."""
     shown = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return shown if len(shown) <= longest else shown[: longest - 1].rstrip() + "…"
 
@@ -31,10 +26,6 @@ class Names:
 
     A plain id stays as it is. Whatever else an id holds, blanks and line breaks included, becomes ``_``. A vehicle of
     which the CAV cannot tell who drives is called ``V1``, ``V2``, ..., since an id like ``HDV1`` would give that away.
-
-    Args:
-        known: Ids of vehicles that may be called by their id.
-        unknown: Ids of the others.
     """
 
     def __init__(self, known: Iterable[str], unknown: Iterable[str] = ()) -> None:
@@ -55,39 +46,22 @@ class Names:
         self._shown[name] = free
 
     def __call__(self, name: str) -> str:
-        """Return what a vehicle is called.
-
-        Args:
-            name: Its id.
-        """
+        """Return what a vehicle is called."""
         return self._shown.get(name, "V0")
 
     def id_of(self, shown: str) -> str | None:
-        """Return the id of the vehicle that is called so, or None.
-
-        Args:
-            shown: A name, as a model gives it back.
-        """
+        """Return the id of the vehicle that is called so, or None."""
         return next((name for name, word in self._shown.items() if word == shown.strip()), None)
 
     def sentence(self, text: str, longest: int = LONGEST_SENTENCE) -> str:
-        """Put a sentence on one line, with every id replaced by what the vehicle is called.
-
-        Args:
-            text: A reason or a memory.
-            longest: Characters that are kept at most.
-        """
+        """Put a sentence on one line, with every id replaced by what the vehicle is called."""
         if self._ids is not None:
             text = self._ids.sub(lambda found: self(found.group()), text)
         return one_line(text, longest)
 
 
 def names_for(situation: Situation) -> Names:
-    """Return what vehicles are called when one CAV is told of them.
-
-    Args:
-        situation: What the CAV is told.
-    """
+    """Return what vehicles are called when one CAV is told of them."""
     scene = situation.scene
     kinds: Mapping[str, str | None] = {n.id: n.kind for n in scene.neighbours}
     known = [scene.ego.id, *(name for name, kind in kinds.items() if kind is not None)]

@@ -19,16 +19,7 @@ def negotiation_view(
     names: Names,
     binding: bool,
 ) -> dict[str, Any]:
-    """Return the variables of the negotiation prompt.
-
-    Args:
-        scenes: What each CAV knows, by id.
-        instance: The ordering problem.
-        pairs: Name and most urgent conflict of each pair that is asked about.
-        previous: The order until now, if there is one.
-        names: What vehicles are called.
-        binding: Whether the order is an instruction (CDA class D).
-    """
+    """Return the variables of the negotiation prompt."""
     asked = sorted({name for _, c in pairs for name in (c.ego, c.other)})
     ahead = {instance.entrants[name].leader for name in asked} - {None}
     fixed = sorted(pair for pair in instance.before if set(pair) <= {*asked, *ahead} and not _follows(instance, pair))

@@ -6,11 +6,7 @@ from codriving.datatypes.experience import Experience
 
 
 def reflection_view(experience: Experience) -> dict[str, Any]:
-    """Return the variables of the reflection prompt.
-
-    Args:
-        experience: The experience, with the comment of the rules as its lesson.
-    """
+    """Return the variables of the reflection prompt."""
     effect = experience.effect
     return {
         "scene": experience.description.scene,

@@ -50,7 +50,6 @@ class Prompts:
 
         Args:
             purpose: One of ``PURPOSES``.
-            values: The variables of the templates.
 
         Raises:
             ConfigError: If a template cannot be filled in.

@@ -49,11 +49,7 @@ class LessonReply(BaseModel):
 
 
 def decision_reply(allowed: Sequence[str]) -> type[DecisionReply]:
-    """Return the form of a decision.
-
-    Args:
-        allowed: The actions that may be chosen.
-    """
+    """Return the form of a decision."""
     return _decision_reply(tuple(allowed))
 
 
@@ -66,11 +62,7 @@ def _decision_reply(allowed: tuple[str, ...]) -> type[DecisionReply]:
 
 
 def order_reply(pairs: Mapping[str, tuple[str, str]]) -> type[OrderReply]:
-    """Return the form of a passing order.
-
-    Args:
-        pairs: What the two vehicles of each pair are called, by the name of the pair.
-    """
+    """Return the form of a passing order."""
     vehicles = sorted({name for pair in pairs.values() for name in pair})
     entry = create_model("Pair", __base__=PairReply, pair=(str, _one_of(list(pairs))), first=(str, _one_of(vehicles)))
     made: type[OrderReply] = create_model("Order", __base__=OrderReply, orders=(list[entry], ...))  # type: ignore[valid-type]
@@ -81,10 +73,6 @@ def first_of_pairs(reply: OrderReply, pairs: Mapping[str, tuple[str, str]]) -> d
     """Return what can be used of an order: pairs that exist, of which one of the two goes first.
 
     A pair that is named twice with different answers is left out.
-
-    Args:
-        reply: The answer.
-        pairs: What the two vehicles of each pair are called, by the name of the pair.
 
     Returns:
         Who goes first and why, by the name of the pair.

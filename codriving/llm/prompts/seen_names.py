@@ -7,11 +7,7 @@ from codriving.llm.prompts.free_text import Names
 
 
 def seen_names(scene: SceneDescription) -> Names:
-    """Return what everybody is called, by distance; ids would tell who is a CAV.
-
-    Args:
-        scene: What the vehicle sees.
-    """
+    """Return what everybody is called, by distance; ids would tell who is a CAV."""
     ego = scene.ego
     near = sorted(scene.neighbours, key=lambda n: (hypot(n.x - ego.x, n.y - ego.y), n.id))
     return Names([ego.id], [n.id for n in near])

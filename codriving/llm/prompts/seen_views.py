@@ -11,13 +11,11 @@ class WayView:
     """One way that a vehicle may take, where it meets that of the CAV.
 
     Attributes:
-        relation: How the ways meet.
         mine: The CAV's distance to the place where they meet [m].
         its: The other's distance to it [m].
         my_ttcp: The CAV's time to it at its present speed [s].
         its_ttcp: The other's time to it [s].
         dttcp: Difference of the two [s].
-        severity: The paper's words for it.
     """
 
     relation: str
@@ -34,13 +32,10 @@ class SeenView:
     """A vehicle as the CAV sees it; who drives it and where it goes is not known.
 
     Attributes:
-        id: What it is called.
         where: Where it is seen from the CAV, for instance ``ahead left``.
         distance: Distance of the centres [m].
         speed: Its speed [m/s].
         standing: How long it has been standing [s].
-        ways: Each way that it may take and that meets the CAV's, most urgent first.
-        elsewhere: Number of ways that it may take and that do not meet the CAV's.
     """
 
     id: str
@@ -57,7 +52,6 @@ class MeaningView:
     """An action that the road allows.
 
     Attributes:
-        name: The action.
         target: Target speed after it [m/s]; None for a lane change.
     """
 

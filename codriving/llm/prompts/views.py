@@ -8,7 +8,6 @@ class VehicleView:
     """A vehicle beside or on the lane of the CAV.
 
     Attributes:
-        id: What it is called.
         driver: ``CAV``, ``human`` or ``unknown driver``.
         gap: Free distance along the road [m].
         speed: Speed [m/s].
@@ -40,7 +39,6 @@ class OtherView:
     """A vehicle of which the CAV does not know the lane.
 
     Attributes:
-        id: What it is called.
         driver: ``CAV``, ``human`` or ``unknown driver``.
         ahead: Distance ahead, negative behind [m].
         right: Distance to the right, negative to the left [m].
@@ -59,18 +57,13 @@ class ConflictView:
     """Everything that one other vehicle may get in the CAV's way; of several zones the most urgent one.
 
     Attributes:
-        id: What it is called.
         driver: ``CAV``, ``human`` or ``unknown driver``.
-        lane: Lane that it is on; empty if that is not known.
         speed: Its speed [m/s].
-        relation: How the ways meet.
         mine: The CAV's distance to the zone [m].
         its: The other's distance to the zone [m].
         my_ttcp: The CAV's time to the conflict zone [s].
         its_ttcp: The other's time to the conflict zone [s].
         dttcp: Difference of the two [s].
-        severity: The paper's words for it.
-        zones: Number of zones, more than one if it may take several ways.
         free: When the CAV's way through all of them is expected to be free [s]; 0 if the CAV goes first.
     """
 
@@ -94,8 +87,6 @@ class IntentView:
     """What another CAV means to do.
 
     Attributes:
-        id: What it is called.
-        route: Its route.
         target_speed: The speed that it aims at [m/s].
     """
 
@@ -106,12 +97,7 @@ class IntentView:
 
 @dataclass(frozen=True, slots=True)
 class OrderView:
-    """One pair of the passing order.
-
-    Attributes:
-        id: What the other vehicle is called.
-        reason: Why this order.
-    """
+    """One pair of the passing order."""
 
     id: str
     reason: str
@@ -122,9 +108,6 @@ class ActionView:
     """Actions of which the safety check says the same.
 
     Attributes:
-        names: The actions.
-        safe: Whether they are allowed.
-        reasons: Why they were removed.
         progress: How far the CAV gets within 10 s if it then keeps the order [m]; None if it cannot keep it.
         arrivals: Earliest arrival at the zones of each conflict, in the order of the conflicts [s].
     """
@@ -141,15 +124,10 @@ class EntrantView:
     """A CAV that is to be ordered.
 
     Attributes:
-        id: What it is called.
         speed: Speed [m/s].
-        route: Its route.
-        turns: Whether it turns where ways cross, and so yields to who goes straight.
         target_speed: The speed that it aims at [m/s].
         distance: Distance to its first conflict zone [m].
         earliest: Earliest time at which it can be there [s].
-        can_stop: Whether it can still stop before the zone.
-        behind: The CAV ahead of it on its lane; empty if none.
         blocked: Intervals in which human drivers may be in its way there [s].
     """
 
@@ -171,14 +149,9 @@ class PairView:
 
     Attributes:
         name: ``p1``, ``p2``, ..., most urgent first.
-        one: What one of them is called.
-        other: What the other one is called.
-        relation: How their ways meet.
         distances: Distance of each to the zone [m].
         ttcp: Time of each to the conflict zone [s].
         dttcp: Difference of the two [s].
-        severity: The paper's words for it.
-        agreed: Who has been told to go first until now; empty if nobody.
     """
 
     name: str
@@ -194,12 +167,7 @@ class PairView:
 
 @dataclass(frozen=True, slots=True)
 class FixedView:
-    """Two CAVs of which the order cannot be changed any more.
-
-    Attributes:
-        first: What the one that goes first is called.
-        second: What the other one is called.
-    """
+    """Two CAVs of which the order cannot be changed any more."""
 
     first: str
     second: str

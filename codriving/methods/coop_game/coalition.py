@@ -18,15 +18,7 @@ TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class Agreement:
-    """An order and what it is worth.
-
-    Attributes:
-        instance: The problem.
-        order: Everybody, first to last.
-        levels: Level of each stream; empty if everybody goes as they came, or as before.
-        plan: What everybody would do.
-        payoffs: What that is worth to each vehicle, by id; empty if no joint plan keeps the order.
-    """
+    """An order and what it is worth."""
 
     instance: Instance
     order: tuple[str, ...]
@@ -48,9 +40,6 @@ class Agreement:
         """Whether it is worth more; if both are worth the same, whether less time is lost, or the levels are lower.
 
         What everybody can keep is better than anything else; of two that somebody cannot keep, the one with fewer such.
-
-        Args:
-            other: Another one.
         """
         if not self.plan.feasible or not other.plan.feasible:
             return self.plan.feasible or (not other.plan.feasible and self.plan.stuck < other.plan.stuck)
@@ -61,26 +50,12 @@ class Agreement:
         return self.delay < other.delay
 
     def worse_off(self, other: "Agreement") -> list[str]:
-        """Return those who would rather have another agreement, by id.
-
-        Args:
-            other: The other one; if it cannot be kept, nobody would.
-        """
+        """Return those who would rather have another agreement, by id."""
         return [n for n, was in sorted(other.payoffs.items()) if self.payoffs.get(n, was) < was - TOLERANCE]
 
 
 class Coalition:
-    """Judges orders, each of them once.
-
-    Args:
-        instance: The problem.
-        planner: What everybody would do in an order.
-        payoff: What that is worth.
-        streams: The streams of the instance.
-        arrived: Everybody, in the order in which they came.
-        limit: Orders that are judged at most.
-
-    """
+    """Judges orders, each of them once."""
 
     def __init__(
         self,
@@ -106,10 +81,6 @@ class Coalition:
 
         Orders in which the same vehicle of each pair goes first, wherever that is open, are one order.
 
-        Args:
-            ranking: Everybody, the one who should go first at the front.
-            levels: Level of each stream, if the ranking follows from that.
-
         Returns:
             The agreement; None if it is a new one and no more may be judged.
         """
@@ -127,21 +98,13 @@ class Coalition:
     def allocate(self, levels: Allocation) -> Agreement | None:
         """Judge an allocation of levels.
 
-        Args:
-            levels: Level of each stream.
-
         Returns:
             The agreement; None if it is a new one and no more may be judged.
         """
         return self.judge(self.streams.ranked(levels, self.arrived), levels)
 
     def ascend(self, starts: Sequence[Allocation], levels: Levels) -> None:
-        """Give one stream after another the level that is best for all, until nothing improves or the limit is reached.
-
-        Args:
-            starts: Allocations of which the best one is begun with.
-            levels: Levels that streams may have.
-        """
+        """Give each stream in turn the level that is best for all, until nothing improves or the limit is reached."""
         current: Agreement | None = None
         for start in starts:
             found = self.allocate(start)

@@ -25,13 +25,8 @@ class CoopGame:
         objective: What is summed up: ``inverse_distance`` or ``utility``.
         scale: Whose distance is put on the scale of the others: ``turning``, ``straight`` or ``none``.
         levels: The highest level, 1 to 20; None for as many as there are streams.
-        evaluations: Orders that are judged at most in one decision, 2 to 10000.
         hysteresis: The order of the step before stays unless another one is worth more than being this much ahead
             is worth to one vehicle, 0 to 10 [s].
-        rational: Whether an agreement that is worse for anybody than first come, first served is refused.
-        efficiency: Weight of the way covered, in the utility, 0 to 100.
-        comfort: Weight of the acceleration, in the utility, 0 to 100.
-        safety: Weight of the risk, in the utility, 0 to 100.
         reference_acceleration: Acceleration that costs the whole weight of comfort, 0.1 to 20 [m/s2].
         risk_time: Gap in time at which the risk has fallen to 1/e, 0.1 to 10 [s].
         control_radius: Distance to the reference point from which on a vehicle holds a ticket, 1 to 1000 [m].
@@ -87,21 +82,12 @@ class CoopGame:
         self.variant: str = ", ".join([*words, "rational"] if rational else words)
 
     def reset(self, seed: int) -> None:
-        """Begin an episode; nothing is remembered from the one before.
-
-        Args:
-            seed: Not used; nothing is drawn.
-        """
+        """Begin an episode; nothing is remembered from the one before."""
         self.tickets.reset()
         self._agreed = ()
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-        """Return the order on which all agree.
-
-        Args:
-            instance: The problem of this moment.
-            planner: What everybody would do in an order.
-        """
+        """Return the order on which all agree."""
         arrived = self.tickets.ranking(instance)
         streams = find_streams(instance, arrived)
         if not streams.conflicts:
@@ -128,11 +114,7 @@ class CoopGame:
         return self._ordering(instance, streams, chosen, counts)
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Grant the requests that do not overlap and gain most together.
-
-        Args:
-            requests: Lane changes that are wanted, in the order in which they were first asked for.
-        """
+        """Grant the requests that do not overlap and gain most together."""
         return best_subset(requests)
 
     def _as_before(self, arrived: Sequence[str]) -> list[str]:

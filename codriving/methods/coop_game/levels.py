@@ -13,11 +13,6 @@ def layered(ranks: Sequence[float], conflicts: Collection[Edge]) -> Allocation:
     """Return the least levels in which streams in conflict go one after another.
 
     Streams without a conflict between them share a level wherever they can.
-
-    Args:
-        ranks: Rank of each stream; of two in conflict the one with the smaller rank goes first, of equal ones the
-            first of the two.
-        conflicts: Streams in conflict.
     """
     levels = [0] * len(ranks)
     turn = sorted(range(len(ranks)), key=lambda i: (ranks[i], i))
@@ -29,22 +24,13 @@ def layered(ranks: Sequence[float], conflicts: Collection[Edge]) -> Allocation:
 
 
 class OwnLevels:
-    """Streams in conflict never share a level: as many levels as that needs.
-
-    Args:
-        streams: Number of streams.
-        conflicts: Streams in conflict.
-    """
+    """Streams in conflict never share a level: as many levels as that needs."""
 
     def __init__(self, streams: int, conflicts: Collection[Edge]) -> None:
         self.streams, self.conflicts = streams, tuple(sorted(conflicts))
 
     def of(self, ranks: Sequence[float]) -> Allocation:
-        """Return the allocation in which streams go by rank.
-
-        Args:
-            ranks: Rank of each stream.
-        """
+        """Return the allocation in which streams go by rank."""
         return layered(ranks, self.conflicts)
 
     def allocations(self) -> Iterator[Allocation]:
@@ -54,12 +40,7 @@ class OwnLevels:
             yield layered([after[i].bit_count() for i in range(self.streams)], self.conflicts)
 
     def _orientations(self, k: int, after: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
-        """Let the streams of one conflict after another go in either order, as long as there is no circle.
-
-        Args:
-            k: Index of the next conflict.
-            after: Streams that go before each stream, directly or not, as bits.
-        """
+        """Let the streams of one conflict after another go in either order, as long as there is no circle."""
         if k == len(self.conflicts):
             yield after
             return
@@ -73,12 +54,7 @@ class OwnLevels:
                 yield from self._orientations(k + 1, grown)
 
     def moves(self, allocation: Allocation, stream: int) -> Iterator[Allocation]:
-        """Yield what becomes of an allocation if one stream goes before, between or after the levels of the others.
-
-        Args:
-            allocation: An allocation.
-            stream: Index of the stream that moves.
-        """
+        """Yield what becomes of an allocation if one stream goes before, between or after the levels of the others."""
         for place in range(max(allocation) + 2):
             ranks = [float(k) for k in allocation]
             ranks[stream] = place - 0.5
@@ -86,23 +62,13 @@ class OwnLevels:
 
 
 class FewLevels:
-    """Levels end at a highest one, as the source has it: streams in conflict may have to share one.
-
-    Args:
-        streams: Number of streams.
-        conflicts: Streams in conflict.
-        highest: The highest level.
-    """
+    """Levels end at a highest one, as the source has it: streams in conflict may have to share one."""
 
     def __init__(self, streams: int, conflicts: Collection[Edge], highest: int) -> None:
         self.streams, self.conflicts, self.highest = streams, tuple(sorted(conflicts)), highest
 
     def of(self, ranks: Sequence[float]) -> Allocation:
-        """Return the allocation in which streams go by rank; those beyond the highest level share it.
-
-        Args:
-            ranks: Rank of each stream.
-        """
+        """Return the allocation in which streams go by rank; those beyond the highest level share it."""
         return tuple(min(level, self.highest) for level in layered(ranks, self.conflicts))
 
     def allocations(self) -> Iterator[Allocation]:
@@ -117,12 +83,7 @@ class FewLevels:
                 yield levels
 
     def moves(self, allocation: Allocation, stream: int) -> Iterator[Allocation]:
-        """Yield what becomes of an allocation if one stream takes another level.
-
-        Args:
-            allocation: An allocation.
-            stream: Index of the stream that moves.
-        """
+        """Yield what becomes of an allocation if one stream takes another level."""
         for level in range(self.highest + 1):
             yield (*allocation[:stream], level, *allocation[stream + 1 :])
 
@@ -134,8 +95,6 @@ def levels_of(streams: int, conflicts: Collection[Edge], highest: int | None) ->
     """Return the levels that streams may have.
 
     Args:
-        streams: Number of streams.
-        conflicts: Streams in conflict.
         highest: The highest level; None for as many as there are streams.
     """
     if highest is None or highest >= streams - 1:

@@ -38,8 +38,6 @@ def on_one_scale(distance: float, turning: bool, scale: Scale) -> float:
 
     Args:
         distance: Distance to the destination [m].
-        turning: Whether the vehicle turns.
-        scale: Whose distance is changed.
     """
     if scale is Scale.TURNING and turning:
         return max((distance + OFFSET) / SLOPE, NEAREST)
@@ -53,11 +51,6 @@ class Payoff:
     """What a joint plan is worth to each vehicle.
 
     Attributes:
-        objective: What counts.
-        scale: Whose distance is put on the scale of the others.
-        efficiency: Weight of the way covered, in the utility.
-        comfort: Weight of the acceleration, in the utility.
-        safety: Weight of the risk, in the utility.
         reference_acceleration: Acceleration that costs the whole weight of comfort [m/s2].
         risk_time: Gap in time at which the risk has fallen to 1/e [s].
     """
@@ -74,9 +67,6 @@ class Payoff:
         """Return what a plan is worth to each vehicle, by id.
 
         Args:
-            instance: The problem.
-            plan: What everybody does.
-            planner: Knows the gaps in time of the plan.
             ahead: Time by which everybody is taken to be farther along its plan [s].
         """
         scale = self._scale(instance)
@@ -95,10 +85,6 @@ class Payoff:
         """Return what a vehicle gains on average by being farther along its plan.
 
         Args:
-            instance: The problem.
-            plan: What everybody does.
-            planner: Knows the gaps in time of the plan.
-            payoffs: What the plan is worth to each vehicle, by id.
             time: Time by which one vehicle is ahead [s].
         """
         later = self.of(instance, plan, planner, time)

@@ -11,43 +11,23 @@ Edge = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Streams:
-    """The vehicles of an instance, stream by stream.
-
-    Attributes:
-        names: The streams, in the order in which their first vehicles came.
-        members: Vehicles of each stream, as they came, by name of the stream.
-        conflicts: Streams of which two vehicles conflict whose order is not physically fixed.
-    """
+    """The vehicles of an instance, stream by stream."""
 
     names: tuple[str, ...]
     members: Mapping[str, tuple[str, ...]]
     conflicts: frozenset[Edge]
 
     def by_vehicle(self, levels: Sequence[int]) -> dict[str, int]:
-        """Return the level of each vehicle, by id.
-
-        Args:
-            levels: Level of each stream.
-        """
+        """Return the level of each vehicle, by id."""
         return {name: k for stream, k in zip(self.names, levels, strict=True) for name in self.members[stream]}
 
     def ranked(self, levels: Sequence[int], arrived: Sequence[str]) -> list[str]:
-        """Rank the vehicles by the level of their stream, and in a level as they came.
-
-        Args:
-            levels: Level of each stream.
-            arrived: Everybody, in the order in which they came.
-        """
+        """Rank the vehicles by the level of their stream, and in a level as they came."""
         return sorted(arrived, key=self.by_vehicle(levels).__getitem__)
 
 
 def find_streams(instance: Instance, arrived: Sequence[str]) -> Streams:
-    """Group the vehicles of an instance.
-
-    Args:
-        instance: The problem; a vehicle without a stream is a stream of its own.
-        arrived: Everybody, in the order in which they came.
-    """
+    """Group the vehicles of an instance."""
     members: dict[str, list[str]] = {}
     for name in arrived:
         members.setdefault(instance.entrants[name].stream or name, []).append(name)
@@ -62,12 +42,6 @@ def find_streams(instance: Instance, arrived: Sequence[str]) -> Streams:
 
 
 def is_free(instance: Instance, one: str, other: str) -> bool:
-    """Whether two vehicles conflict and it is open who goes first.
-
-    Args:
-        instance: The problem.
-        one: A vehicle.
-        other: Another one.
-    """
+    """Whether two vehicles conflict and it is open who goes first."""
     fixed = (one, other) in instance.before or (other, one) in instance.before
     return instance.conflict(one, other) and not fixed

@@ -22,9 +22,5 @@ class Arrival(FirstComeFirstServed):
         super().__init__(control_radius)
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Grant the requests that do not overlap and gain most together.
-
-        Args:
-            requests: Lane changes that are wanted, in the order in which they were first asked for.
-        """
+        """Grant the requests that do not overlap and gain most together."""
         return best_subset(requests)

@@ -39,14 +39,9 @@ class FuzzyCoalition:
     Args:
         gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules that are only
             shown, 0 to 5 [s].
-        participation: How much the mean cost of all counts for each vehicle against its own, 0 to 1.
-        risk: Weight of the risk, 0 to 1.
-        efficiency: Weight of the loss of speed, 0 to 1.
-        comfort: Weight of the acceleration, 0 to 1.
         reference_acceleration: Acceleration that costs the whole weight of comfort, 0.1 to 20 [m/s2].
         hold: Time for which an action is held before everybody goes, 0.2 to 4 [s].
         horizon: Time within which risk, loss of speed and acceleration count, 1 to 10 [s].
-        shares: Whether each vehicle's share of what acting together saves is put into its reason.
 
     Raises:
         ConfigError: If a setting is out of range.
@@ -88,20 +83,11 @@ class FuzzyCoalition:
         """Begin an episode; nothing is remembered from one step to the next."""
 
     def planner(self, stage: Stage) -> JointPlanner:
-        """Return a planner that has no plan for any order, since nobody asks which one it is.
-
-        Args:
-            stage: The moment.
-        """
+        """Return a planner that has no plan for any order, since nobody asks which one it is."""
         return NoPlans(stage.forecast.sample)
 
     def drive(self, stage: Stage, ordering: Ordering) -> Drive:
-        """Return the joint action on which all settle.
-
-        Args:
-            stage: The moment.
-            ordering: Not used: who goes first follows from the actions.
-        """
+        """Return the joint action on which all settle."""
         vehicles = {name: known[name] for name, known in sorted(stage.known.items())}
         if not vehicles:
             return Drive({}, {}, {}, {})
@@ -171,19 +157,9 @@ class NoPlans:
         self.sample = sample
 
     def plan(self, order: Sequence[str]) -> JointPlan:
-        """Say that there is no plan.
-
-        Args:
-            order: Not used.
-        """
+        """Say that there is no plan."""
         return JointPlan(False, {}, self.sample)
 
     def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
-        """Return inf, since nobody is anywhere.
-
-        Args:
-            plan: Not used.
-            one: Not used.
-            other: Not used.
-        """
+        """Return inf, since nobody is anywhere."""
         return float("inf")

@@ -36,9 +36,6 @@ class Costs:
     def of(self, joints: Sequence[Joint]) -> Array:
         """Return what joint actions cost each vehicle.
 
-        Args:
-            joints: Some joint actions (k, n).
-
         Returns:
             Cost of each vehicle (k, n).
         """
@@ -49,27 +46,12 @@ class Costs:
 
 
 def blended(costs: Array, participation: float) -> Array:
-    """Return what counts for each vehicle: its own cost, and that of all to the degree to which it takes part.
-
-    Args:
-        costs: Cost of each vehicle (k, n).
-        participation: 0 if everybody looks after itself, 1 if all look after the group.
-    """
+    """Return what counts for each vehicle: its own cost, and that of all to the degree to which it takes part."""
     return np.asarray(participation * costs.mean(axis=1, keepdims=True) + (1 - participation) * costs)
 
 
 def settle(costs: Costs, options: Sequence[Sequence[int]], participation: float) -> Joint:
-    """Return the joint action on which all settle: nobody would rather change alone, and it costs all least.
-
-    Args:
-        costs: What joint actions cost.
-        options: Options that each vehicle has, by index.
-        participation: 0 if everybody looks after itself, 1 if all look after the group.
-
-    Returns:
-        The joint action. If there is none from which nobody would rather change, up to three vehicles take the one
-        that costs all least, and more than three the one at which they arrive.
-    """
+    """Return the joint action on which all settle: nobody would rather change alone, and it costs all least."""
     if not options:
         return ()
     if len(options) > ENUMERATED:

@@ -20,9 +20,6 @@ class Weights:
     """How much each term counts.
 
     Attributes:
-        risk: Weight of the risk.
-        efficiency: Weight of the loss of speed.
-        comfort: Weight of the acceleration.
         reference_acceleration: Acceleration that costs the whole weight of comfort [m/s2].
     """
 
@@ -38,11 +35,7 @@ def joint_costs(
     """Return what joint actions cost: the greatest risk from each other vehicle, and the means of the other terms.
 
     Args:
-        stage: The moment.
-        vehicles: All CAVs as movers, by id.
         travels: Distance of each option over time, by id (options, steps + 1) [m].
-        samples: Samples that count.
-        weights: How much each term counts.
     """
     forecast, top = stage.forecast, stage.forecast.model.target_speeds[-1]
     places = np.array([travels[v.id][:, :samples] for v in vehicles.values()])
@@ -66,7 +59,6 @@ def body(path: Path, places: Array, speeds: Array) -> Body:
     """Return where a vehicle is.
 
     Args:
-        path: Its way.
         places: Its arc length there [m].
         speeds: Its speed, in the same shape [m/s].
     """
@@ -78,10 +70,6 @@ def human_risk(stage: Stage, ego: str, where: Body, samples: int, top_speed: flo
     """Return the risk from human drivers, each where it is most dangerous of all places at which it is expected.
 
     Args:
-        stage: The moment.
-        ego: Id of the CAV.
-        where: Where that is with each of its options (options, samples).
-        samples: Samples that count.
         top_speed: Speed at which the field has its full length [m/s].
 
     Returns:

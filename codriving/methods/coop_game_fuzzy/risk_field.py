@@ -37,7 +37,6 @@ def risk(x: ArrayLike, y: ArrayLike, source: Body, top_speed: float) -> Array:
     Args:
         x: The place [m].
         y: The place [m].
-        source: The vehicle that is dangerous; its arrays are broadcast against the place.
         top_speed: Speed at which the field has its full length [m/s].
 
     Returns:

@@ -11,10 +11,6 @@ MOST = 6
 def shapley(players: Sequence[str], worth: Callable[[frozenset[str]], float]) -> dict[str, float]:
     """Share out what a coalition is worth.
 
-    Args:
-        players: The players, at most six.
-        worth: What each coalition is worth; it is asked once for each.
-
     Returns:
         Share of each player, by id; they add up to the worth of all less that of nobody.
 

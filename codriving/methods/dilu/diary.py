@@ -27,9 +27,6 @@ class Frame:
 
     Attributes:
         time: Simulated time [s].
-        step: Number of decision steps before.
-        told: What it was told.
-        decision: What it decided.
     """
 
     time: float
@@ -49,19 +46,12 @@ class Diary:
 
         Args:
             time: Simulated time [s].
-            step: Number of decision steps before.
-            told: What each CAV was told.
-            decisions: What each decided, in the same order.
         """
         for one, decision in zip(told, decisions, strict=True):
             self._frames.setdefault(decision.ego, []).append(Frame(time, step, one, decision))
 
     def conclude(self, outcome: Outcome, reflector: Reflector) -> list[Experience]:
         """Return what is worth keeping: of a success every fifth decision, of a collision what led to it.
-
-        Args:
-            outcome: How the episode ended.
-            reflector: Says what would have been right.
 
         Returns:
             Experiences by step and id of the CAV; none of an episode that ended otherwise.
@@ -77,11 +67,7 @@ class Diary:
         return sorted(found, key=lambda e: (e.step, e.ego))
 
     def mistakes(self, collision: Collision) -> list[Mistake]:
-        """Return for each CAV in a collision the last decision before it that was not to slow down.
-
-        Args:
-            collision: The collision.
-        """
+        """Return for each CAV in a collision the last decision before it that was not to slow down."""
         found = []
         for ego, other in ((collision.striker, collision.struck), (collision.struck, collision.striker)):
             before = [f for f in self._frames.get(ego, []) if f.time <= collision.time]

@@ -30,12 +30,9 @@ class DiLu:
     """The method; with ``llm=offline`` a rule stands in for its language model, and it is called ``dilu-rule``.
 
     Args:
-        llm: Who reasons.
         memory: What was like it before, and perhaps what is learnt from this; None for no examples at all.
         hold: Time between two decisions of a CAV, rounded up to whole decision steps; its targets are held meanwhile
             [s].
-        shots: Experiences that a CAV is told at most.
-        rule: Decides where no model is asked.
 
     Raises:
         ConfigError: If a setting is out of range, or a template cannot be used.
@@ -60,13 +57,7 @@ class DiLu:
         self.remembers = memory.label if memory is not None else ""
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
-        """Begin an episode.
-
-        Args:
-            road_map: The precomputed road.
-            model: How CAVs answer to actions.
-            seed: Seed of the episode; nothing is drawn.
-        """
+        """Begin an episode."""
         self._steps = max(1, ceil(self.hold / model.decision_interval - 1e-6))
         # Whoever decides every second predicts what follows from deciding every second.
         held = replace(model, decision_interval=self._steps * model.decision_interval)
@@ -82,11 +73,7 @@ class DiLu:
             self.memory.begin(seed)
 
     def act(self, world: WorldState) -> Deliberation:
-        """Decide for every CAV on the road, one by one; between decisions hold what was decided.
-
-        Args:
-            world: The world, of which each CAV sees its own part.
-        """
+        """Decide for every CAV on the road, one by one; between decisions hold what was decided."""
         names = [cav.id for cav in world.cavs]
         if all(name in self._thoughts for name in names) and world.step < self._decided + self._steps:
             kept = [self._thoughts[name] for name in names]
@@ -116,10 +103,6 @@ class DiLu:
 
     def conclude(self, world: WorldState, outcome: Outcome) -> tuple[dict[str, float], list[dict[str, Any]]]:
         """Reflect on an episode that has come to its end, if there is a memory that learns.
-
-        Args:
-            world: The world at the end.
-            outcome: How it ended.
 
         Returns:
             Counters by column, and lines of the transcript.

@@ -26,22 +26,13 @@ class ReflectionReply(BaseModel):
 
 
 class ModelReflector:
-    """Asks a model about every mistake of an episode, all in one go.
-
-    Args:
-        chat: The model.
-        prompts: The templates.
-        ledger: Where answers are noted.
-    """
+    """Asks a model about every mistake of an episode, all in one go."""
 
     def __init__(self, chat: Chat, prompts: Prompts, ledger: Ledger) -> None:
         self.chat, self.prompts, self.ledger = chat, prompts, ledger
 
     def correct(self, mistakes: Sequence[Mistake]) -> list[Correction]:
         """Return one correction a mistake, in the same order; by rule where the model has no usable answer.
-
-        Args:
-            mistakes: The mistakes.
 
         Raises:
             ModelUnavailableError: If the model does not answer.
@@ -54,11 +45,7 @@ class ModelReflector:
         return [_correction(mistake, answer) for mistake, answer in zip(mistakes, answers, strict=True)]
 
     def question(self, mistake: Mistake) -> Question:
-        """Return what the model is asked about one mistake.
-
-        Args:
-            mistake: The mistake.
-        """
+        """Return what the model is asked about one mistake."""
         situation, done = mistake.told.situation, mistake.decision.action
         names = seen_names(situation.scene)
         right = [str(action) for action in situation.allowed if action is not done]

@@ -22,9 +22,6 @@ class ModelThinker:
     """Asks a model for every CAV, all in one go.
 
     Args:
-        chat: The model.
-        prompts: The templates.
-        ledger: Where answers are noted.
         interval: Time for which a decision holds [s].
     """
 
@@ -33,9 +30,6 @@ class ModelThinker:
 
     def decide(self, told: Sequence[Told]) -> list[Thought]:
         """Return one thought a CAV, in the same order.
-
-        Args:
-            told: What each CAV is told, with what it remembers.
 
         Raises:
             ModelUnavailableError: If the model does not answer.
@@ -51,9 +45,7 @@ class ModelThinker:
         """Return what the model is asked for one CAV.
 
         Args:
-            told: What the CAV is told.
             nearest: Number of vehicles, nearest first, that are mentioned; None for all.
-            with_memories: Whether experiences are mentioned.
         """
         allowed = [str(action) for action in told.situation.allowed]
         memories = told.situation.memories if with_memories else ()
@@ -95,12 +87,7 @@ class ModelThinker:
 
 
 def instead(told: Told, problem: str) -> Decision:
-    """Decide without the model; a model that does not answer is not driven by the rule in silence.
-
-    Args:
-        told: What the CAV is told.
-        problem: Why there is no answer.
-    """
+    """Decide without the model; a model that does not answer is not driven by the rule in silence."""
     allowed = told.situation.allowed
     action = next((a for a in INSTEAD if a in allowed), allowed[0])
     return Decision(told.situation.scene.ego.id, action, f"fallback, no usable answer: {problem}")

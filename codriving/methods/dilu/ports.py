@@ -20,11 +20,7 @@ def dilu_ports(
     Args:
         chat: The model; None for the rule.
         prompts: Folder with templates that replace ours; None takes ours.
-        rule: Decides where no model is asked.
         interval: Time between two decisions of a CAV [s].
-
-    Returns:
-        Both for one episode, and their common ledger; no ledger without a model.
     """
     if chat is None:
         return RuleThinker(rule), RuleReflector(), None

@@ -31,7 +31,6 @@ def seen_view(told: Told, nearest: int | None = None) -> dict[str, Any]:
     """Return the variables that all of DiLu's prompts have.
 
     Args:
-        told: What the CAV is told.
         nearest: Number of vehicles, nearest first, that are mentioned; None for all.
     """
     scene, names = told.situation.scene, seen_names(told.situation.scene)

@@ -15,12 +15,7 @@ class Mistake:
     """The last decision before a collision that was not to slow down.
 
     Attributes:
-        told: What the CAV was told.
-        decision: What it decided.
-        step: Number of decision steps before.
-        other: Who it collided with.
         later: How much later that was [s].
-        struck: Whether it ran into the other one, not the other one into it.
     """
 
     told: Told
@@ -33,13 +28,7 @@ class Mistake:
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """What a mistake was, and what would have been right.
-
-    Attributes:
-        action: The action that would have been right.
-        mistake: What was wrong, in one sentence.
-        lesson: What to do in such a situation, in one sentence.
-    """
+    """What a mistake was, and what would have been right."""
 
     action: Action
     mistake: str
@@ -50,11 +39,7 @@ class Reflector(Protocol):
     """Corrects all mistakes of an episode in one call."""
 
     def correct(self, mistakes: Sequence[Mistake]) -> list[Correction]:
-        """Return one correction a mistake, in the same order.
-
-        Args:
-            mistakes: The mistakes.
-        """
+        """Return one correction a mistake, in the same order."""
         ...
 
 
@@ -62,20 +47,12 @@ class RuleReflector:
     """Whoever collided should have slowed down; whoever changed lanes should have stayed."""
 
     def correct(self, mistakes: Sequence[Mistake]) -> list[Correction]:
-        """Return one correction a mistake, in the same order.
-
-        Args:
-            mistakes: The mistakes.
-        """
+        """Return one correction a mistake, in the same order."""
         return [correct_one(mistake) for mistake in mistakes]
 
 
 def correct_one(mistake: Mistake) -> Correction:
-    """Correct one mistake by rule.
-
-    Args:
-        mistake: The mistake.
-    """
+    """Correct one mistake by rule."""
     action = mistake.decision.action
     how = "you ran into another vehicle" if mistake.struck else "another vehicle ran into you"
     wrong = f"{action}, and {mistake.later:.1f} s later {how}."

@@ -14,22 +14,14 @@ from codriving.reasoning.decision.cases import favour
 
 
 class RuleThinker:
-    """Stands in for the language model; this is not DiLu, and tables call it ``dilu-rule``.
-
-    Args:
-        rule: Decides for one CAV at a time.
-    """
+    """Stands in for the language model; this is not DiLu, and tables call it ``dilu-rule``."""
 
     def __init__(self, rule: Driver) -> None:
         self.rule = rule
         rule.reset()
 
     def decide(self, told: Sequence[Told]) -> list[Thought]:
-        """Return one thought a CAV, in the same order.
-
-        Args:
-            told: What each CAV is told, with what it remembers.
-        """
+        """Return one thought a CAV, in the same order."""
         return [self._decide(one) for one in told]
 
     def _decide(self, told: Told) -> Thought:
@@ -43,10 +35,6 @@ def corrected(situation: Situation, decision: Decision) -> Decision:
     """Repeat no mistake: take the next slower acceptable action if what is remembered speaks against a decision.
 
     Whoever would change lanes takes the fastest acceptable action along the lane instead.
-
-    Args:
-        situation: What the decision rests on, with its memories.
-        decision: What the rule decides without them.
 
     Returns:
         A decision; ``recalled`` names the memories that changed it.

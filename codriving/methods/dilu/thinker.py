@@ -10,13 +10,7 @@ from codriving.methods.dilu.told import Told
 
 @dataclass(frozen=True, slots=True)
 class Thought:
-    """What one CAV decides.
-
-    Attributes:
-        decision: The decision.
-        situation: What it rests on, as it is recorded.
-        counts: Counters of the decision.
-    """
+    """What one CAV decides."""
 
     decision: Decision
     situation: Situation
@@ -27,9 +21,5 @@ class Thinker(Protocol):
     """Decides for all CAVs in one call, each by what it alone is told."""
 
     def decide(self, told: Sequence[Told]) -> list[Thought]:
-        """Return one thought a CAV, in the same order.
-
-        Args:
-            told: What each CAV is told, with what it remembers.
-        """
+        """Return one thought a CAV, in the same order."""
         ...

@@ -20,9 +20,6 @@ class Told:
     """What one CAV is told.
 
     Attributes:
-        view: What it sees.
-        situation: The same as it is described and remembered: every action that the road allows, and no order.
-        lane: Rank of its lane from the left, and number of lanes that run its way there.
         targets: Target speed after each action along the lane [m/s].
     """
 
@@ -33,11 +30,7 @@ class Told:
 
 
 def tell(view: View) -> Told:
-    """Describe what one CAV sees.
-
-    Args:
-        view: What it sees.
-    """
+    """Describe what one CAV sees."""
     scene = placed(view)
     situation = Situation(
         scene=scene,
@@ -57,9 +50,6 @@ def placed(view: View) -> SceneDescription:
     """Return the scene in which those next ahead and behind on the lanes beside are put onto these lanes.
 
     That is read off where they are and what the map says, since a vehicle on its own is told nobody's lane.
-
-    Args:
-        view: What the vehicle sees.
     """
     scene = view.scene
     lanes: dict[str, LaneId] = {}
@@ -76,7 +66,6 @@ def targets_after(model: DrivingModel, speed: float, target: float) -> dict[Acti
     """Return the target speed after each action along the lane [m/s].
 
     Args:
-        model: The vehicle model.
         speed: Speed now [m/s].
         target: Target speed now [m/s].
     """

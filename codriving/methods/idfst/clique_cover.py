@@ -14,9 +14,6 @@ def minimum_clique_cover(graph: ConflictGraph) -> dict[str, int]:
     A clique of those who may pass together is a layer; what is physically fixed keeps its direction. Exact for up to 14
     vehicles, by going through the sets of vehicles that can have passed; beyond that, the better of DSATUR and iDFST.
 
-    Args:
-        graph: Vehicles and their conflicts.
-
     Returns:
         Layer of each vehicle, by id; 1 is the first.
     """
@@ -28,9 +25,6 @@ def minimum_clique_cover(graph: ConflictGraph) -> dict[str, int]:
 
 def dsatur(graph: ConflictGraph) -> dict[str, int]:
     """Give a layer to whoever has most layers around it shut, again and again (Brelaz's DSATUR with fixed pairs).
-
-    Args:
-        graph: Vehicles and their conflicts.
 
     Returns:
         Layer of each vehicle, by id; 1 is the first.
@@ -80,10 +74,7 @@ def _layers(names: tuple[str, ...], came_from: Mapping[int, int], last: int) -> 
 
 
 def _maximal(ready: list[int], met: list[int]) -> list[int]:
-    """Return the sets of ready vehicles without a conflict to which nobody can be added, as bits.
-
-    Larger sets are enough: whoever passes early is never in anybody's way later.
-    """
+    """Return the sets of ready vehicles without a conflict to which nobody can be added, as bits."""
     found = [0]
     for k in ready:
         found += [chosen | 1 << k for chosen in found if not chosen & met[k]]

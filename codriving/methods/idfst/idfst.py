@@ -44,11 +44,7 @@ class SpanningTree:
         self.reset(0)
 
     def reset(self, seed: int) -> None:
-        """Begin an episode: nobody holds a ticket or a slot.
-
-        Args:
-            seed: Not used; nothing is drawn.
-        """
+        """Begin an episode: nobody holds a ticket or a slot."""
         self.tickets.reset()
         self.scheduled: tuple[str, ...] = ()
         self.arrivals: dict[str, float] = {}
@@ -56,12 +52,7 @@ class SpanningTree:
         self.before: frozenset[Pair] = frozenset()
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-        """Return the order of the slots.
-
-        Args:
-            instance: The problem of this moment.
-            planner: Not used.
-        """
+        """Return the order of the slots."""
         ranking = self.tickets.ranking(instance)
         kept = carried_over(instance, self.scheduled, ranking)
         anew = kept is None or self._has_moved(instance)
@@ -80,11 +71,7 @@ class SpanningTree:
         )
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Sort the requests into layers, first request first, and grant the largest layer.
-
-        Args:
-            requests: Lane changes that are wanted, in the order in which they were first asked for.
-        """
+        """Sort the requests into layers, first request first, and grant the largest layer."""
         return max(request_layers(requests), key=len, default=frozenset())
 
     def _delay(self, instance: Instance, order: Sequence[str]) -> float:

@@ -17,13 +17,7 @@ ROOT = ""
 
 @dataclass(frozen=True, slots=True)
 class ConflictGraph:
-    """The conflict directed graph without its root.
-
-    Attributes:
-        vehicles: Ids by arrival; nobody before whom it has to let go.
-        fixed: Unidirectional edges: the first passes first.
-        free: Bidirectional edges, each in both directions: either may pass first.
-    """
+    """The conflict directed graph without its root."""
 
     vehicles: tuple[str, ...]
     fixed: Set[Pair]
@@ -40,12 +34,7 @@ class ConflictGraph:
 
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """A spanning tree.
-
-    Attributes:
-        layer: Layer of each vehicle, by id; 1 is the first.
-        parent: Parent of each vehicle, by id; ROOT is the virtual leader.
-    """
+    """A spanning tree."""
 
     layer: Mapping[str, int]
     parent: Mapping[str, str]
@@ -57,23 +46,14 @@ class Tree:
 
 
 def conflict_graph(instance: Instance, arrival: Sequence[str]) -> ConflictGraph:
-    """Read the graph off an instance.
-
-    Args:
-        instance: The problem.
-        arrival: Everybody by arrival; nobody before whom it has to let go.
-    """
+    """Read the graph off an instance."""
     free = {p for p in combinations(arrival, 2) if instance.conflict(*p)}
     free = {(one, other) for one, other in free if not {(one, other), (other, one)} & instance.before}
     return ConflictGraph(tuple(arrival), instance.before, free | {(other, one) for one, other in free})
 
 
 def dfst(graph: ConflictGraph) -> Tree:
-    """Put each vehicle behind the deepest one that it is in conflict with (first in, first out).
-
-    Args:
-        graph: Vehicles and their conflicts.
-    """
+    """Put each vehicle behind the deepest one that it is in conflict with (first in, first out)."""
     layer: dict[str, int] = {}
     parent: dict[str, str] = {}
     for name in graph.vehicles:
@@ -87,9 +67,6 @@ def idfst(graph: ConflictGraph) -> Tree:
     """Put each vehicle into the first layer that is free of conflicts and behind whoever has to go before it.
 
     The layer before that one always holds a vehicle that it is in conflict with, which becomes its parent.
-
-    Args:
-        graph: Vehicles and their conflicts.
     """
     layer: dict[str, int] = {}
     parent: dict[str, str] = {}
@@ -101,35 +78,20 @@ def idfst(graph: ConflictGraph) -> Tree:
 
 
 def first_layer(graph: ConflictGraph, name: str, layer: Mapping[str, int]) -> int:
-    """Return the smallest layer that a vehicle can join.
-
-    Args:
-        graph: Vehicles and their conflicts.
-        name: Id of the vehicle.
-        layer: Layers given so far, by id.
-    """
+    """Return the smallest layer that a vehicle can join."""
     lowest = max((d for other, d in layer.items() if (other, name) in graph.fixed), default=0)
     used = {d for other, d in layer.items() if (other, name) in graph.free}
     return next(d for d in range(lowest + 1, lowest + len(used) + 2) if d not in used)
 
 
 def is_feasible(graph: ConflictGraph, layer: Mapping[str, int]) -> bool:
-    """Whether no two vehicles of a layer are in conflict, and everybody is behind whoever has to go first.
-
-    Args:
-        graph: Vehicles and their conflicts.
-        layer: Layer of each vehicle, by id.
-    """
+    """Whether no two vehicles of a layer are in conflict, and everybody is behind whoever has to go first."""
     apart = all(layer[i] != layer[j] for i, j in combinations(graph.vehicles, 2) if graph.conflict(i, j))
     return apart and all(layer[i] < layer[j] for i, j in graph.fixed if i in layer and j in layer)
 
 
 def request_layers(requests: Sequence[Request]) -> list[frozenset[str]]:
-    """Sort lane changes into layers in which no two overlap, each into the first one that it can join.
-
-    Args:
-        requests: Lane changes that are wanted, in the order in which they were first asked for.
-    """
+    """Sort lane changes into layers in which no two overlap, each into the first one that it can join."""
     pairs = {(r.ego, other) for r in requests for other in r.excludes}
     graph = ConflictGraph(tuple(r.ego for r in requests), frozenset(), pairs | {(b, a) for a, b in pairs})
     layer = idfst(graph).layer

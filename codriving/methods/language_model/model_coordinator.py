@@ -36,14 +36,6 @@ class ModelCoordinator:
 
     What an answer leaves out or gets wrong is decided by the rules, and the least severe link of a circle is dropped;
     both count as a repaired order. Without an answer, the rules decide everything, and the ledger counts a fallback.
-
-    Args:
-        chat: The model.
-        prompts: The templates.
-        ledger: Where answers are noted.
-        road_map: The precomputed road.
-        forecast: Predictions of the present step.
-        binding: Whether the order is an instruction (CDA class D).
     """
 
     def __init__(
@@ -55,10 +47,6 @@ class ModelCoordinator:
 
     def negotiate(self, scenes: Scenes, conflicts: Conflicts) -> PassingOrder:
         """Return an order without cycles for all conflicts.
-
-        Args:
-            scenes: What each CAV knows, by id.
-            conflicts: Conflicts of each CAV, by id.
 
         Raises:
             ModelUnavailableError: If the model does not answer.

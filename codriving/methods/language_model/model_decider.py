@@ -22,13 +22,6 @@ class ModelDecider:
     """Asks a model for every CAV, all in one go.
 
     Nobody asks for a CAV whose decision is plain, see ``is_plain``; the rules decide, and the ledger counts it.
-
-    Args:
-        chat: The model.
-        prompts: The templates.
-        ledger: Where answers are noted.
-        ask_plain: Whether the model is asked for plain decisions as well.
-        sees_conflicts: Whether conflicts can be seen (CDA class B).
     """
 
     def __init__(self, chat: Chat, prompts: Prompts, ledger: Ledger, ask_plain: bool, sees_conflicts: bool) -> None:
@@ -37,9 +30,6 @@ class ModelDecider:
 
     def decide(self, situations: Sequence[Situation]) -> list[Decision]:
         """Return one decision a situation, in the same order.
-
-        Args:
-            situations: What each CAV is told.
 
         Raises:
             ModelUnavailableError: If the model does not answer.
@@ -66,11 +56,7 @@ class ModelDecider:
         return Decision(situation.scene.ego.id, Action(reply.action), reply.reason or "no reason was given")
 
     def question(self, situation: Situation) -> Question:
-        """Return what the model is asked for one CAV.
-
-        Args:
-            situation: What the CAV is told.
-        """
+        """Return what the model is asked for one CAV."""
         return self._question(situation, None, True)
 
     def _question(self, situation: Situation, nearest: int | None, with_memories: bool) -> Question:
@@ -106,10 +92,6 @@ def fallback(situation: Situation, problem: str) -> Decision:
     """Decide without the model: the slowest action that keeps the order, or else the slowest that is allowed.
 
     The rules would often drive on here. A model that does not answer is not to be driven by them in silence.
-
-    Args:
-        situation: What the CAV is told.
-        problem: Why there is no answer.
     """
     keeps = {a.action for a in situation.assessments if a.safe and a.progress is not None}
     choices = [a for a in SAFEST if a in keeps] or [a for a in SAFEST if a in situation.allowed]

@@ -30,9 +30,6 @@ class Reasoner(Protocol):
 def check_prompts(llm: Reasoner) -> None:
     """Try the templates out, so that a broken one is found before anything is driven.
 
-    Args:
-        llm: Who reasons.
-
     Raises:
         ConfigError: If a template cannot be used.
     """
@@ -46,18 +43,7 @@ def check_prompts(llm: Reasoner) -> None:
 def ports(
     llm: Reasoner, road_map: RoadMap, forecast: Forecast, binding: bool, sees_conflicts: bool
 ) -> "tuple[Coordinator, Decider, Ledger | None]":
-    """Return who negotiates, who decides, and where answers are noted.
-
-    Args:
-        llm: Who reasons.
-        road_map: The precomputed road.
-        forecast: Predictions of the present step.
-        binding: Whether a negotiated order is an instruction (CDA class D).
-        sees_conflicts: Whether conflicts can be seen (CDA class B).
-
-    Returns:
-        Coordinator and decider of one episode, and their common ledger; no ledger if the rules reason.
-    """
+    """Return who negotiates, who decides, and where answers are noted."""
     chat = llm.chat()
     if chat is None:
         return RuleCoordinator(road_map, forecast, binding), RuleDecider(), None

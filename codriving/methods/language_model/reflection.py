@@ -16,23 +16,13 @@ MISTAKES = (Verdict.INTENSIFIED, Verdict.TOO_CAUTIOUS)
 
 
 class Reflection:
-    """Asks a model about the worst mistakes of an episode at once; the comment of the rules stays before its words.
-
-    Args:
-        chat: The model.
-        prompts: The templates.
-        ledger: Where answers are noted.
-        most: Mistakes of an episode that it is asked about at most.
-    """
+    """Asks a model about the worst mistakes of an episode at once; the comment of the rules stays before its words."""
 
     def __init__(self, chat: Chat, prompts: Prompts, ledger: Ledger, most: int) -> None:
         self.chat, self.prompts, self.ledger, self.most = chat, prompts, ledger, most
 
     def reflect(self, experiences: Sequence[Experience]) -> list[Experience]:
         """Return the experiences with lessons of the model's where it gave one that can be used.
-
-        Args:
-            experiences: What is to be kept of an episode.
 
         Raises:
             ModelUnavailableError: If the model does not answer.
@@ -51,11 +41,7 @@ class Reflection:
         return found
 
     def question(self, experience: Experience) -> Question:
-        """Return what the model is asked about one experience.
-
-        Args:
-            experience: The experience.
-        """
+        """Return what the model is asked about one experience."""
         return Question(
             purpose="reflect",
             subject=experience.ego,

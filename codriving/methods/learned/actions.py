@@ -20,7 +20,6 @@ def allowed(family: str, available: Collection[Action]) -> NDArray[np.bool_]:
 
     Args:
         family: ``junction`` or ``lanes``.
-        available: Actions that the road allows, speeds among them.
 
     Returns:
         Whether each output's action is allowed (actions,).

@@ -25,7 +25,6 @@ class Attention:
 
     Attributes:
         layers: Weight and bias of each of ``LAYERS``, by name.
-        judge: What is made of the ego vehicle and what it attends to.
     """
 
     LAYERS: ClassVar[tuple[str, ...]] = (OWN, "other", "query", "key", "value")

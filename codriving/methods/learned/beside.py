@@ -28,7 +28,6 @@ class Beside:
     """Looks at the own lane and at the lanes beside it, in coordinates of the lane that is steered for.
 
     Args:
-        road_map: The precomputed road.
         top: Highest target speed [m/s].
     """
 
@@ -42,11 +41,7 @@ class Beside:
         """Return who is next ahead with the gap [m], and the numbers of ``SIDES`` and ``LANE_CHANGE``.
 
         Args:
-            ego: The CAV.
-            intent: Its route and the lane that it steers for.
             place: Its arc length on its route [m].
-            others: Whom it knows of.
-            available: Actions that the road allows it.
         """
         lane = intent.target_lane
         (own, offset), *places = self._along(lane, [(ego.x, ego.y), *((o.x, o.y) for o in others)])

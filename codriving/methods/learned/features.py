@@ -28,11 +28,7 @@ class Features:
     The same object goes through an episode from its beginning, since human drivers' routes are guessed by watching.
 
     Args:
-        road_map: The precomputed road.
-        model: How CAVs answer to actions: the highest target speed and the detection range are used.
         family: ``junction`` or ``lanes``.
-        shared: Whether CAVs share states and intents. Otherwise every other vehicle is a stranger, as for methods
-            that drive each CAV on its own.
     """
 
     def __init__(self, road_map: RoadMap, model: DrivingModel, family: str, shared: bool) -> None:
@@ -49,9 +45,6 @@ class Features:
 
     def observe(self, world: WorldState) -> dict[str, Observation]:
         """Return what each CAV on the road observes.
-
-        Args:
-            world: The world; call once a decision, in their order.
 
         Returns:
             Features (feature_count,) by id of the CAV, each within -1 and 1.

@@ -18,9 +18,6 @@ def shapes(form: str, inputs: int, hidden: Sequence[int], outputs: int) -> dict[
 
     Args:
         form: One of ``FORMS``.
-        inputs: Numbers in an observation.
-        hidden: Units of each hidden layer.
-        outputs: Number of actions.
     """
     found: dict[str, tuple[int, ...]] = {}
     if form == ATTENTION:
@@ -35,11 +32,7 @@ def shapes(form: str, inputs: int, hidden: Sequence[int], outputs: int) -> dict[
 
 
 def tensors(network: AnyNetwork) -> dict[str, FloatArray]:
-    """Return every tensor of a network, by name.
-
-    Args:
-        network: The network.
-    """
+    """Return every tensor of a network, by name."""
     found: dict[str, FloatArray] = {}
     judge = network
     if isinstance(network, Attention):

@@ -21,8 +21,6 @@ class Other:
     """Another vehicle, as far as it is known.
 
     Attributes:
-        id: Vehicle id.
-        is_cav: Whether it is known to be a CAV.
         x: Position [m].
         y: Position [m].
         speed: Speed [m/s].
@@ -49,11 +47,7 @@ class Knowledge:
     """Watches the others from one decision to the next; nobody reads a human driver's mind.
 
     Args:
-        road_map: The precomputed road.
         detection_range: Radius of perception of a CAV [m].
-        shared: Whether CAVs tell one another states and intents. Otherwise a CAV takes everybody for a stranger: it
-            has position, speed and heading within range, and the routes that the map allows.
-        routes: Whether places on routes are needed at all.
     """
 
     def __init__(self, road_map: RoadMap, detection_range: float, shared: bool, routes: bool) -> None:
@@ -62,9 +56,6 @@ class Knowledge:
 
     def others(self, world: WorldState) -> dict[str, tuple[Other, ...]]:
         """Return whom each CAV knows of, itself left out.
-
-        Args:
-            world: The world.
 
         Returns:
             The others in the order of their ids, by id of the CAV.
@@ -89,9 +80,6 @@ class Knowledge:
 
     def priority(self, v: VehicleState) -> int | None:
         """Return the rank of a vehicle by the rules of the road, which those who share agree to mind.
-
-        Args:
-            v: The vehicle.
 
         Returns:
             Priority of its lane; None on roads without such rules, and for those who drive on their own.

@@ -64,18 +64,10 @@ def feature_count(family: str) -> int:
 
 
 def family_of(road_map: RoadMap) -> str:
-    """Return the family that a road belongs to: ``lanes`` as soon as two lanes run side by side.
-
-    Args:
-        road_map: The precomputed road.
-    """
+    """Return the family that a road belongs to: ``lanes`` as soon as two lanes run side by side."""
     return family_of_road(road_map.road)
 
 
 def family_of_road(road: Road) -> str:
-    """Return the family of a road that has not been precomputed.
-
-    Args:
-        road: The road.
-    """
+    """Return the family of a road that has not been precomputed."""
     return LANES if any(lane.id[2] > 0 for lane in road.lanes) else JUNCTION

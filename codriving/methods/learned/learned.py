@@ -28,13 +28,6 @@ class Judged:
 
     Attributes:
         time: Simulated time [s].
-        step: Number of decisions taken before.
-        family: Family of the road, which says what the numbers mean.
-        routes: Route of each CAV, by id.
-        observations: What each CAV observed, by id.
-        values: What the network says of each action that is allowed, by id.
-        actions: What each CAV decided, by id.
-        counts: Counters of the step.
         meaning: What the values are, ``values`` or ``probabilities``.
     """
 
@@ -88,7 +81,6 @@ class Learned:
     """Drives with trained weights, those of the family of the road; the best action is taken, and nothing is drawn.
 
     Attributes:
-        shared: Whether CAVs share states and intents; otherwise each sees the others as strangers.
         meaning: What the network says of an action, ``values`` or ``probabilities``.
 
     Args:
@@ -118,7 +110,6 @@ class Learned:
         """Refuse a road that no weights are for, before anything is driven.
 
         Args:
-            road: The road.
             target_speeds: Target speeds of its CAVs [m/s].
             decision_interval: Time between two decisions [s].
 
@@ -131,11 +122,6 @@ class Learned:
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before.
 
-        Args:
-            road_map: The precomputed road.
-            model: How CAVs answer to actions.
-            seed: Seed of the episode; nothing is drawn.
-
         Raises:
             WeightsError: If no weights are for this road.
         """
@@ -146,11 +132,7 @@ class Learned:
         self._features = Features(road_map, model, self._family, self.shared)
 
     def act(self, world: WorldState) -> Judged:
-        """Decide for every CAV on the road.
-
-        Args:
-            world: The world.
-        """
+        """Decide for every CAV on the road."""
         observations = self._features.observe(world)
         outputs = ACTIONS[self._family]
         masks = np.array([allowed(self._family, world.available[name]) for name in observations])

@@ -11,12 +11,7 @@ FloatArray = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Network:
-    """A multilayer perceptron.
-
-    Attributes:
-        weights: One matrix a layer (inputs, outputs).
-        biases: One vector a layer (outputs,).
-    """
+    """A multilayer perceptron."""
 
     weights: Sequence[FloatArray]
     biases: Sequence[FloatArray]

@@ -28,11 +28,7 @@ def leader_ahead(
     """Return who drives next ahead on the own route, and the gap from bumper to bumper [m].
 
     Args:
-        ego: The CAV.
-        route: Id of its route.
         place: Its arc length there [m].
-        others: Whom it knows of.
-        road_map: The precomputed road.
     """
     path = road_map.paths[route]
     nearest: tuple[float, Other] | None = None
@@ -50,7 +46,6 @@ def leader_slot(other: Other, gap: float, top: float) -> Slot:
     """Return a leader as a slot.
 
     Args:
-        other: The leader.
         gap: Gap to it [m].
         top: Highest target speed [m/s].
     """
@@ -59,12 +54,7 @@ def leader_slot(other: Other, gap: float, top: float) -> Slot:
 
 
 def precedence(own: int | None, other: int | None) -> float:
-    """Say whether a CAV goes before another vehicle by the rules of the road; human drivers keep to them.
-
-    Args:
-        own: Priority of its lane.
-        other: Priority of the other's lane.
-    """
+    """Say whether a CAV goes before another vehicle by the rules of the road; human drivers keep to them."""
     if own is None or other is None or own > other:
         return GOES_FIRST
     return EQUAL if own == other else GIVES_WAY
@@ -84,11 +74,7 @@ def conflict_slots(
     Of a vehicle that may take several routes the most urgent zone counts.
 
     Args:
-        ego: The CAV.
-        route: Id of its route.
         place: Its arc length there [m].
-        others: Whom it knows of.
-        road_map: The precomputed road.
         top: Highest target speed [m/s].
         priority: Rank of its lane by the rules of the road; None where these do not count.
     """
@@ -115,11 +101,7 @@ def conflict_slots(
 
 
 def filled(slots: Iterable[Slot]) -> list[float]:
-    """Return the numbers of the most urgent slots; zeros where there are fewer.
-
-    Args:
-        slots: All slots, in any order.
-    """
+    """Return the numbers of the most urgent slots; zeros where there are fewer."""
     chosen = sorted(slots, key=lambda slot: slot[0])[:SLOTS]
     numbers = [number for _, values in chosen for number in values]
     return numbers + [0.0] * (SLOTS * len(SLOT) - len(numbers))

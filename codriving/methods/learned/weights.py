@@ -29,14 +29,10 @@ class Purpose:
     Attributes:
         method: Name of the learner, for instance ``madqn``.
         family: ``junction`` or ``lanes``.
-        features: Version of the features.
         near: Unit of length of gaps and zones, as a time at the highest target speed [s].
         far: Unit of length along the own route, likewise [s].
         decision_interval: Time between two decisions [s].
         target_speeds: The grids of target speeds that were driven with [m/s].
-        actions: What the outputs mean, in their order.
-        hidden: Units of each hidden layer.
-        training: How they were trained: command, fingerprint of the config, seed, and what the validation said.
         form: Kind of the network, ``perceptron`` or ``attention``.
     """
 
@@ -55,10 +51,6 @@ class Purpose:
     @classmethod
     def read(cls, text: str, where: str) -> Self:
         """Read the text of a sidecar.
-
-        Args:
-            text: JSON.
-            where: Its file, for messages.
 
         Raises:
             WeightsError: If it is not one.
@@ -96,7 +88,6 @@ class Purpose:
         within those of the grids that were driven with.
 
         Args:
-            family: Family of the road.
             target_speeds: Target speeds of its CAVs [m/s].
             decision_interval: Time between two decisions [s].
 
@@ -124,43 +115,24 @@ class Purpose:
 
 @dataclass(frozen=True, slots=True)
 class Trained:
-    """A network and what it is for.
-
-    Attributes:
-        network: The network.
-        purpose: What it was trained for.
-    """
+    """A network and what it is for."""
 
     network: AnyNetwork
     purpose: Purpose
 
 
 def shipped(method: str, family: str) -> Path:
-    """Return the file of the weights that come with the package.
-
-    Args:
-        method: Name of the learner.
-        family: Family of the road.
-    """
+    """Return the file of the weights that come with the package."""
     return Path(str(files("codriving.methods.learned"))) / "weights" / f"{method}_{family}.safetensors"
 
 
 def sidecar(file: Path) -> Path:
-    """Return the file that says what weights are for.
-
-    Args:
-        file: File of the weights.
-    """
+    """Return the file that says what weights are for."""
     return file.with_suffix(".json")
 
 
 def save(file: Path, trained: Trained) -> None:
-    """Write weights and their sidecar.
-
-    Args:
-        file: File of the weights; its folder must exist.
-        trained: What is written.
-    """
+    """Write weights and their sidecar."""
     arrays = {name: np.ascontiguousarray(tensor) for name, tensor in tensors(trained.network).items()}
     # Not by the library's own file, which only its owner may read.
     file.write_bytes(packed(arrays))
@@ -169,9 +141,6 @@ def save(file: Path, trained: Trained) -> None:
 
 def load(file: Path) -> Trained:
     """Read weights and their sidecar.
-
-    Args:
-        file: File of the weights.
 
     Raises:
         WeightsError: If one of them is missing, damaged, or of other shapes or features than are used here.

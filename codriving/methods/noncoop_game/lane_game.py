@@ -26,9 +26,6 @@ class LaneGame:
     """All outcomes of one lane change: rows are to keep the lane and to change, columns to yield and not to.
 
     Args:
-        view: What the vehicle sees.
-        side: The lane beside, with somebody behind on it.
-        idm: How everybody follows.
         hold: How long an acceleration is held [s].
         times: Times of the horizon, the first of them 0 (k,) [s].
     """

@@ -34,8 +34,6 @@ def expected_action(
     Args:
         own: Payoff of the first player, by its action and the other's (n, m).
         other: Payoff of the second player, likewise (n, m).
-        indifference: Difference of the sums up to which equilibria are equally good.
-        prefer: Whether an equilibrium is one that both would agree upon.
 
     Returns:
         Action of the second player, and that of the first one in the equilibrium; None if there is none.
@@ -55,8 +53,6 @@ def best_answer(own: Array, actions: tuple[int, ...], shares: Array) -> tuple[in
 
     Args:
         own: Payoff of the first player, by its action and the other's (n, m).
-        actions: Action of the other player if it is of each type.
-        shares: Probability of each type (types,).
 
     Returns:
         The action, the first of several that are equally good, and the expected payoff of each (n,).

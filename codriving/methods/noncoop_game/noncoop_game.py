@@ -30,13 +30,9 @@ class NonCooperativeGame:
     The partner is whoever meets the vehicle most urgently. Everybody else is minded as projected IDM minds them.
 
     Args:
-        tempers: Types of players, by name; their shares are what the vehicle believes of a stranger.
-        own: Name of its own type.
         hold: How long an acceleration is held; then the speed is kept [s].
         horizon: Time over which a game is judged [s].
         sample: Time between two places that are compared [s].
-        indifference: Difference of the sums of payoffs up to which equilibria are equally good.
-        others: Minds everybody but the partner.
 
     Raises:
         ConfigError: If a setting is out of range.
@@ -80,11 +76,7 @@ class NonCooperativeGame:
         self.others.reset()
 
     def decide(self, view: View) -> Choice:
-        """Play against the most critical partner, mind everybody else, or change lanes if that game is worth it.
-
-        Args:
-            view: What the CAV sees.
-        """
+        """Play against the most critical partner, mind everybody else, or change lanes if that game is worth it."""
         ego = view.scene.ego
         waited = self._patience.waited(ego.id, ego.speed, view.time)
         change, refused = self.others.lanes.choose(view, self.others.idm, self.refuses)
@@ -108,10 +100,6 @@ class NonCooperativeGame:
     def play(self, view: View, met: Sequence[Encounter]) -> tuple[float, str, Precedence]:
         """Play against one partner.
 
-        Args:
-            view: What the CAV sees.
-            met: Where the two meet, on each way that the partner may take, most urgent first.
-
         Returns:
             Acceleration [m/s2], why, and who goes first by that.
         """
@@ -131,13 +119,7 @@ class NonCooperativeGame:
         return float(ACCELERATIONS[row]), said, Precedence(*pair, f"{pair[0]} is first by {said}")
 
     def answers(self, game: PassingGame, first: bool, among: int = len(ACCELERATIONS)) -> tuple[int, ...]:
-        """Return the action that is expected of a partner of each type.
-
-        Args:
-            game: The game.
-            first: Whether both would agree that the ego vehicle goes first.
-            among: Number of accelerations that the partner is expected to choose from, the highest ones.
-        """
+        """Return the action that is expected of a partner of each type."""
         own = game.own(self.own)[:, :among]
 
         def agreed(row: int, column: int) -> bool:
@@ -148,13 +130,7 @@ class NonCooperativeGame:
         )
 
     def refuses(self, view: View, side: Side, idm: IntelligentDriver) -> str:
-        """Say why the game of a lane change ends with keeping the lane; nothing if it ends with the change.
-
-        Args:
-            view: What the CAV sees.
-            side: The lane beside.
-            idm: How everybody follows.
-        """
+        """Say why the game of a lane change ends with keeping the lane; nothing if it ends with the change."""
         if side.behind is None or side.behind.gap is None:
             return ""
         game = LaneGame(view, side, idm, self.hold, self.times)

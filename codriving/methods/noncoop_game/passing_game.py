@@ -47,7 +47,6 @@ def passing_game(met: Sequence[Encounter], speed: float, top: float, hold: float
     """Work out all outcomes with one other vehicle, the worst of all ways that it may take.
 
     Args:
-        met: Where the two meet, on each way, most urgent first; at least one.
         speed: Speed of the ego vehicle [m/s].
         top: Highest target speed [m/s].
         hold: How long an acceleration is held [s].

@@ -18,11 +18,7 @@ class Temper:
     function of the gap in time is what is meant.
 
     Attributes:
-        efficiency: Weight of the way covered.
-        comfort: Weight of the acceleration.
-        safety: Weight of the risk.
         risk_time: Gap in time at which the risk has fallen to 1/e [s].
-        share: Share of such drivers, 0 to 1.
 
     Raises:
         ConfigError: If a number is out of range.
@@ -47,7 +43,6 @@ class Temper:
         """Return the payoff of every outcome of a game.
 
         Args:
-            progress: Way covered, as a share of what is possible, in a shape that fits the others.
             accelerations: Acceleration [m/s2], likewise.
             gaps: Gap in time between the two, 0 or more (n, m) [s].
             overlaps: Whether the two collide (n, m).

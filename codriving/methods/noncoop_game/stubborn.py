@@ -14,8 +14,6 @@ class Stubborn:
         """Note that somebody should brake from now on.
 
         Args:
-            ego: Who expects it.
-            other: The other vehicle.
             speed: Its speed now [m/s].
         """
         self._speeds[ego, other] = speed
@@ -24,8 +22,6 @@ class Stubborn:
         """Whether somebody was expected to brake before and has not; whoever does is taken at its word again.
 
         Args:
-            ego: Who expected it.
-            other: The other vehicle.
             speed: Its speed now [m/s].
         """
         before = self._speeds.get((ego, other))

@@ -15,9 +15,6 @@ class Prefix:
     """The first vehicles of an order, scheduled. It knows all that the rest of the order depends on.
 
     Attributes:
-        order: Who has been placed, first to last.
-        waiting: Who has not.
-        mask: Those who wait, as bits.
         earliest: When each vehicle can pass at the earliest after those placed, by number [s].
         delay: Weighted delay of those placed [s].
         finish: When the last of those placed has left its zones [s].
@@ -39,12 +36,7 @@ class Coded:
     """An instance with its objective; vehicles are numbered by id.
 
     Attributes:
-        names: Ids, by number.
         eta: Earliest arrival, by number [s].
-
-    Args:
-        instance: The problem.
-        objective: What a good order is.
     """
 
     def __init__(self, instance: Instance, objective: Objective) -> None:
@@ -72,31 +64,17 @@ class Coded:
         return Prefix([], list(everybody), (1 << len(self.names)) - 1, list(self.eta), 0.0, finish)
 
     def candidates(self, prefix: Prefix) -> list[int]:
-        """Return who can be next: those who need not let anybody go who waits, and everybody if there are none.
-
-        Args:
-            prefix: Who has been placed.
-        """
+        """Return who can be next: those who need not let anybody go who waits, and everybody if there are none."""
         held, mask = self._held, prefix.mask
         return [k for k in prefix.waiting if not held[k] & mask] or prefix.waiting[:]
 
     def start(self, prefix: Prefix, number: int) -> float:
-        """Return when a vehicle can pass at the earliest after those placed [s].
-
-        Args:
-            prefix: Who has been placed.
-            number: The vehicle.
-        """
+        """Return when a vehicle can pass at the earliest after those placed [s]."""
         windows = self._windows[number]
         return after_windows(prefix.earliest[number], windows) if windows else prefix.earliest[number]
 
     def place(self, prefix: Prefix, number: int) -> None:
-        """Let a vehicle be the next one of an order.
-
-        Args:
-            prefix: Who has been placed; changed.
-            number: The vehicle.
-        """
+        """Let a vehicle be the next one of an order."""
         earliest = prefix.earliest
         time = self.start(prefix, number)
         prefix.order.append(number)
@@ -111,16 +89,7 @@ class Coded:
                 earliest[other] = time + apart
 
     def complete(self, prefix: Prefix, heuristic: float, draw: Callable[[], float]) -> tuple[Prefix, list[int]]:
-        """Complete an order by chance and rule of thumb; most of the time of a search is spent here.
-
-        Args:
-            prefix: Who has been placed.
-            heuristic: Share of the choices in which whoever can pass first goes next; of equals, who arrives first.
-            draw: Returns a random number from 0 to 1.
-
-        Returns:
-            The whole order, and who was chosen where there was a choice.
-        """
+        """Complete an order by chance and rule of thumb; most of the time of a search is spent here."""
         held, followers, windows, eta = self._held, self._followers, self._windows, self.eta
         base, weights, share = self._base, self._weights, self._share
         earliest, order, waiting, mask = prefix.earliest[:], prefix.order[:], prefix.waiting[:], prefix.mask
@@ -153,37 +122,21 @@ class Coded:
         return Prefix(order, waiting, mask, earliest, delay, finish), chosen
 
     def cost(self, prefix: Prefix) -> float:
-        """Return J of those placed [s]; it only grows as the order does.
-
-        Args:
-            prefix: Who has been placed.
-        """
+        """Return J of those placed [s]; it only grows as the order does."""
         return prefix.delay + self._share * prefix.finish if self._share else prefix.delay
 
     def bound(self, prefix: Prefix) -> float:
-        """Return what J of any order that begins so is at least [s].
-
-        Args:
-            prefix: Who has been placed.
-        """
+        """Return what J of any order that begins so is at least [s]."""
         base, weights, earliest = self._base, self._weights, prefix.earliest
         return self.cost(prefix) + sum([weights[k] * min(earliest[k] - base[k], LONGEST_WAIT) for k in prefix.waiting])
 
     def run(self, order: Sequence[str]) -> Prefix:
-        """Schedule a whole order.
-
-        Args:
-            order: Ids of everybody, first to last.
-        """
+        """Schedule a whole order."""
         prefix = self.root()
         for name in order:
             self.place(prefix, self._number[name])
         return prefix
 
     def named(self, order: Sequence[int]) -> list[str]:
-        """Return the ids of an order.
-
-        Args:
-            order: Numbers, first to last.
-        """
+        """Return the ids of an order."""
         return [self.names[k] for k in order]

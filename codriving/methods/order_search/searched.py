@@ -24,8 +24,6 @@ class SearchedOrder(ABC):
 
     Args:
         hysteresis: J that another order must save to be taken, 0 to 10 [s].
-        evacuation_weight: Weight of the evacuation time in J, 0 to 10.
-        fairness: Weight of a vehicle's delay in J, by id; 1 for whoever is not named.
 
     Raises:
         ConfigError: If a value is out of range.
@@ -43,22 +41,13 @@ class SearchedOrder(ABC):
         self.reset(0)
 
     def reset(self, seed: int) -> None:
-        """Begin an episode: there is no order yet.
-
-        Args:
-            seed: Seed of the episode.
-        """
+        """Begin an episode: there is no order yet."""
         self.tickets.reset()
         self.seed, self.calls = seed, 0
         self.previous: tuple[str, ...] = ()
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-        """Return the best order that is found.
-
-        Args:
-            instance: The problem of this moment.
-            planner: Not used; orders are judged by their schedules.
-        """
+        """Return the best order that is found."""
         self.calls += 1
         arrival = self.tickets.ranking(instance)
         seeds = [arrival, sequence(instance, inserted(instance, arrival, {}))]
@@ -81,19 +70,10 @@ class SearchedOrder(ABC):
 
     @abstractmethod
     def search(self, problem: Coded, seeds: Sequence[Sequence[str]]) -> Found:
-        """Return the best order that is found.
-
-        Args:
-            problem: The instance and what a good order is.
-            seeds: Orders to begin with.
-        """
+        """Return the best order that is found."""
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Grant the requests that do not overlap and gain most together.
-
-        Args:
-            requests: Lane changes that are wanted, in the order in which they were first asked for.
-        """
+        """Grant the requests that do not overlap and gain most together."""
         return best_subset(requests)
 
 

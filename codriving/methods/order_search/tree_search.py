@@ -13,10 +13,7 @@ class Found:
     """What a search has found.
 
     Attributes:
-        order: The best order, first to last.
         cost: Its J [s].
-        tried: Number of orders that were tried, the seeds left out.
-        complete: Whether that were all that there are.
     """
 
     order: tuple[str, ...]
@@ -32,13 +29,7 @@ class Node:
     that was tried below a node is remembered, so that it is never tried again.
 
     Attributes:
-        prefix: Who has been placed.
-        untried: Who could go next and has not been tried.
-        tail: Choices of the first order that was tried, until they are made a part of the tree.
-        open: Children below which there is something left to try.
-        visits: Orders that were tried below.
         best: J of the best of them [s].
-        exhausted: Whether nothing is left to try.
     """
 
     __slots__ = ("best", "exhausted", "open", "prefix", "tail", "untried", "visits")
@@ -50,26 +41,14 @@ class Node:
 
 
 class TreeSearch:
-    """One search.
-
-    Args:
-        problem: The instance and what a good order is.
-        exploration: Weight of trying what has been tried less often.
-        heuristic: Share of the steps of a rollout in which whoever can pass first goes next.
-        draw: Source of chance.
-    """
+    """One search."""
 
     def __init__(self, problem: Coded, exploration: float, heuristic: float, draw: Random) -> None:
         self.problem, self.exploration, self.heuristic, self.draw = problem, exploration, heuristic, draw
         self.least, self.most = inf, -inf
 
     def search(self, seeds: Iterable[Sequence[str]], iterations: int) -> Found:
-        """Search until the budget is used up or every order has been tried.
-
-        Args:
-            seeds: Orders to begin with; the result is not worse than any of them.
-            iterations: Number of orders that are tried at most.
-        """
+        """Search until the budget is used up or every order has been tried."""
         self.order: list[int] = []
         for seed in seeds:
             whole = self.problem.run(seed)

@@ -47,12 +47,6 @@ def refusals(view: View, before: Sequence[Encounter], limits: Limits, actions: S
     enters no zone in which somebody else may be first before that one has left the way. Everybody else is expected to
     keep the speed.
 
-    Args:
-        view: What the vehicle sees.
-        before: The zones in which the other one may be first.
-        limits: What has to be kept.
-        actions: Actions along the lane; the forecast has to know them as plans.
-
     Returns:
         The reason by action, without those that are acceptable.
     """
@@ -78,9 +72,6 @@ def change_refused(view: View, side: Side, limits: Limits, headway: float) -> st
     """Say why a lane change is not acceptable because of whoever is then ahead; nothing if it is.
 
     Args:
-        view: What the vehicle sees.
-        side: The lane beside.
-        limits: What has to be kept.
         headway: Time gap to whoever is then ahead [s].
     """
     forecast, ego, ahead = view.forecast, view.scene.ego, side.ahead

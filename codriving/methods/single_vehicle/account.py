@@ -8,12 +8,7 @@ from codriving.reasoning.severity import SLOWEST
 
 
 def account(view: View, choice: Choice) -> Situation:
-    """Write down what a decision rests on.
-
-    Args:
-        view: What the vehicle sees.
-        choice: What it does, and why.
-    """
+    """Write down what a decision rests on."""
     name = view.scene.ego.id
     speeds = {n.id: n.speed for n in view.scene.neighbours}
     before = [p.first for p in choice.precedences if p.second == name]

@@ -14,7 +14,6 @@ def mean_accelerations(forecast: Forecast, speed: float, target: float, window: 
     """Return the mean acceleration that SLOWER, IDLE and FASTER lead to, each carried out once [m/s2].
 
     Args:
-        forecast: Holds the vehicle model.
         speed: Speed now [m/s].
         target: Target speed now [m/s].
         window: Time over which the mean is taken [s].

@@ -17,9 +17,6 @@ class Alone:
     """A method by which every CAV decides alone.
 
     Nothing is shared or negotiated: a CAV knows position, speed and heading of those around it, and the map.
-
-    Args:
-        driver: Decides for one CAV at a time.
     """
 
     reasoner = "none"
@@ -29,22 +26,12 @@ class Alone:
         self.name, self.variant = driver.name, driver.variant
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
-        """Begin an episode; nothing is remembered from the one before.
-
-        Args:
-            road_map: The precomputed road.
-            model: How CAVs answer to actions.
-            seed: Seed of the episode; nothing is drawn.
-        """
+        """Begin an episode; nothing is remembered from the one before."""
         self._perception = single_vehicle_perception(road_map, Forecast(model))
         self.driver.reset()
 
     def act(self, world: WorldState) -> Deliberation:
-        """Decide for every CAV on the road, one by one.
-
-        Args:
-            world: The world, of which each CAV sees its own part.
-        """
+        """Decide for every CAV on the road, one by one."""
         perception = self._perception
         perceived = perception.perceive(world)
         situations, decisions, counts = [], [], Counter[str]()

@@ -32,13 +32,7 @@ FIRM = 4.0
 
 @dataclass(frozen=True, slots=True)
 class _Motion:
-    """What an action that is held leads to.
-
-    Attributes:
-        times: Times from now (k,) [s].
-        travelled: Distance travelled (k,) [m].
-        speeds: Speed (k,) [m/s].
-    """
+    """What an action that is held leads to."""
 
     times: Array
     travelled: Array
@@ -65,7 +59,6 @@ class Careful:
         headway: Time gap to be kept to whoever drives ahead [s].
         standstill: Distance to be kept to it at a standstill [m].
         margin: Time between one vehicle's leaving a zone and the other's entering it [s].
-        lanes: Chooses lanes.
 
     Raises:
         ConfigError: If a setting is out of range.
@@ -87,11 +80,7 @@ class Careful:
         self.lanes.reset()
 
     def decide(self, view: View) -> Choice:
-        """Decide for one CAV.
-
-        Args:
-            view: What it sees.
-        """
+        """Decide for one CAV."""
         change, refused = self.lanes.choose(view, self._idm)
         if change is not None:
             return Choice(change.action, change.reason, (), refused)

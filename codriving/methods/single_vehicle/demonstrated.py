@@ -48,7 +48,6 @@ class Demonstrated:
         firm: Braking beyond which nobody is expected to wait any more [m/s2].
         patience: Time after which a waiting vehicle may start into an empty zone [s].
         clear: Time that whoever moves towards that zone must be away from it beyond what the start takes [s].
-        lanes: Chooses lanes.
 
     Raises:
         ConfigError: If a setting is out of range.
@@ -111,24 +110,13 @@ class Demonstrated:
         return Choice(action, _reason(action, refused, waited if creeps else 0.0), precedences, refused, counts)
 
     def refuses(self, view: View, side: Side, idm: IntelligentDriver) -> str:
-        """Say why a lane change is refused; nothing if it is not.
-
-        Args:
-            view: What the CAV sees.
-            side: The lane beside.
-            idm: How everybody follows.
-        """
+        """Say why a lane change is refused; nothing if it is not."""
         must = view.scene.must_change is not None
         headway = self.merging if must else self.limits.headway
         return self.lanes.braked_for(view, side, idm) or change_refused(view, side, self.limits, headway)
 
     def first(self, view: View, met: tuple[Encounter, ...]) -> tuple[tuple[Encounter, ...], tuple[Precedence, ...]]:
-        """Return the encounters in which the other one may be there first, and who goes first by that.
-
-        Args:
-            view: What the CAV sees.
-            met: Where it is open who goes first.
-        """
+        """Return the encounters in which the other one may be there first, and who goes first by that."""
         ego = view.scene.ego.id
         before, precedences = [], dict[str, Precedence]()
         for e in met:

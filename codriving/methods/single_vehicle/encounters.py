@@ -23,9 +23,6 @@ class Encounter:
     """A zone ahead of which it is open who goes first, with one of the ways that the other one may take.
 
     Attributes:
-        conflict: What is known of it.
-        other: The other vehicle.
-        zone: The zone, seen from the ego vehicle.
         stops: Distance in which the ego vehicle can stop [m].
         firm: Braking beyond which nobody is expected to wait any more [m/s2].
     """
@@ -75,7 +72,6 @@ def encounters(view: View, stops: float, firm: float) -> tuple[Encounter, ...]:
     """Return everything that is open, most urgent first.
 
     Args:
-        view: What the vehicle sees.
         stops: Distance in which it can stop [m].
         firm: Braking beyond which nobody is expected to wait any more [m/s2].
     """
@@ -86,25 +82,14 @@ def encounters(view: View, stops: float, firm: float) -> tuple[Encounter, ...]:
 
 
 def crossing_angle(c: Conflict, zone: ConflictZone, road_map: RoadMap) -> float:
-    """Return by how much the other's direction is turned from one's own where the ways meet, -pi to pi [rad].
-
-    Args:
-        c: The conflict.
-        zone: Its zone, seen from the ego vehicle.
-        road_map: The precomputed road.
-    """
+    """Return by how much the other's direction is turned from one's own where the ways meet, -pi to pi [rad]."""
     own = road_map.paths[c.routes[0]].place(zone.point_i)[2]
     its = road_map.paths[c.routes[1]].place(zone.point_j)[2]
     return (its - own + pi) % (2 * pi) - pi
 
 
 def comes_from_the_right(c: Conflict, road_map: RoadMap) -> bool | None:
-    """Whether the other one comes from the right; None if neither has the other one on its right.
-
-    Args:
-        c: The conflict.
-        road_map: The precomputed road.
-    """
+    """Whether the other one comes from the right; None if neither has the other one on its right."""
     own = road_map.paths[c.routes[0]].place(road_map.routes[c.routes[0]].entry)[2]
     its = road_map.paths[c.routes[1]].place(road_map.routes[c.routes[1]].entry)[2]
     # The y axis points to the right of the x axis, so that who drives towards negative angles comes from the right.
@@ -115,11 +100,6 @@ def comes_from_the_right(c: Conflict, road_map: RoadMap) -> bool | None:
 
 
 def passes_by(e: Encounter, road_map: RoadMap) -> bool:
-    """Whether a vehicle passes by the other one where that one stands.
-
-    Args:
-        e: The two.
-        road_map: The precomputed road.
-    """
+    """Whether a vehicle passes by the other one where that one stands."""
     place, there = e.conflict.places
     return all(float(zone.front(there)) < place for zone in road_map.zones(*e.conflict.routes, CLOSE))

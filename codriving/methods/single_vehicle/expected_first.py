@@ -13,8 +13,6 @@ def goes_first(e: Encounter, road_map: RoadMap, tie: float) -> tuple[bool, str]:
     earlier by more than a tie. A tie is broken by right before left, and by the names of the two.
 
     Args:
-        e: The two.
-        road_map: The precomputed road.
         tie: Difference of the times to the zone up to which both count as there at once [s].
 
     Returns:

@@ -21,8 +21,6 @@ class Change:
     """A lane change that is safe and wanted.
 
     Attributes:
-        action: LANE_LEFT or LANE_RIGHT.
-        reason: Why, in one sentence.
         gain: What it is worth [m/s2].
     """
 
@@ -33,14 +31,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """The lane beside, as seen from there.
-
-    Attributes:
-        lane: The lane.
-        ahead: Whoever would be next ahead there.
-        behind: Whoever would be next behind there.
-        far: Id of somebody two lanes away who might change onto the same lane, or nothing.
-    """
+    """The lane beside, as seen from there."""
 
     lane: LaneId
     ahead: Neighbour | None
@@ -56,7 +47,6 @@ class LaneChoice:
     """Changes lanes by MOBIL (Kesting, Treiber and Helbing, 2007), and where the route asks for it.
 
     Args:
-        politeness: Weight of what those behind gain or lose, 0 to 1.
         threshold: Gain below which nobody changes lanes [m/s2].
         safe_braking: Hardest braking asked of oneself and of the new follower [m/s2].
         least_gap: Smallest free distance to either neighbour on the new lane [m].
@@ -97,13 +87,7 @@ class LaneChoice:
     def choose(
         self, view: View, idm: IntelligentDriver, lets_in: LetsIn | None = None
     ) -> tuple[Change | None, dict[Action, str]]:
-        """Return the lane change that is worth most, and why others are left out.
-
-        Args:
-            view: What the vehicle sees.
-            idm: How it, and as far as it knows everybody else, follows.
-            lets_in: Says why a change in front of the new follower is refused; by default for its braking.
-        """
+        """Return the lane change that is worth most, and why others are left out."""
         refused: dict[Action, str] = {}
         options = []
         for action in (a for a in SIDES if a in view.actions):
@@ -146,14 +130,7 @@ class LaneChoice:
         return ""
 
     def unsafe(self, view: View, side: Side, idm: IntelligentDriver, must: bool) -> str:
-        """Say why a lane change is not safe, whatever the new follower does; nothing if it is.
-
-        Args:
-            view: What the vehicle sees.
-            side: The lane beside.
-            idm: How everybody follows.
-            must: Whether the route asks for it.
-        """
+        """Say why a lane change is not safe, whatever the new follower does; nothing if it is."""
         if side.far and not must:
             return f"{side.far} is alongside on the other side and might change there, too"
         ahead, behind = side.ahead, side.behind
@@ -166,13 +143,7 @@ class LaneChoice:
         return ""
 
     def braked_for(self, view: View, side: Side, idm: IntelligentDriver) -> str:
-        """Say that the new follower would have to brake too hard, if it would.
-
-        Args:
-            view: What the vehicle sees.
-            side: The lane beside.
-            idm: How everybody follows.
-        """
+        """Say that the new follower would have to brake too hard, if it would."""
         behind = side.behind
         if behind is None or behind.gap is None:
             return ""
@@ -180,13 +151,7 @@ class LaneChoice:
         return f"{behind.id} behind would have to brake at {braking:.1f} m/s2" if braking > self.safe_braking else ""
 
     def gain(self, view: View, side: Side, idm: IntelligentDriver) -> float:
-        """Return MOBIL's incentive: what the vehicle gains, and politely what those behind it do [m/s2].
-
-        Args:
-            view: What the vehicle sees.
-            side: The lane beside.
-            idm: How everybody follows.
-        """
+        """Return MOBIL's incentive: what the vehicle gains, and politely what those behind it do [m/s2]."""
         scene, top = view.scene, view.top
         speed, bodies = scene.ego.speed, scene.ego.length
         here_ahead, here_behind = role(scene, Role.LEADING), role(scene, Role.REARING)
@@ -207,8 +172,6 @@ def look(view: View, action: Action, alongside: float) -> Side | None:
     """Return the lane beside; None if no route along it leads where the vehicle goes.
 
     Args:
-        view: What the vehicle sees.
-        action: LANE_LEFT or LANE_RIGHT.
         alongside: Distance along the road within which somebody two lanes away counts [m].
     """
     scene, changes = view.scene, view.road_map.changes
@@ -232,12 +195,7 @@ def look(view: View, action: Action, alongside: float) -> Side | None:
 
 
 def role(scene: SceneDescription, wanted: Role) -> Neighbour | None:
-    """Return who drives next ahead or behind.
-
-    Args:
-        scene: What the vehicle sees.
-        wanted: Which of the two.
-    """
+    """Return who drives next ahead or behind."""
     return next((n for n in scene.neighbours if n.role is wanted), None)
 
 

@@ -15,7 +15,6 @@ class Leader:
     """Somebody, or something, that a vehicle must not run into.
 
     Attributes:
-        id: Vehicle id, or what it is.
         gap: Free distance [m].
         speed: Its speed along the way [m/s].
     """
@@ -29,10 +28,6 @@ def leaders(scene: SceneDescription, road_map: RoadMap) -> tuple[Leader, ...]:
     """Return everybody who drives ahead, at the smallest gap on any of the ways, in order of id.
 
     The end of a lane that has to be left stands still.
-
-    Args:
-        scene: What the vehicle sees.
-        road_map: The precomputed road.
     """
     ways = ((scene.intent.route, scene.place), *scene.covers)
     found = []
@@ -60,7 +55,6 @@ def lead(zone: ConflictZone, place: float, other: float) -> float:
     """Return by how much another vehicle is ahead on a stretch that two routes share [m]; negative if it is behind.
 
     Args:
-        zone: The zone, seen from the vehicle.
         place: Arc length of the vehicle [m].
         other: Arc length of the other vehicle [m].
     """

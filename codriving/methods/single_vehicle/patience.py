@@ -13,7 +13,6 @@ class Patience:
         """Return how long a CAV has been standing, now that its speed is known [s].
 
         Args:
-            name: Its id.
             speed: Its speed [m/s].
             time: Simulated time [s].
         """

@@ -17,11 +17,6 @@ class View:
     """One CAV's view of one moment.
 
     Attributes:
-        scene: What it sees; nobody in it has an intent, or is known to be a CAV.
-        conflicts: Its conflicts with all ways that the map allows the others, most urgent first.
-        actions: Actions that the road allows it.
-        road_map: The precomputed road.
-        forecast: Predictions of this step.
         time: Simulated time [s].
     """
 
@@ -40,15 +35,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What a driver does, and why.
-
-    Attributes:
-        action: The action.
-        reason: Why, in one sentence.
-        precedences: Who goes first, in its own view, wherever it is open.
-        refused: Why it leaves out actions, by action.
-        counts: Counters of the decision.
-    """
+    """What a driver does, and why."""
 
     action: Action
     reason: str
@@ -58,12 +45,7 @@ class Choice:
 
 
 class Driver(Protocol):
-    """Drives CAVs of which each is on its own; the same rules for all of them.
-
-    Attributes:
-        name: Name of the method in tables.
-        variant: Name of the variant in tables.
-    """
+    """Drives CAVs of which each is on its own; the same rules for all of them."""
 
     name: str
     variant: str
@@ -73,9 +55,5 @@ class Driver(Protocol):
         ...
 
     def decide(self, view: View) -> Choice:
-        """Decide for one CAV.
-
-        Args:
-            view: What it sees.
-        """
+        """Decide for one CAV."""
         ...

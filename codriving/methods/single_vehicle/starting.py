@@ -16,8 +16,6 @@ def may_start(view: View, met: Sequence[Encounter], waited: float, patience: flo
     """Whether a vehicle has waited long enough, and nobody is in the zones ahead or will be before it is through.
 
     Args:
-        view: What the vehicle sees.
-        met: Where it is open who goes first.
         waited: How long it has been standing [s].
         patience: How long it has to have been standing [s].
         clear: Time that others must be away from a zone beyond what the start takes [s].

@@ -28,10 +28,6 @@ def reconsider(situation: Situation, decision: Decision) -> Decision:
     and that they speak less against: something faster if it was too cautious, and otherwise what they speak most for,
     or what gets it farthest if they are silent. If there is no such action, the decision stands.
 
-    Args:
-        situation: What the CAV is told, with its memories.
-        decision: What the rules decide without them.
-
     Returns:
         A decision; ``recalled`` names the memories that changed it.
     """
@@ -56,10 +52,6 @@ def reconsider(situation: Situation, decision: Decision) -> Decision:
 
 def favour(memories: Iterable[Memory], action: Action) -> float:
     """Weigh the cases in which an action was taken: by how alike and, more slowly, how many they are.
-
-    Args:
-        memories: The memories.
-        action: The action.
 
     Returns:
         Positive if they speak for it, negative if they speak against it, 0 if they are silent.

@@ -12,10 +12,6 @@ CAR_LENGTH = 5.0
 def clear_time(outlook: Outlook, c: Conflict) -> float:
     """Return when the other vehicle is expected to have left the CAV's way into a conflict zone.
 
-    Args:
-        outlook: The CAV's view.
-        c: One of its conflicts.
-
     Returns:
         Time from now [s]; 0 if the CAV goes first, inf if the other one is not expected to leave within the horizon.
     """

@@ -10,9 +10,5 @@ class Decider(Protocol):
     """Decides for all vehicles in one call."""
 
     def decide(self, situations: Sequence[Situation]) -> list[Decision]:
-        """Return one decision a situation, in the same order.
-
-        Args:
-            situations: What each CAV is told.
-        """
+        """Return one decision a situation, in the same order."""
         ...

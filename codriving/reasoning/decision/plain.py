@@ -27,10 +27,6 @@ def is_plain(situation: Situation, sees_conflicts: bool) -> bool:
 
     Its best action is plain if every action along the lane is safe and keeps the order, it is on one lane only, its
     route asks for no lane change, and the rules say FASTER: no lane change would get it clearly farther either.
-
-    Args:
-        situation: What the CAV is told.
-        sees_conflicts: Whether conflicts can be seen.
     """
     scene = situation.scene
     if situation.conflicts or scene.must_change is not None or scene.covers:

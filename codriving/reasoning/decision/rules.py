@@ -33,11 +33,7 @@ class RuleDecider:
     """Goes as fast as is safe and as the passing order allows, and repeats no mistake that is remembered."""
 
     def decide(self, situations: Sequence[Situation]) -> list[Decision]:
-        """Return one decision a situation, in the same order.
-
-        Args:
-            situations: What each CAV is told.
-        """
+        """Return one decision a situation, in the same order."""
         return [reconsider(situation, decide_one(situation)) for situation in situations]
 
 
@@ -45,9 +41,6 @@ def decide_one(situation: Situation) -> Decision:
     """Take the allowed action that gets the CAV farthest if it lets those pass who go first; if equal, the fastest.
 
     Lanes are changed where the route asks for it as soon as that is allowed, and elsewhere to get clearly farther.
-
-    Args:
-        situation: What the CAV is told.
     """
     ego = situation.scene.ego.id
     allowed = [action for action in EAGERNESS if action in situation.allowed]

@@ -21,11 +21,7 @@ def minds_humans(stage: Stage, ego: Mover, travels: Array, lag: int, following: 
     or by the rules of the road, is expected to stay before the zone.
 
     Args:
-        stage: The moment.
-        ego: The CAV.
         travels: Distance of each plan over time (plans, n) [m].
-        lag: Steps that must lie between one's leaving a zone and the other's entering it.
-        following: Steps that must lie between a vehicle ahead and the CAV behind it at the same place.
         pad: Additional room along the route [m].
 
     Returns:

@@ -24,13 +24,7 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """What everybody does in one order.
-
-    Attributes:
-        chosen: Index of each CAV's plan, by id, in the order of planning.
-        works: Which plans of each CAV would have worked (plans,), by id.
-        stuck: Those of whom no plan works; they do what works for longest.
-    """
+    """What everybody does in one order."""
 
     chosen: Mapping[str, int]
     works: Mapping[str, Flags]
@@ -41,15 +35,11 @@ class JointPlans:
     """The plans of one moment.
 
     Args:
-        stage: The moment.
-        before: What each CAV planned a step ago and has not yet done, by id; it is a plan of its own.
         margin: Time between one vehicle's leaving a zone and the next one's entering it [s].
         pad: Additional room along the route [m].
         headway: Time gap to whoever drives ahead [s].
 
     Attributes:
-        stage: The moment.
-        vehicles: All CAVs as movers, by id.
         travels: Distance of each plan over time, by id (plans, steps + 1) [m].
         gains: What each plan is worth, by id (plans,) [m].
     """
@@ -82,19 +72,13 @@ class JointPlans:
         return dict(zip(names, self.stage.forecast.travel_each(states, plans)[:, None], strict=True))
 
     def plan_of(self, name: str, k: int) -> Plan:
-        """Return a plan of a CAV.
-
-        Args:
-            name: Id of the CAV.
-            k: Index of the plan.
-        """
+        """Return a plan of a CAV."""
         return PLANS[k] if k < len(PLANS) else self._continued[name]
 
     def joint(self, sequence: Sequence[str], not_before: Mapping[str, float] | None = None) -> Joint:
         """Plan everybody.
 
         Args:
-            sequence: The passing order of those who have a conflict ahead.
             not_before: Earliest time at which some may reach their first zone, by id [s].
         """
         order = tuple(planning_order(sequence, self.vehicles, self._ahead))
@@ -181,31 +165,17 @@ class JointPlans:
         return self._met[first, second]
 
     def shares_zone(self, first: str, second: str) -> bool:
-        """Whether one CAV has to mind another one that goes before it.
-
-        Args:
-            first: Id of the one that goes first.
-            second: Id of the other.
-        """
+        """Whether one CAV has to mind another one that goes before it."""
         return bool(self._meetings(first, second))
 
     def plan(self, order: Sequence[str]) -> JointPlan:
-        """Return what everybody would do.
-
-        Args:
-            order: Ids of all entrants, first to last.
-        """
+        """Return what everybody would do."""
         joint = self.joint(order)
         travels = {name: self.travels[name][k] for name, k in joint.chosen.items()}
         return JointPlan(not joint.stuck, travels, self.stage.forecast.sample, len(joint.stuck))
 
     def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
         """Return the least time between one vehicle's leaving a shared zone and the other's entering it.
-
-        Args:
-            plan: What everybody does.
-            one: A vehicle.
-            other: Another one.
 
         Returns:
             Time [s]; inf if they share no zone or one of them does not come there within the horizon.

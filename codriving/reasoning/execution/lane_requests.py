@@ -48,15 +48,7 @@ class LaneRequests:
         expected: Mapping[str, tuple[Expected, ...]],
         lag: int,
     ) -> list[Request]:
-        """Return the requests of this moment, first come first.
-
-        Args:
-            stage: The moment.
-            ordering: Who passes first.
-            agreed: The same as it was told to everybody.
-            expected: Motions that are expected, by id.
-            lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
-        """
+        """Return the requests of this moment, first come first."""
         wanted: dict[str, tuple[Action, float]] = {}
         for name in sorted(stage.scenes):
             found = self._wanted(stage, name, agreed, expected, lag)
@@ -75,7 +67,6 @@ class LaneRequests:
         """Note who changes lanes now.
 
         Args:
-            names: Ids of the CAVs.
             time: Simulated time [s].
         """
         for name in sorted(names):
@@ -120,11 +111,6 @@ class LaneRequests:
 
 def incentive(scene: SceneDescription, there: SceneDescription, stage: Stage) -> float:
     """Return what a lane change gains: MOBIL's incentive (Kesting, Treiber and Helbing, 2007).
-
-    Args:
-        scene: What the CAV knows on its lane.
-        there: The same as seen from the lane beside.
-        stage: The moment.
 
     Returns:
         Gain of the CAV, and with the weight of politeness of those behind it on both lanes [m/s2].

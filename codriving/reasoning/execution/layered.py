@@ -32,7 +32,6 @@ class Layered:
     Args:
         gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
         hold: Distance to the first zone within which a waiting vehicle slows down; farther away it keeps its speed [m].
-        brake_anywhere: Whether waiting vehicles slow down wherever they are.
         headway: Time gap below which a vehicle slows down behind whoever drives ahead [s].
 
     Raises:
@@ -53,20 +52,11 @@ class Layered:
         """Begin an episode; nothing is remembered from the one before."""
 
     def planner(self, stage: Stage) -> JointPlans:
-        """Return what plans for everybody in an order, for rules that look at plans.
-
-        Args:
-            stage: The moment.
-        """
+        """Return what plans for everybody in an order, for rules that look at plans."""
         return JointPlans(stage, {}, self.gap, 1.0, self.headway)
 
     def drive(self, stage: Stage, ordering: Ordering) -> Drive:
-        """Let the first layer go and hold everybody else back.
-
-        Args:
-            stage: The moment.
-            ordering: Who passes first.
-        """
+        """Let the first layer go and hold everybody else back."""
         layers = layers_of(stage, ordering)
         plans = self.planner(stage)
         planned = drive_of(stage, plans, plans.joint(ordering.sequence), ordering)
@@ -93,12 +83,7 @@ class Layered:
 
 
 def layers_of(stage: Stage, ordering: Ordering) -> dict[str, int]:
-    """Return each entrant's layer: one more than the highest of those before it with whom it is in conflict.
-
-    Args:
-        stage: The moment.
-        ordering: Who passes first.
-    """
+    """Return each entrant's layer: one more than the highest of those before it with whom it is in conflict."""
     layers: dict[str, int] = {}
     for name in ordering.sequence:
         others = {c.other for c in stage.conflicts[name]}

@@ -13,13 +13,9 @@ class Meeting:
     """A stretch that two CAVs share.
 
     Attributes:
-        zones: The zones, seen from the vehicle that goes second.
         place: Its arc length [m].
         there: Arc length of the one that goes first [m].
-        until: Steps for which it is minded.
-        lag: Steps that must lie between the other's leaving and its entering.
         pad: Additional room along the route [m].
-        smaller: The zones of smaller footprints, for vehicles that are already closer together than they should be.
     """
 
     zones: tuple[ConflictZone, ...]

@@ -47,22 +47,13 @@ class Planned:
         self._plans: JointPlans | None = None
 
     def planner(self, stage: Stage) -> JointPlans:
-        """Return what plans for everybody in an order.
-
-        Args:
-            stage: The moment.
-        """
+        """Return what plans for everybody in an order."""
         if self._plans is None or self._plans.stage is not stage:
             self._plans = JointPlans(stage, self._before, self.margin, self.pad, self.headway)
         return self._plans
 
     def drive(self, stage: Stage, ordering: Ordering) -> Drive:
-        """Return the first action of everybody's plan.
-
-        Args:
-            stage: The moment.
-            ordering: Who passes first.
-        """
+        """Return the first action of everybody's plan."""
         plans = self.planner(stage)
         joint = plans.joint(ordering.sequence, ordering.not_before)
         self._before = {name: plans.plan_of(name, k)[1:] or plans.plan_of(name, k) for name, k in joint.chosen.items()}
@@ -70,14 +61,7 @@ class Planned:
 
 
 def drive_of(stage: Stage, plans: JointPlans, joint: Joint, ordering: Ordering) -> Drive:
-    """Write down what a joint plan means for the step.
-
-    Args:
-        stage: The moment.
-        plans: The planner.
-        joint: What everybody does.
-        ordering: Who passes first.
-    """
+    """Write down what a joint plan means for the step."""
     actions, reasons, expected, progress = {}, {}, {}, {}
     for name, k in joint.chosen.items():
         plan = plans.plan_of(name, k)

@@ -15,21 +15,12 @@ BODY = 5.0
 
 
 def cavs(stage: Stage) -> dict[str, Mover]:
-    """Return all CAVs as movers, each as it knows itself.
-
-    Args:
-        stage: The moment.
-    """
+    """Return all CAVs as movers, each as it knows itself."""
     return {name: known[name] for name, known in sorted(stage.known.items())}
 
 
 def drives_ahead(stage: Stage, vehicles: Mapping[str, Mover]) -> set[tuple[str, str]]:
-    """Return the pairs of CAVs (ahead, behind) that follow one another, whatever the order says.
-
-    Args:
-        stage: The moment.
-        vehicles: All CAVs, by id.
-    """
+    """Return the pairs of CAVs (ahead, behind) that follow one another, whatever the order says."""
     found = set()
     for behind in vehicles.values():
         for ahead in vehicles.values():
@@ -60,17 +51,7 @@ def _is_alongside(stage: Stage, changing: Mover, other: Mover) -> bool:
 
 
 def planning_order(sequence: Sequence[str], vehicles: Mapping[str, Mover], ahead: set[tuple[str, str]]) -> list[str]:
-    """Line all CAVs up for planning.
-
-    Args:
-        sequence: The passing order of those who have a conflict ahead.
-        vehicles: All CAVs, by id.
-        ahead: Pairs (ahead, behind) that follow one another.
-
-    Returns:
-        All CAVs: the passing order, whoever drives ahead before those behind, and those without a conflict from the
-        front to the back.
-    """
+    """Line all CAVs up for planning."""
     rank = {name: i for i, name in enumerate(sequence)}
     leaders: dict[str, list[str]] = {}
     for leader, follower in sorted(ahead):

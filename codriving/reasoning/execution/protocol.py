@@ -15,12 +15,8 @@ class Drive:
     """What an executor makes of an order.
 
     Attributes:
-        actions: Action of each CAV along its lane, by id.
-        reasons: Why, in one sentence each, by id.
-        expected: Motion that follows if all goes as planned, by id; human drivers as they are predicted.
         progress: How far each CAV gets within the horizon after each first action with which it can keep the order
             [m], by id; no entry for an action with which it cannot.
-        counts: Counters of the step.
     """
 
     actions: Mapping[str, Action]
@@ -34,7 +30,6 @@ class Executor(Protocol):
     """Turns passing orders into actions, step after step of one episode.
 
     Attributes:
-        name: Name of the executor in tables.
         gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
         margin: The same for motions, and for the gap test of lane changes [s].
     """
@@ -48,18 +43,9 @@ class Executor(Protocol):
         ...
 
     def planner(self, stage: Stage) -> JointPlanner:
-        """Return what plans for everybody in an order; it is asked before the order is chosen.
-
-        Args:
-            stage: The moment.
-        """
+        """Return what plans for everybody in an order; it is asked before the order is chosen."""
         ...
 
     def drive(self, stage: Stage, ordering: Ordering) -> Drive:
-        """Return what every CAV does now.
-
-        Args:
-            stage: The moment.
-            ordering: Who passes first.
-        """
+        """Return what every CAV does now."""
         ...

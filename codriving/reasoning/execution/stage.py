@@ -16,12 +16,6 @@ class Stage:
     """One moment.
 
     Attributes:
-        scenes: What each CAV knows, by id.
-        conflicts: Conflicts of each CAV, most urgent first, by id.
-        known: The vehicles that each CAV knows of, itself included, as movers, by id of the CAV.
-        available: Actions that the road allows each CAV, by id.
-        road_map: The precomputed road.
-        forecast: Predictions of this step.
         time: Simulated time [s].
     """
 

@@ -15,11 +15,7 @@ SIZES: tuple[Footprint, ...] = (PLANNING, BODY, TRUE)
 
 
 def first_true(flags: NDArray[np.bool_]) -> Steps:
-    """Return the first step at which a flag is set in each row (plans,); the number of steps where none is.
-
-    Args:
-        flags: Flags over time (plans, n).
-    """
+    """Return the first step at which a flag is set in each row (plans,); the number of steps where none is."""
     return np.asarray(np.where(flags.any(axis=1), flags.argmax(axis=1), flags.shape[1]))
 
 
@@ -27,10 +23,8 @@ def passes_too_early(zone: ConflictZone, ego: Array, first: Array, lag: int, pad
     """Return when a vehicle that goes second first enters a zone that the one before it has not left for long enough.
 
     Args:
-        zone: The zone, seen from the vehicle.
         ego: Its arc length over time (plans, n) [m].
         first: Arc length of the one that goes first, over time (at least n,) [m].
-        lag: Steps that must lie between the other's leaving and the vehicle's entering.
         pad: Additional room along the route [m].
 
     Returns:
@@ -45,11 +39,9 @@ def meets(zone: ConflictZone, ego: Array, low: Array, high: Array, lag: int, pad
     """Return when a vehicle first touches the stretch on which another one may be.
 
     Args:
-        zone: The zone, seen from the vehicle.
         ego: Its arc length over time (plans, n) [m].
         low: Least arc length of the other over time (at least n,) [m].
         high: Greatest arc length of the other over time (at least n,) [m].
-        lag: Steps that must lie between one's leaving and the other's entering.
         pad: Additional room along the route [m].
 
     Returns:

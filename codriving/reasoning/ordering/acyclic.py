@@ -16,7 +16,6 @@ def without_cycles(
     contradicts the times; that link is dropped. A CAV that is not told to go first has to be able to wait.
 
     Args:
-        precedences: The pairs, each with its reason.
         times: When each vehicle is expected to pass [s]; settles what the pairs leave open.
 
     Returns:

@@ -20,11 +20,7 @@ def agreement(
     A human driver goes first unless the CAV is scheduled before the driver can be there.
 
     Args:
-        problem: What was to be ordered.
         times: When each CAV passes, in the order in which they go [s].
-        conflicts: Conflicts of each CAV, by id.
-        reason: Says why the first of two CAVs goes before the second.
-        binding: Whether the order is an instruction (CDA class D).
     """
     rank = {name: k for k, name in enumerate(times)}
     pairs = {(min(c.ego, c.other), max(c.ego, c.other)) for cs in conflicts.values() for c in cs}

@@ -25,46 +25,23 @@ class Coordinator(Protocol):
     """Decides who goes first: one call for all vehicles."""
 
     def negotiate(self, scenes: Scenes, conflicts: Conflicts) -> PassingOrder:
-        """Return an order without cycles for all conflicts.
-
-        Args:
-            scenes: What each CAV knows, by id.
-            conflicts: Conflicts of each CAV, by id.
-        """
+        """Return an order without cycles for all conflicts."""
         ...
 
 
 class RuleCoordinator:
-    """Schedules whoever can pass first, again and again, with the traffic rules as handicaps.
-
-    Args:
-        road_map: The precomputed road.
-        forecast: Predictions of the present step.
-        binding: Whether the order is an instruction (CDA class D).
-    """
+    """Schedules whoever can pass first, again and again, with the traffic rules as handicaps."""
 
     def __init__(self, road_map: RoadMap, forecast: Forecast, binding: bool) -> None:
         self.problems, self.binding = ProblemMaker(road_map, forecast), binding
         self.previous: PassingOrder | None = None
 
     def negotiate(self, scenes: Scenes, conflicts: Conflicts) -> PassingOrder:
-        """Return an order without cycles for all conflicts.
-
-        Args:
-            scenes: What each CAV knows, by id.
-            conflicts: Conflicts of each CAV, by id.
-        """
+        """Return an order without cycles for all conflicts."""
         return self.settle(self.problems.pose(scenes, conflicts, 0.0), conflicts, {})
 
     def settle(self, problem: Problem, conflicts: Conflicts, told: Mapping[Pair, str]) -> PassingOrder:
-        """Return an order without cycles in which some pairs are given.
-
-        Args:
-            problem: What is to be ordered.
-            conflicts: Conflicts of each CAV, by id.
-            told: Pairs of CAVs that somebody else has decided, with the reasons; they must not contradict one another
-                or what is physically fixed.
-        """
+        """Return an order without cycles in which some pairs are given."""
         instance = replace(problem.instance, before=problem.instance.before | told.keys())
         times = improve(self._list_schedule(instance), instance, self.previous)
 

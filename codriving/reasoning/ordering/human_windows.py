@@ -18,11 +18,7 @@ def window(c: Conflict, n: Neighbour, reference: float, road_map: RoadMap, forec
     """Return the times at which a CAV must not pass its reference point because of a human driver.
 
     Args:
-        c: The conflict.
-        n: The human driver.
         reference: Arc length of the CAV's reference point [m].
-        road_map: The precomputed road.
-        forecast: Predictions of the present step.
 
     Returns:
         Begin and end, inf for a driver who gives way [s].
@@ -41,15 +37,7 @@ def window(c: Conflict, n: Neighbour, reference: float, road_map: RoadMap, forec
 def passes_first(
     scene: SceneDescription, n: Neighbour, conflicts: Iterable[Conflict], road_map: RoadMap, forecast: Forecast
 ) -> bool:
-    """Whether a CAV that accelerates is through all its conflicts with a human driver before that one can be there.
-
-    Args:
-        scene: What the CAV knows.
-        n: The human driver.
-        conflicts: Their conflicts.
-        road_map: The precomputed road.
-        forecast: Predictions of the present step.
-    """
+    """Whether a CAV that accelerates is through all its conflicts with a human driver before that one can be there."""
     travel = forecast.reach(scene.ego.speed, True).most
     for c in conflicts:
         reference = scene.place + c.distances[0]
@@ -60,11 +48,6 @@ def passes_first(
 
 
 def is_blocked(c: Conflict, road_map: RoadMap) -> bool:
-    """Whether the other vehicle stands bodily in the way of the CAV.
-
-    Args:
-        c: The conflict.
-        road_map: The precomputed road.
-    """
+    """Whether the other vehicle stands bodily in the way of the CAV."""
     zones = road_map.zones(*c.routes, TRUE)
     return any(z.entry_j < c.places[1] < z.exit_j and c.places[0] <= float(z.front(c.places[1])) for z in zones)

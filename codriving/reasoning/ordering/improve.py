@@ -21,8 +21,6 @@ def improve(times: Mapping[str, float], instance: Instance, previous: PassingOrd
 
     Args:
         times: The schedule to begin with: when each vehicle passes [s].
-        instance: The problem.
-        previous: What has been agreed on before, if anything.
 
     Returns:
         When each vehicle passes, in the order in which they go [s].
@@ -53,8 +51,6 @@ def cost(planned: Mapping[str, float], instance: Instance, previous: PassingOrde
 
     Args:
         planned: When each vehicle passes, in the order in which they go [s].
-        instance: The problem.
-        previous: What has been agreed on before, if anything.
     """
     changed = 0.0
     if previous is not None:

@@ -4,12 +4,7 @@ from codriving.datatypes.ordering_problem import Entrant
 
 
 def reason_between(first: Entrant, second: Entrant) -> str:
-    """Explain the order of two CAVs.
-
-    Args:
-        first: The vehicle that goes first.
-        second: The vehicle that waits.
-    """
+    """Explain the order of two CAVs."""
     if first.committed and not second.committed:
         return f"{first.id} can no longer stop before the conflict zone"
     if second.leader == first.id:
@@ -25,7 +20,6 @@ def reason_human(human_first: bool, begin: float, end: float, time: float) -> st
     """Explain the order of a CAV and a human driver.
 
     Args:
-        human_first: Whether the human driver goes first.
         begin: Time from which the CAV could no longer pass in front [s].
         end: Time from which the CAV can pass behind [s].
         time: When the CAV will pass [s].

@@ -12,31 +12,17 @@ class Negotiation(Protocol):
     """Gives every CAV the order that it goes by."""
 
     def orders(self, scenes: Scenes, conflicts: Conflicts) -> Mapping[str, PassingOrder]:
-        """Return the passing order of each CAV, by id.
-
-        Args:
-            scenes: What each CAV knows, by id.
-            conflicts: Conflicts of each CAV, by id.
-        """
+        """Return the passing order of each CAV, by id."""
         ...
 
 
 class AgreedOrder:
-    """Agreement-seeking (class C) and prescriptive (class D): everybody goes by the coordinator's order.
-
-    Args:
-        coordinator: Whoever decides: the built-in rules or a language model.
-    """
+    """Agreement-seeking (class C) and prescriptive (class D): everybody goes by the coordinator's order."""
 
     def __init__(self, coordinator: Coordinator) -> None:
         self.coordinator = coordinator
 
     def orders(self, scenes: Scenes, conflicts: Conflicts) -> Mapping[str, PassingOrder]:
-        """Return the same order for every CAV.
-
-        Args:
-            scenes: What each CAV knows, by id.
-            conflicts: Conflicts of each CAV, by id.
-        """
+        """Return the same order for every CAV."""
         order = self.coordinator.negotiate(scenes, conflicts)
         return dict.fromkeys(scenes, order)

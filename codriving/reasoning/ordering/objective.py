@@ -14,10 +14,6 @@ LONGEST_WAIT = 60.0
 class Objective:
     """J = D + lambda M: total delay plus a share of the evacuation time.
 
-    Args:
-        evacuation_weight: Weight lambda of the evacuation time, 0 to 10.
-        fairness: Weight of a vehicle's delay, by id, 0 to 100; 1 for whoever is not named.
-
     Raises:
         ConfigError: If a weight is out of range.
     """
@@ -37,18 +33,13 @@ class Objective:
         return ",".join([f"evacuation_weight={self.evacuation_weight:g}"] * (self.evacuation_weight != 0) + named)
 
     def weight(self, name: str) -> float:
-        """Return how much a vehicle's delay counts.
-
-        Args:
-            name: Id of the vehicle.
-        """
+        """Return how much a vehicle's delay counts."""
         return self.fairness.get(name, 1.0)
 
     def value(self, instance: Instance, times: Times) -> float:
         """Return J of a schedule [s].
 
         Args:
-            instance: The problem.
             times: When each vehicle passes its reference point [s].
         """
         delay = sum(self.weight(name) * waited(instance.entrants[name], t) for name, t in times.items())
@@ -61,7 +52,6 @@ def waited(entrant: Entrant, time: float) -> float:
     """Return how much later than at the earliest a vehicle passes [s], at most LONGEST_WAIT.
 
     Args:
-        entrant: The vehicle.
         time: When it passes its reference point [s].
     """
     return min(time - entrant.eta, LONGEST_WAIT) if isfinite(entrant.eta) else 0.0
@@ -71,7 +61,6 @@ def left(entrant: Entrant, time: float) -> float:
     """Return when a vehicle has left its last conflict zone [s], at most LONGEST_WAIT after it passes.
 
     Args:
-        entrant: The vehicle.
         time: When it passes its reference point [s].
     """
     return min(max(time, -LONGEST_WAIT), LONGEST_WAIT) + entrant.crossing

@@ -29,12 +29,6 @@ class OwnOrders:
     ``own_view`` estimates the others' arrival at their present speed and decides ties for itself; ``same_rule`` applies
     the coordinator's rule to the shared speeds; ``independent`` guesses once for each conflict, more likely right the
     clearer the difference is.
-
-    Args:
-        road_map: The precomputed road.
-        forecast: Predictions of the present step.
-        reading: Which of the three.
-        seed: Seed of the guesses.
     """
 
     def __init__(self, road_map: RoadMap, forecast: Forecast, reading: OwnOrder, seed: int) -> None:
@@ -42,12 +36,7 @@ class OwnOrders:
         self._guesses: dict[tuple[str, str], bool] = {}
 
     def orders(self, scenes: Scenes, conflicts: Conflicts) -> Mapping[str, PassingOrder]:
-        """Return each CAV's own order, by id.
-
-        Args:
-            scenes: What each CAV knows, by id.
-            conflicts: Conflicts of each CAV, by id.
-        """
+        """Return each CAV's own order, by id."""
         return {ego: self._own(scenes[ego], conflicts[ego]) for ego in scenes}
 
     def _own(self, scene: SceneDescription, conflicts: tuple[Conflict, ...]) -> PassingOrder:

@@ -16,8 +16,6 @@ class Premise:
 
     Attributes:
         leads: By how much the first of each open pair could be there earlier than the second, by their ids [s].
-        held: The CAVs that human drivers hold up, among those in open pairs.
-        cannot_stop: The CAVs that can no longer stop before their zone, among those in open pairs.
     """
 
     leads: Mapping[Pair, float]
@@ -30,9 +28,6 @@ class Premise:
         It can if every pair that is open now has been asked about, if in none of them the earlier one has become the
         later one by more than 1 s, and if the same CAVs of these pairs are held up and can no longer stop. Pairs may
         have fallen away.
-
-        Args:
-            now: What is true now.
         """
         if not now.leads.keys() <= self.leads.keys():
             return False
@@ -43,12 +38,7 @@ class Premise:
 
 
 def premise(instance: Instance, pairs: Iterable[Pair]) -> Premise:
-    """Return what an order of some pairs rests on.
-
-    Args:
-        instance: The ordering problem.
-        pairs: The open pairs.
-    """
+    """Return what an order of some pairs rests on."""
     pairs, entrants = list(pairs), instance.entrants
     concerned = [entrants[name] for name in sorted({name for pair in pairs for name in pair})]
     return Premise(
@@ -59,12 +49,7 @@ def premise(instance: Instance, pairs: Iterable[Pair]) -> Premise:
 
 
 def open_pairs(instance: Instance, pairs: Iterable[Pair]) -> list[Pair]:
-    """Return the pairs whose order does not follow from what is physically fixed.
-
-    Args:
-        instance: The ordering problem.
-        pairs: Pairs of CAVs in conflict.
-    """
+    """Return the pairs whose order does not follow from what is physically fixed."""
     after: dict[str, set[str]] = {}
     for first, second in instance.before:
         after.setdefault(first, set()).add(second)
@@ -74,9 +59,6 @@ def open_pairs(instance: Instance, pairs: Iterable[Pair]) -> list[Pair]:
 
 def find_circle(pairs: Iterable[Pair]) -> list[str] | None:
     """Return a circle of an order, or None if it has none.
-
-    Args:
-        pairs: Who goes before whom.
 
     Returns:
         The vehicles of the circle, each before the next one; the first one again at the end.

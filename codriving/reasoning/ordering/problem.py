@@ -27,12 +27,7 @@ Passages = Mapping[str, Mapping[str, tuple[float, float]]]
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """An ordering problem and what is known of the human drivers in it.
-
-    Attributes:
-        instance: Who is to be ordered.
-        passages: The times that human drivers block, by CAV and driver.
-    """
+    """An ordering problem and what is known of the human drivers in it."""
 
     instance: Instance
     passages: Passages
@@ -42,8 +37,6 @@ class ProblemMaker:
     """Poses the ordering problem of each moment.
 
     Args:
-        road_map: The precomputed road.
-        forecast: Predictions of the present step.
         gap: Time between one vehicle's leaving a zone and the next one's entering it [s].
     """
 
@@ -54,8 +47,6 @@ class ProblemMaker:
         """Return the problem of one moment: every CAV that still has a conflict ahead is to be ordered.
 
         Args:
-            scenes: What each CAV knows, by id.
-            conflicts: Conflicts of each CAV, by id.
             time: Simulated time [s].
         """
         entrants = {ego: self._entrant(scenes[ego], conflicts[ego]) for ego in sorted(scenes) if conflicts[ego]}

@@ -16,10 +16,7 @@ class Ordering:
     """The answer of an ordering method.
 
     Attributes:
-        sequence: Everybody, first to last; it respects what is physically fixed.
         times: When each is to pass its reference point, in the same order [s].
-        reasons: Why one goes before another, in words, for the pairs about which the method has something to say.
-        counts: Counters of the search, for instance how many orders were tried.
         not_before: Earliest time at which a vehicle may pass its reference point even if nobody is in its way [s]; only
             of those whom the method holds back for longer than their conflicts do.
     """
@@ -36,10 +33,8 @@ class JointPlan:
     """What everybody would do in one order, planned one after another with the exact vehicle model.
 
     Attributes:
-        feasible: Whether everybody has a plan that touches nobody.
         travels: Distance of each CAV over time, by id; each (steps + 1,) [m].
         sample: Time between two samples [s].
-        stuck: How many have no such plan.
     """
 
     feasible: bool
@@ -48,11 +43,7 @@ class JointPlan:
     stuck: int = 0
 
     def speed(self, name: str) -> NDArray[np.float64]:
-        """Return the speed of a CAV over time (steps + 1,) [m/s].
-
-        Args:
-            name: Its id.
-        """
+        """Return the speed of a CAV over time (steps + 1,) [m/s]."""
         return np.gradient(self.travels[name], self.sample, edge_order=2)
 
 
@@ -60,20 +51,11 @@ class JointPlanner(Protocol):
     """Plans for everybody in a given order; the same planner that drives the cars."""
 
     def plan(self, order: Sequence[str]) -> JointPlan:
-        """Return what everybody would do.
-
-        Args:
-            order: Ids of all entrants, first to last.
-        """
+        """Return what everybody would do."""
         ...
 
     def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
         """Return the time between one vehicle's leaving a shared zone and the other's entering it, the least of all.
-
-        Args:
-            plan: What everybody does.
-            one: A vehicle.
-            other: Another one.
 
         Returns:
             Time [s]; inf if they share no zone or one of them does not come there within the horizon.
@@ -82,37 +64,19 @@ class JointPlanner(Protocol):
 
 
 class OrderRule(Protocol):
-    """Chooses the order of an instance, step after step of one episode.
-
-    Attributes:
-        name: Name of the method in tables.
-        variant: What tells it from its default settings, in words for tables; empty for the default.
-    """
+    """Chooses the order of an instance, step after step of one episode."""
 
     name: str
     variant: str
 
     def reset(self, seed: int) -> None:
-        """Begin an episode; nothing is remembered from the one before.
-
-        Args:
-            seed: Seed of the episode, for rules that draw.
-        """
+        """Begin an episode; nothing is remembered from the one before."""
         ...
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-        """Return who passes first.
-
-        Args:
-            instance: The problem of this moment.
-            planner: What everybody would do in an order, for rules that look at it.
-        """
+        """Return who passes first."""
         ...
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Return who may change lanes now.
-
-        Args:
-            requests: Lane changes that are wanted, in the order in which they were first asked for.
-        """
+        """Return who may change lanes now."""
         ...

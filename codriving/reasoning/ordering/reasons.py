@@ -9,13 +9,7 @@ from codriving.reasoning.ordering.tickets import Ticket
 
 
 def reasons(instance: Instance, order: Sequence[str], chosen: Callable[[str, str], str]) -> dict[Pair, str]:
-    """Give a reason for each pair of an order that is in conflict.
-
-    Args:
-        instance: The problem.
-        order: Everybody, first to last.
-        chosen: Says why the first of two goes before the second, where that is not physically fixed.
-    """
+    """Give a reason for each pair of an order that is in conflict."""
     return {
         (one, other): fixed(instance, one, other) if (one, other) in instance.before else chosen(one, other)
         for one, other in combinations(order, 2)
@@ -24,13 +18,7 @@ def reasons(instance: Instance, order: Sequence[str], chosen: Callable[[str, str
 
 
 def fixed(instance: Instance, one: str, other: str) -> str:
-    """Say why it is physically fixed that one vehicle goes before another one.
-
-    Args:
-        instance: The problem.
-        one: The vehicle that goes first.
-        other: The other one.
-    """
+    """Say why it is physically fixed that one vehicle goes before another one."""
     first, second = instance.entrants[one], instance.entrants[other]
     if second.leader == one:
         return f"{one} drives ahead of {other}"
@@ -40,13 +28,7 @@ def fixed(instance: Instance, one: str, other: str) -> str:
 
 
 def by_ticket(one: str, other: str, held: Mapping[str, Ticket]) -> str:
-    """Say what the tickets of two vehicles have to do with their order.
-
-    Args:
-        one: The vehicle that goes first.
-        other: The other one.
-        held: Tickets, by id.
-    """
+    """Say what the tickets of two vehicles have to do with their order."""
     if one in held and other in held:
         times = f"({held[one].time:.1f} s against {held[other].time:.1f} s)"
         if held[one] <= held[other]:
@@ -63,9 +45,6 @@ def by_slot(one: str, other: str, held: Mapping[str, Ticket], times: Times) -> s
     """Say why the slot of one vehicle comes before that of another one.
 
     Args:
-        one: The vehicle that goes first.
-        other: The other one.
-        held: Tickets, by id.
         times: Slots [s].
     """
     if other in held and (one not in held or held[one] > held[other]):

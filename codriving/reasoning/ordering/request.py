@@ -12,11 +12,8 @@ class Request:
     """A CAV's wish to change lanes.
 
     Attributes:
-        ego: Id of the CAV.
-        action: LANE_LEFT or LANE_RIGHT.
         incentive: What it and those behind it gain (MOBIL) [m/s2]; inf if its route asks for the change.
         since: Simulated time at which it first asked [s].
-        excludes: Ids of the CAVs whose requests overlap with it in space and time.
     """
 
     ego: str
@@ -27,14 +24,7 @@ class Request:
 
 
 def in_order(requests: Iterable[Request]) -> frozenset[str]:
-    """Grant one request after another if it overlaps with none that has been granted.
-
-    Args:
-        requests: The requests, the most deserving first.
-
-    Returns:
-        Ids of those who may change lanes.
-    """
+    """Grant one request after another if it overlaps with none that has been granted."""
     granted: set[str] = set()
     for request in requests:
         if not granted & request.excludes:
@@ -43,14 +33,7 @@ def in_order(requests: Iterable[Request]) -> frozenset[str]:
 
 
 def best_subset(requests: Sequence[Request]) -> frozenset[str]:
-    """Grant the requests that do not overlap and gain most together.
-
-    Args:
-        requests: The requests; of more than twelve only the twelve that gain most are looked at.
-
-    Returns:
-        Ids of those who may change lanes.
-    """
+    """Grant the requests that do not overlap and gain most together."""
     bounded = sorted(requests, key=lambda r: (-min(r.incentive, 1e6), r.since, r.ego))[:12]
     best: tuple[float, tuple[str, ...]] = (0.0, ())
     for size in range(1, len(bounded) + 1):

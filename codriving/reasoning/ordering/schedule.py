@@ -12,7 +12,6 @@ def start_time(entrant: Entrant, earlier: Times, separation: Mapping[Pair, float
     """Return the earliest time at which a vehicle can pass after those already scheduled.
 
     Args:
-        entrant: The vehicle.
         earlier: Time of each vehicle already scheduled [s].
         separation: Time that must lie between two vehicles, by (first, second) [s].
 
@@ -46,10 +45,6 @@ def after_windows(time: float, windows: Sequence[tuple[float, float]]) -> float:
 def schedule(instance: Instance, order: Sequence[str]) -> dict[str, float] | None:
     """Schedule an order, first to last.
 
-    Args:
-        instance: The problem.
-        order: Everybody, first to last.
-
     Returns:
         When each vehicle passes, in that order [s]; None if the order contradicts what is physically fixed.
     """
@@ -67,10 +62,6 @@ def schedule(instance: Instance, order: Sequence[str]) -> dict[str, float] | Non
 def repaired(instance: Instance, ranking: Sequence[str]) -> list[str]:
     """Turn a ranking into an order that respects what is physically fixed.
 
-    Args:
-        instance: The problem.
-        ranking: Everybody, the one who should go first at the front.
-
     Returns:
         Everybody; again and again the first of the ranking whose predecessors have gone. Where the fixed pairs form a
         circle, as only vehicles that collide anyway can, the first of the ranking goes.
@@ -85,31 +76,17 @@ def repaired(instance: Instance, ranking: Sequence[str]) -> list[str]:
 
 
 def total_delay(instance: Instance, times: Times) -> float:
-    """Return the time that everybody loses together against going at the earliest [s].
-
-    Args:
-        instance: The problem.
-        times: A schedule.
-    """
+    """Return the time that everybody loses together against going at the earliest [s]."""
     return sum(t - instance.entrants[name].eta for name, t in times.items())
 
 
 def evacuation_time(instance: Instance, times: Times) -> float:
-    """Return when the last vehicle has left its conflict zones [s]; 0 if there is nobody.
-
-    Args:
-        instance: The problem.
-        times: A schedule.
-    """
+    """Return when the last vehicle has left its conflict zones [s]; 0 if there is nobody."""
     return max((t + instance.entrants[name].crossing for name, t in times.items()), default=0.0)
 
 
 def timed(instance: Instance, order: Sequence[str]) -> dict[str, float]:
     """Schedule an order as it stands, even one that contradicts what is physically fixed.
-
-    Args:
-        instance: The problem.
-        order: Some or all of the vehicles, first to last.
 
     Returns:
         When each vehicle passes, in that order [s].

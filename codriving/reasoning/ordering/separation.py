@@ -17,10 +17,6 @@ FOLLOWS = (7.0, 0.5)
 def lag_length(zone: ConflictZone, seen_from_i: bool = True) -> float:
     """Return how much farther along the first vehicle must be than the second, at most, through a zone.
 
-    Args:
-        zone: The zone.
-        seen_from_i: Whether the vehicle on route i goes first; otherwise the one on route j does.
-
     Returns:
         Largest difference of the two arc lengths at which they still touch [m].
     """

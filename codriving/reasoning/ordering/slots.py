@@ -17,8 +17,6 @@ def earliest_slot(instance: Instance, name: str, scheduled: Times) -> float:
     of one of them a time may lie in another one, so all of them are asked again until nothing changes.
 
     Args:
-        instance: The problem.
-        name: Id of the vehicle.
         scheduled: When the vehicles already scheduled pass [s].
 
     Returns:
@@ -41,8 +39,6 @@ def inserted(instance: Instance, ranking: Sequence[str], scheduled: Times) -> di
     """Give one vehicle after another the earliest slot among those scheduled before it.
 
     Args:
-        instance: The problem.
-        ranking: Who is to be inserted, in this order.
         scheduled: Those who have their times already [s].
 
     Returns:
@@ -61,7 +57,6 @@ def sequence(instance: Instance, times: Times) -> list[str]:
     is in the zone first. Of two in conflict it is therefore the separations that tell who goes first, not the times.
 
     Args:
-        instance: The problem.
         times: A schedule; of equal times the one that stands first here goes first [s].
 
     Returns:
@@ -98,11 +93,6 @@ def _is_first(instance: Instance, times: Times, one: str, other: str, earlier: b
 
 def carried_over(instance: Instance, previous: Sequence[str], ranking: Sequence[str]) -> list[str] | None:
     """Bring an order up to date: who has gone is left out, who is new gets the earliest slot between the others.
-
-    Args:
-        instance: The problem.
-        previous: The order of the last step.
-        ranking: Everybody who is there now, in the order in which new ones are inserted.
 
     Returns:
         Everybody; None if nobody of the order is left, or if it contradicts what is now physically fixed.

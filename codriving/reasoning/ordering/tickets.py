@@ -19,8 +19,6 @@ class Ticket(NamedTuple):
 
     Attributes:
         time: Simulated time of the earliest arrival [s].
-        rank: Negative priority of its lane at that time; the smaller one goes first if times are equal.
-        id: Vehicle id, which breaks the ties that are left.
     """
 
     time: float
@@ -34,8 +32,6 @@ class TicketBook:
 
     Attributes:
         radius: Distance to the reference point from which on a vehicle holds a ticket [m].
-        held: Tickets, by id.
-        begun: Whether the first step of the episode is over.
 
     Raises:
         ConfigError: If the radius is out of range.
@@ -60,9 +56,6 @@ class TicketBook:
 
         At the first step of the episode everybody gets a ticket, later whoever is within the radius for the first time.
 
-        Args:
-            instance: The problem.
-
         Returns:
             Ids by ticket, behind them those without one by earliest arrival; nobody before whom it has to let go.
         """
@@ -80,11 +73,7 @@ def _ticket(entrant: Entrant, now: float) -> Ticket:
 
 
 def in_turn(tickets: list[Ticket]) -> list[Ticket]:
-    """Sort tickets by time, equal ones by priority and then by id.
-
-    Args:
-        tickets: Tickets in any order.
-    """
+    """Sort tickets by time, equal ones by priority and then by id."""
     ordered: list[Ticket] = []
     equal: list[Ticket] = []
     for ticket in sorted(tickets):

@@ -19,10 +19,8 @@ def stays_behind(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: fl
     """Whether the ego vehicle enters a zone only after the other one has left the way.
 
     Args:
-        zone: The zone, seen from the ego vehicle.
         ego: Arc length of the ego vehicle over time (plans, n) [m].
         other: Arc length of the other vehicle over time (n,), the least that it may reach [m].
-        lag: Steps that must lie between the other's leaving and the ego vehicle's entering.
         pad: Additional room along the route [m].
 
     Returns:
@@ -37,11 +35,9 @@ def stays_ahead(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: flo
     """Whether the ego vehicle has left a zone before the other one can enter it.
 
     Args:
-        zone: The zone, seen from the ego vehicle.
         ego: Arc length of the ego vehicle over time (plans, n) [m].
         other: Arc length of the other vehicle over time (n,), the most that it may reach, or one for each plan
             (plans, n) [m].
-        lag: Steps that must lie between the ego vehicle's leaving and the other's entering.
         pad: Additional room along the route [m].
 
     Returns:
@@ -55,7 +51,6 @@ def reacts(zone: ConflictZone, ego: Array, other: Array, sample: float) -> Array
     """Let a driver brake, after a reaction time, once the ego vehicle is in a zone ahead of it.
 
     Args:
-        zone: The zone, seen from the ego vehicle.
         ego: Arc length of the ego vehicle over time (n,) [m].
         other: Arc length of the driver over time, the most that it may reach (n,) [m].
         sample: Time between two samples [s].
@@ -75,7 +70,6 @@ def first_overlap(zone: ConflictZone, ego: Array, other: Array) -> NDArray[np.in
     """Step at which two motions first overlap in a zone.
 
     Args:
-        zone: The zone, seen from the ego vehicle.
         ego: Arc length of the ego vehicle over time (plans, n) [m].
         other: Arc length of the other vehicle over time (n,) [m].
 

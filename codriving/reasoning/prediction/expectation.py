@@ -35,9 +35,7 @@ class Expected:
     """The expected motion of one vehicle.
 
     Attributes:
-        route: Route that it is expected on.
         places: Arc length over time (n,) [m].
-        free: Whether it is expected to go at once, held up by nobody.
         progress: How far it gets within the horizon if it begins with an action and keeps the order [m]; no entry for
             an action with which it could not keep the order, and none at all for human drivers.
     """
@@ -59,14 +57,6 @@ def expect(
     """Plan every vehicle in the passing order against those before it.
 
     Human drivers are expected to keep their speed on each route that they may take.
-
-    Args:
-        vehicles: The vehicles that are known, by id.
-        order: Who goes first.
-        road_map: The precomputed road.
-        forecast: Predictions of this step.
-        lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
-        minds_conflicts: Whether conflicts are known at all; otherwise everybody only minds who drives ahead.
 
     Returns:
         Expected motions by id: one a route that the vehicle may be on or reaches onto, that of its intent first.
@@ -113,16 +103,8 @@ def keeps_order(
     """Whether a vehicle stays behind everybody who drives ahead or goes first.
 
     Args:
-        name: Id of the vehicle.
-        route: Route that it drives on.
         places: Its arc length there over time, for as long as it is to be minded (plans, n) [m].
-        vehicles: The vehicles that are known, by id.
-        expected: Expected motions of those that have been planned, by id.
-        order: Who goes first.
-        road_map: The precomputed road.
-        lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
         sample: Time between two samples of a motion [s].
-        minds_conflicts: Whether zones count in which it is open who goes first.
 
     Returns:
         One flag a plan (plans,).
@@ -179,10 +161,8 @@ def binding_zones(
     """Select the zones in which a vehicle has to mind another one that goes before it.
 
     Args:
-        zones: Zones of the two routes, seen from the vehicle.
         place: Arc length of the vehicle [m].
         other: Arc length of the one that goes before it [m].
-        minds_conflicts: Whether zones count in which it is open who goes first.
     """
     return [z for z in zones if (minds_conflicts and is_open(z, place, other)) or is_behind(z, place, other)]
 
@@ -191,7 +171,6 @@ def is_behind(zone: ConflictZone, place: float, other: float) -> bool:
     """Whether a vehicle follows another one in a stretch that both routes share.
 
     Args:
-        zone: The zone, seen from the vehicle.
         place: Arc length of the vehicle [m].
         other: Arc length of the other vehicle [m].
     """

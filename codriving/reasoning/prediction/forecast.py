@@ -47,13 +47,8 @@ class Reach:
 class Forecast:
     """Predictions, each worked out once a decision step.
 
-    Args:
-        model: The vehicle model of CAVs.
-        library: Plans that will be asked for; they are worked out together.
-
     Attributes:
         sample: Time between two samples of a prediction [s].
-        steps: Samples of a prediction after the present.
         times: Time of each sample from now (steps + 1,) [s].
     """
 
@@ -97,7 +92,6 @@ class Forecast:
 
         Args:
             states: Speed and target speed of each CAV [m/s].
-            plans: The plan of each.
 
         Returns:
             Distance travelled (n, steps + 1) [m].
@@ -111,7 +105,6 @@ class Forecast:
         Args:
             speed: Speed now [m/s].
             target: Target speed now [m/s].
-            plans: Plans, each a list of actions of which the last one is repeated.
 
         Returns:
             Distance travelled (len(plans), steps + 1) [m].
@@ -139,7 +132,6 @@ class Forecast:
 
         Args:
             speed: Speed now [m/s].
-            is_cav: Whether it is known to be a CAV, which cannot brake or accelerate beyond its actions.
         """
         key = (is_cav, speed)
         if key not in self._reach:

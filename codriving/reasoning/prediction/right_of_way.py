@@ -27,11 +27,6 @@ def gives_way(c: Conflict, human: Mover | Neighbour, road_map: RoadMap) -> str:
 
     On unregulated roads, too, whoever has to leave a lane that ends gives way to those on the lane beside.
 
-    Args:
-        c: The conflict, seen from the CAV.
-        human: The human driver.
-        road_map: The precomputed road.
-
     Returns:
         The reason in words; empty if it is not expected to give way.
     """

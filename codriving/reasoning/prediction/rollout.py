@@ -20,11 +20,7 @@ CHANGE = {Action.SLOWER: -1, Action.FASTER: 1}
 
 
 def canonical(plan: Plan) -> Plan:
-    """Return the shortest way to write a plan: its last action is repeated anyway.
-
-    Args:
-        plan: A plan.
-    """
+    """Return the shortest way to write a plan: its last action is repeated anyway."""
     n = len(plan)
     while n > 1 and plan[n - 2] is plan[n - 1]:
         n -= 1
@@ -46,19 +42,7 @@ _known_changes = lru_cache(maxsize=64)(_changes)
 
 @dataclass(frozen=True, slots=True)
 class _Law:
-    """The speed law between two decisions, and the allowed targets as numbers.
-
-    While the target stays the same, Euler's steps are a geometric series: its sum replaces the loop.
-
-    Attributes:
-        low: Lowest target speed [m/s].
-        span: Highest target speed less the lowest [m/s].
-        top: Index of the highest target speed.
-        spacing: Difference of two neighbouring target speeds [m/s].
-        elapsed: Time since the decision after each simulation step (substeps,) [s].
-        summed: Distance for each m/s of excess over the target, likewise [s].
-        left: Share of the excess that is left, likewise.
-    """
+    """The speed law between two decisions, and the allowed targets as numbers."""
 
     low: float
     span: float
@@ -89,11 +73,8 @@ def rollout(
     the speed follows a = K_a (target - v) (paper Eq. 1), position first, then speed.
 
     Args:
-        model: The vehicle model.
         speeds: Speed of each state (n,) [m/s].
         targets: Target speed of each state (n,) [m/s].
-        plans: The plans.
-        steps: Simulation steps to look ahead.
 
     Returns:
         Distance travelled [m] and speed [m/s], each (n, len(plans), steps + 1), the first column being now.
@@ -127,13 +108,8 @@ def travelled(
     """Return the distances of `rollout` at every `stride`-th step, bit for bit, without working out the others.
 
     Args:
-        model: The vehicle model.
         speeds: Speed of each state (n,) [m/s].
         targets: Target speed of each state (n,) [m/s].
-        plans: The plans.
-        samples: Samples to look ahead.
-        stride: Simulation steps between two samples.
-        paired: Whether each state has a plan of its own, the k-th plan for the k-th state, instead of every plan.
 
     Returns:
         Distance travelled (n, len(plans), samples + 1), or (n, samples + 1) if paired; contiguous [m].

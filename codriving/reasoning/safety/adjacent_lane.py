@@ -27,9 +27,6 @@ HELD_UP = -0.3
 def check_adjacent(outlook: Outlook) -> dict[Action, list[str]]:
     """Remove lane changes after which the CAV could not stop behind who is ahead there, or cuts in on who is behind.
 
-    Args:
-        outlook: The CAV's view.
-
     Returns:
         Reasons by action; no entry where the action is safe.
     """
@@ -73,10 +70,7 @@ def _alongside(there: Outlook, n: Neighbour, route: str, place: float) -> bool:
 
 
 def _meets(there: Outlook, n: Neighbour, action: Action, must: bool) -> str:
-    """Say that a vehicle two lanes away might change onto the same lane, if it is near and does not have to wait.
-
-    A CAV that has to change lanes does not wait for human drivers whom nothing urges to change as well.
-    """
+    """Say that a vehicle two lanes away might change onto the same lane, if it is near and does not have to wait."""
     scene = there.scene
     far = there.road_map.changes.routes_beside(scene.intent.route, scene.intent.target_lane)
     wanted = scene.intent.target_lane[2] + SIDES[action]

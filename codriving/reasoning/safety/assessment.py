@@ -30,11 +30,7 @@ class SafetyCheck(Protocol):
     """Assesses every available action of one CAV."""
 
     def assess(self, outlook: Outlook) -> tuple[ActionAssessment, ...]:
-        """Return one assessment an action, in the order of the actions.
-
-        Args:
-            outlook: The CAV's view.
-        """
+        """Return one assessment an action, in the order of the actions."""
         ...
 
 
@@ -42,11 +38,7 @@ class NoCheck:
     """Without the safety check every action stays."""
 
     def assess(self, outlook: Outlook) -> tuple[ActionAssessment, ...]:
-        """Return every action as safe.
-
-        Args:
-            outlook: The CAV's view.
-        """
+        """Return every action as safe."""
         return tuple(
             ActionAssessment(action, True, (), arrivals(outlook, k), progress(outlook, action))
             for k, action in enumerate(outlook.actions)
@@ -60,9 +52,6 @@ class ThreeLayers:
         """Remove what is unsafe; if nothing is left, keep what is least dangerous and say so.
 
         Braking hard in front of somebody is only removed while a faster action is safe.
-
-        Args:
-            outlook: The CAV's view.
         """
         reasons: dict[Action, list[str]] = {action: [] for action in outlook.actions}
         for layer in (check_ahead, check_adjacent, check_conflicts):
@@ -92,10 +81,6 @@ class ThreeLayers:
 def arrivals(outlook: Outlook, k: int) -> tuple[float, ...]:
     """Return when each conflict zone is reached at the earliest after an action.
 
-    Args:
-        outlook: The CAV's view.
-        k: Index of the action.
-
     Returns:
         Time from now, one a conflict [s].
     """
@@ -105,10 +90,6 @@ def arrivals(outlook: Outlook, k: int) -> tuple[float, ...]:
 
 def progress(outlook: Outlook, action: Action) -> float | None:
     """Return how far the CAV gets within the horizon if it begins with an action and then keeps the order.
-
-    Args:
-        outlook: The CAV's view.
-        action: The action.
 
     Returns:
         Distance [m]; None if the order cannot be kept then.
@@ -142,9 +123,6 @@ def least_dangerous(outlook: Outlook) -> Action:
     """Return the action after which an overlap with anybody lies farthest ahead, braking or going on.
 
     Others are taken to keep their speed, to brake hard and to accelerate hard; whoever drives ahead may always brake.
-
-    Args:
-        outlook: The CAV's view.
     """
     best: tuple[int, int, Action] | None = None
     preferred = {Action.SLOWER: 2, Action.IDLE: 1}

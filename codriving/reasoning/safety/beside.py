@@ -18,12 +18,7 @@ SIDES: Mapping[Action, int] = {Action.LANE_LEFT: -1, Action.LANE_RIGHT: 1}
 
 
 def lane_after(outlook: Outlook, action: Action) -> LaneId:
-    """Return the lane to which a lane change leads.
-
-    Args:
-        outlook: The CAV's view.
-        action: LANE_LEFT or LANE_RIGHT.
-    """
+    """Return the lane to which a lane change leads."""
     start, end, index = outlook.scene.intent.target_lane
     return start, end, index + SIDES[action]
 
@@ -32,10 +27,6 @@ def beside(outlook: Outlook, action: Action) -> Outlook | None:
     """Return the view from the lane beside, at the same place and speed, the body still reaching onto the present lane.
 
     Each is worked out once.
-
-    Args:
-        outlook: The CAV's view.
-        action: LANE_LEFT or LANE_RIGHT.
 
     Returns:
         The view, with one action: to go on at the same speed. None if no route along that lane leads where the CAV

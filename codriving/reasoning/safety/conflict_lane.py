@@ -33,9 +33,6 @@ AHEAD_LAG = 0.4
 def check_conflicts(outlook: Outlook) -> dict[Action, list[str]]:
     """Remove actions after which the CAV could neither stop before a zone that is not its turn, nor pass it in time.
 
-    Args:
-        outlook: The CAV's view.
-
     Returns:
         Reasons by action; no entry where the action is safe.
     """
@@ -66,11 +63,6 @@ def check_conflicts(outlook: Outlook) -> dict[Action, list[str]]:
 def gets_through(outlook: Outlook, conflicts: Sequence[Conflict], passes: Sequence[Flags]) -> Flags:
     """Whether the CAV can pass, or comes behind a vehicle that moves as expected, in each of its conflicts.
 
-    Args:
-        outlook: The CAV's view.
-        conflicts: The conflicts.
-        passes: Whether it can pass whatever the other one does, one flag an action for each conflict.
-
     Returns:
         One flag an action (actions,).
     """
@@ -82,12 +74,7 @@ def gets_through(outlook: Outlook, conflicts: Sequence[Conflict], passes: Sequen
 
 
 def changes_before(outlook: Outlook, c: Conflict) -> bool:
-    """Whether one of two CAVs comes to a zone only by a lane change not yet begun, which its second layer guards.
-
-    Args:
-        outlook: The CAV's view.
-        c: One of its conflicts.
-    """
+    """Whether one of two CAVs comes to a zone only by a lane change not yet begun, which its second layer guards."""
     for k, is_cav in enumerate((True, outlook.others[c.other].is_cav)):
         change = outlook.road_map.changes.ahead(c.routes[k], c.places[k]) if is_cav else None
         if change is not None and c.places[k] + c.exits[k] > change[1]:
@@ -97,10 +84,6 @@ def changes_before(outlook: Outlook, c: Conflict) -> bool:
 
 def expected_to_pass(outlook: Outlook, c: Conflict) -> Flags:
     """Whether the CAV comes behind the other vehicle if that one moves as expected.
-
-    Args:
-        outlook: The CAV's view.
-        c: The conflict.
 
     Returns:
         One flag an action (actions,).
@@ -113,26 +96,14 @@ def expected_to_pass(outlook: Outlook, c: Conflict) -> Flags:
 
 
 def leaves_in_time(outlook: Outlook, c: Conflict, zone: ConflictZone) -> bool:
-    """Whether the CAV, as it is expected to move, will be out of a zone before a human driver can be there.
-
-    Args:
-        outlook: The CAV's view.
-        c: The conflict with the human driver.
-        zone: Its zone, seen from the CAV.
-    """
+    """Whether the CAV, as it is expected to move, will be out of a zone before a human driver can be there."""
     own = outlook.expected[c.ego][0]
     most = c.places[1] + outlook.forecast.reach(outlook.others[c.other].speed, False).most
     return bool(stays_ahead(zone, own.places[None], most, 0, 0.0)[0])
 
 
 def add(found: dict[Action, list[str]], action: Action, reason: str) -> None:
-    """Note a reason once.
-
-    Args:
-        found: Reasons by action.
-        action: The action.
-        reason: The reason.
-    """
+    """Note a reason once."""
     reasons = found.setdefault(action, [])
     if f"conflict lane: {reason}" not in reasons:
         reasons.append(f"conflict lane: {reason}")
@@ -144,10 +115,6 @@ def passes_and_stops(outlook: Outlook, c: Conflict) -> tuple[Flags, Flags]:
     It can pass if it comes behind whatever the other one does at the least, or ahead of the earliest moment at which
     the other one can be there; it can stop if braking keeps it out of the way. A vehicle that gives way need not be
     feared as long as the bodies keep clear when it brakes.
-
-    Args:
-        outlook: The CAV's view.
-        c: The conflict.
 
     Returns:
         Whether it can pass and whether it can stop, one flag an action each (actions,).
@@ -179,8 +146,6 @@ def keeps_clear(outlook: Outlook, c: Conflict, motions: Array, other: Array) -> 
     """Whether the CAV and another vehicle that gives way would not touch, the bodies a little larger than they are.
 
     Args:
-        outlook: The CAV's view.
-        c: The conflict.
         motions: Arc length of the CAV over time, from the same place (motions, n) [m].
         other: Arc length of the other vehicle over time (n,) [m].
 

@@ -39,19 +39,8 @@ class Outlook:
     """One CAV's view of the near future.
 
     Attributes:
-        scene: What it knows.
-        conflicts: Conflicts that it is part of.
-        order: The passing order that it goes by.
-        others: Everybody it knows of, as movers, by id.
-        expected: Expected motion of each of them, by id.
-        actions: Actions that are available.
         stops: Arc length if it brakes after each action (actions, n) [m].
         goes: Arc length if it accelerates after each action (actions, n) [m].
-        road_map: The precomputed road.
-        forecast: Predictions of this step.
-        lag: Steps that must lie between one vehicle's leaving a zone and the next one's entering it.
-        minds_conflicts: Whether it can be seen at all who else comes to a conflict zone.
-        sides: What it would look like from the lanes beside, filled in when it is asked for.
     """
 
     scene: SceneDescription
@@ -71,11 +60,6 @@ class Outlook:
 
 def motions(scene: SceneDescription, actions: tuple[Action, ...], forecast: Forecast) -> tuple[Array, Array]:
     """Predict one CAV for every action, braking and accelerating afterwards; a lane change keeps the speed.
-
-    Args:
-        scene: What the CAV knows.
-        actions: Actions that are available.
-        forecast: Predictions of this step.
 
     Returns:
         Arc length if it brakes and if it accelerates after each action, each (actions, n) [m].

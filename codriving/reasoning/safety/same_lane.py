@@ -27,9 +27,6 @@ REACTION = 0.5
 def check_ahead(outlook: Outlook) -> dict[Action, list[str]]:
     """Remove actions after which the CAV could not stop behind whoever is ahead, if that one brakes hard.
 
-    Args:
-        outlook: The CAV's view.
-
     Returns:
         Reasons by action; no entry where the action is safe.
     """
@@ -77,9 +74,6 @@ def check_ahead(outlook: Outlook) -> dict[Action, list[str]]:
 def check_behind(outlook: Outlook) -> dict[Action, list[str]]:
     """Remove actions that force the rearing vehicle to brake abruptly.
 
-    Args:
-        outlook: The CAV's view.
-
     Returns:
         Reasons by action; no entry where the action is safe.
     """
@@ -98,8 +92,6 @@ def forced_braking(outlook: Outlook, behind: Neighbour, goes: Array) -> float:
     """Return how hard the rearing vehicle would have to brake to come down to the CAV's speed.
 
     Args:
-        outlook: The CAV's view.
-        behind: The rearing vehicle.
         goes: Arc length of the CAV over time (n,) [m].
 
     Returns:

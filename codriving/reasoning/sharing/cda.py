@@ -12,14 +12,6 @@ OwnOrder = Literal["own_view", "same_rule", "independent"]
 class CdaLevel:
     """Toggles of the reasoning module.
 
-    Attributes:
-        state_sharing: Class A: CAVs tell their states; without it each knows only position and speed within range.
-        intent_sharing: Class B: CAVs tell route and target speed; without it no conflicts with others are seen.
-        negotiation: Class C: a coordinator proposes a passing order; without it each CAV makes up its own.
-        safety_check: The three-layer check removes unsafe actions before the decision.
-        binding: Class D: the order is an instruction, not advice.
-        own_order: How a CAV makes up its own order without negotiation.
-
     Raises:
         ConfigError: If the order is to bind without being negotiated.
     """

@@ -10,14 +10,12 @@ class Glimpse:
     """What is known of a vehicle; None where nothing is.
 
     Attributes:
-        id: Vehicle id.
         kind: ``CAV`` or ``HDV``.
         x: Position [m].
         y: Position [m].
         speed: Speed [m/s].
         heading: Heading [rad].
         acceleration: Acceleration [m/s2].
-        lane: Lane that it drives on.
         length: Vehicle length [m].
     """
 

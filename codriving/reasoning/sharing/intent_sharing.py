@@ -13,11 +13,7 @@ class IntentSharing(Protocol):
     finds_conflicts: bool
 
     def intents(self, world: WorldState) -> Mapping[str, Intent]:
-        """Return the intents that every CAV knows of the others.
-
-        Args:
-            world: The world.
-        """
+        """Return the intents that every CAV knows of the others."""
         ...
 
 
@@ -27,11 +23,7 @@ class SharedIntents:
     finds_conflicts = True
 
     def intents(self, world: WorldState) -> Mapping[str, Intent]:
-        """Return the intents of all CAVs; human drivers share none.
-
-        Args:
-            world: The world.
-        """
+        """Return the intents of all CAVs; human drivers share none."""
         return world.intents
 
 
@@ -41,11 +33,7 @@ class HiddenIntents:
     finds_conflicts = False
 
     def intents(self, world: WorldState) -> Mapping[str, Intent]:
-        """Return nothing.
-
-        Args:
-            world: The world.
-        """
+        """Return nothing."""
         return {}
 
 
@@ -55,9 +43,5 @@ class GuessedIntents:
     finds_conflicts = True
 
     def intents(self, world: WorldState) -> Mapping[str, Intent]:
-        """Return nothing.
-
-        Args:
-            world: The world.
-        """
+        """Return nothing."""
         return {}

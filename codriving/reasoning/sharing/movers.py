@@ -11,8 +11,6 @@ class Mover:
     """A vehicle reduced to what a prediction along routes needs.
 
     Attributes:
-        id: Vehicle id.
-        is_cav: Whether it is known to be a CAV and its route is therefore known.
         speed: Speed [m/s].
         target: Target speed, its own or its speed where that is unknown [m/s].
         routes: Each route that it may be on, with its arc length there [m].
@@ -30,11 +28,7 @@ class Mover:
 
 
 def movers(scene: SceneDescription) -> dict[str, Mover]:
-    """Return the ego vehicle and its neighbours, by id.
-
-    Args:
-        scene: What one CAV knows.
-    """
+    """Return the ego vehicle and its neighbours, by id."""
     ego = scene.ego
     route = ((scene.intent.route, scene.place), *scene.covers)
     found = {ego.id: Mover(ego.id, True, ego.speed, scene.intent.target_speed, route, ego.acceleration, 0.0)}

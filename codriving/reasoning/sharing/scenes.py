@@ -30,12 +30,6 @@ def describe_scenes(
 ) -> dict[str, SceneDescription]:
     """Describe the surroundings of every CAV; who is in conflict with whom is filled in later.
 
-    Args:
-        world: The world, of which each CAV's own state and intent are read.
-        views: What each CAV knows of the others.
-        intents: Intents that have been shared.
-        tracking: What each CAV remembers of the others.
-
     Returns:
         One description a CAV, by id.
     """
@@ -70,11 +64,7 @@ def with_roles(
     """Mark who drives ahead of the ego vehicle and who behind it on its lane.
 
     Args:
-        neighbours: Everybody it knows of.
-        ego: Its own state.
-        route: Id of its route.
         place: Its arc length there [m].
-        road_map: The precomputed road.
     """
     everybody = tuple(neighbours)
     road_map.project_all(route, [(n.x, n.y) for n in everybody])
@@ -104,13 +94,7 @@ def _roles(
 
 
 def with_conflicts(scene: SceneDescription, conflicts: tuple[Conflict, ...], road_map: RoadMap) -> SceneDescription:
-    """Mark the vehicles and lanes with which the ego vehicle is in conflict.
-
-    Args:
-        scene: The description so far.
-        conflicts: Conflicts of the ego vehicle.
-        road_map: The precomputed road.
-    """
+    """Mark the vehicles and lanes with which the ego vehicle is in conflict."""
     others = {c.other for c in conflicts}
     lanes: set[LaneId] = set()
     for c in conflicts:
@@ -123,12 +107,7 @@ def with_conflicts(scene: SceneDescription, conflicts: tuple[Conflict, ...], roa
 
 
 def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
-    """Return the lanes to the left and right of a lane that run its way.
-
-    Args:
-        road_map: The precomputed road.
-        lane: A lane.
-    """
+    """Return the lanes to the left and right of a lane that run its way."""
     start, end, index = lane
     sides = ((start, end, index - 1), (start, end, index + 1))
     return tuple(side for side in sides if side in road_map.lanes)

@@ -20,12 +20,7 @@ class StateSharing(Protocol):
     """Turns the world into what each CAV knows of it."""
 
     def views(self, world: WorldState, model: DrivingModel) -> Views:
-        """Return the vehicles that each CAV knows of.
-
-        Args:
-            world: The world.
-            model: Holds the detection range.
-        """
+        """Return the vehicles that each CAV knows of."""
         ...
 
 
@@ -33,12 +28,7 @@ class SharedStates:
     """CAVs tell one another their own states, and the human drivers that any of them perceives."""
 
     def views(self, world: WorldState, model: DrivingModel) -> Views:
-        """Return the same full states for everybody: all CAVs, and every HDV within range of at least one of them.
-
-        Args:
-            world: The world.
-            model: Holds the detection range.
-        """
+        """Return the same full states for everybody: all CAVs, and every HDV within range of at least one of them."""
         cavs = world.cavs
         seen = [h for h in world.hdvs if any(_within(c, h, model.detection_range) for c in cavs)]
         known = tuple(_full(v) for v in sorted((*cavs, *seen), key=lambda v: v.id))
@@ -49,12 +39,7 @@ class SensedStates:
     """Without state sharing: only position and speed of vehicles within the detection range (paper Section IV-B)."""
 
     def views(self, world: WorldState, model: DrivingModel) -> Views:
-        """Return what each CAV's own sensors tell.
-
-        Args:
-            world: The world.
-            model: Holds the detection range.
-        """
+        """Return what each CAV's own sensors tell."""
         return {
             cav.id: tuple(
                 Glimpse(v.id, None, v.x, v.y, v.speed, None, None, None, USUAL_LENGTH)
@@ -72,12 +57,7 @@ class WatchedStates:
     """
 
     def views(self, world: WorldState, model: DrivingModel) -> Views:
-        """Return what each CAV's own sensors tell.
-
-        Args:
-            world: The world.
-            model: Holds the detection range.
-        """
+        """Return what each CAV's own sensors tell."""
         return {
             cav.id: tuple(
                 Glimpse(v.id, None, v.x, v.y, v.speed, v.heading, None, None, USUAL_LENGTH)

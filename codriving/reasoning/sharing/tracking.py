@@ -23,11 +23,7 @@ Spot = tuple[float, float, float | None]
 
 
 class Tracking:
-    """Narrows the possible routes of each vehicle down as it is watched.
-
-    Args:
-        road_map: The precomputed road.
-    """
+    """Narrows the possible routes of each vehicle down as it is watched."""
 
     def __init__(self, road_map: RoadMap) -> None:
         self.road_map = road_map
@@ -49,11 +45,6 @@ class Tracking:
 
         A shared route is believed. Otherwise every route that fits the position (and the heading, if it is known) and
         has fitted it so far is possible. After these come the lanes beside onto which the body reaches.
-
-        Args:
-            ego: Who watches.
-            seen: The vehicle.
-            intent: What it has shared, if anything.
         """
         if intent is not None:
             told = (intent.route, seen.x, seen.y)
@@ -96,8 +87,6 @@ class Tracking:
         """Return how long a vehicle has been standing.
 
         Args:
-            ego: Who watches.
-            seen: The vehicle.
             time: Time now [s].
 
         Returns:
