@@ -1,18 +1,18 @@
 """The variables of the negotiation prompt: the CAVs whose order is open, and the pairs to be ordered."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.ordering_problem import Instance, Pair
+from codriving.datatypes.scene_description import SceneDescription
 from codriving.llm.prompts.free_text import Names
 from codriving.llm.prompts.views import EntrantView, FixedView, PairView
-from codriving.reasoning.ordering.problem import Scenes
 
 
 def negotiation_view(
-    scenes: Scenes,
+    scenes: Mapping[str, SceneDescription],
     instance: Instance,
     pairs: Sequence[tuple[str, Conflict]],
     previous: PassingOrder | None,
@@ -36,7 +36,7 @@ def _follows(instance: Instance, pair: Pair) -> bool:
     return instance.entrants[pair[1]].leader == pair[0]
 
 
-def _entrant(scenes: Scenes, instance: Instance, name: str, names: Names) -> EntrantView:
+def _entrant(scenes: Mapping[str, SceneDescription], instance: Instance, name: str, names: Names) -> EntrantView:
     entrant, scene = instance.entrants[name], scenes[name]
     windows = {(max(begin, 0.0), end) for begin, end in entrant.windows if begin < float("inf") and end > 0}
     return EntrantView(
