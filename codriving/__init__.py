@@ -3,8 +3,6 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from codriving.gym.registration import offer
-
 if TYPE_CHECKING:
     from codriving.experiment import Comparison, Results
     from codriving.gym.parallel import ParallelDriving
@@ -60,7 +58,7 @@ def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -
 def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDriving":  # noqa: ANN401 - any setting
     """Make an environment in which every CAV is an agent, with the interface of PettingZoo.
 
-    The same, with one agent that decides for all CAVs: ``gymnasium.make("codriving/<name>-v0")``.
+    The same, with one agent that decides for all CAVs: ``gymnasium.make("codriving.gym:codriving/<name>-v0")``.
 
     Args:
         name: Name of the scenario, for instance ``"roundabout"``.
@@ -79,6 +77,3 @@ def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDrivin
     from codriving.gym.parallel import ParallelDriving
 
     return ParallelDriving(name, *overrides, **settings)
-
-
-offer()
