@@ -50,7 +50,7 @@ def configured(
 
 
 def _check_read(token: str) -> None:
-    """Refuse what would have no effect, as a key that nobody reads."""
+    """Refuse what would have no effect, such as a key that is not read here."""
     if not isinstance(token, str):
         raise ConfigError(f"an override is a text such as 'environment.drivers.headway=1.2', got {token!r}")
     key = token.lstrip("+").partition("=")[0]

@@ -9,10 +9,9 @@ from gymnasium.spaces import MultiDiscrete
 from numpy.typing import NDArray
 
 from codriving.errors import EpisodeError
-from codriving.gym.actions import ACTIONS
-from codriving.gym.layout import FloatArray
+from codriving.gym.actions import ACTIONS, check_seed, draw_seed
+from codriving.gym.observation import FloatArray
 from codriving.gym.parallel import METADATA, ParallelDriving
-from codriving.gym.seeding import check_seed, draw_seed
 
 
 class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
@@ -75,7 +74,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         _, rewards, _, truncated, _ = self.parallel.step(dict(zip(agents, numbers, strict=True)))
         late = any(truncated.values())
         terminated = not late and not self.parallel.agents
-        # Whoever has arrived is rewarded no more, so that the return is the mean of the returns of the CAVs.
+        # A CAV that has arrived is rewarded no more, so that the return is the mean of the returns of the CAVs.
         reward = sum(rewards.values()) / len(agents)
         return self.parallel.state(), reward, terminated, late, self._info()
 

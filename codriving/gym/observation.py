@@ -1,28 +1,135 @@
 """The paper's observation (Section II): one row a vehicle, and in it no more than the CDA level lets the CAV know."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import reduce
+from itertools import pairwise
 from math import cos, hypot, sin
 
 import numpy as np
 from gymnasium.spaces import Box
+from numpy.typing import NDArray
 
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.road import LaneId
+from codriving.datatypes.road import LaneId, Route, Turn, beside
 from codriving.datatypes.vehicle import Intent, VehicleState
 from codriving.datatypes.world import WorldState
+from codriving.environment.scenarios.pace import TOP_SPEED
+from codriving.errors import ConfigError
+from codriving.geometry.lane_path import lane_path
 from codriving.geometry.road_map import RoadMap
-from codriving.gym.intention import intention
-from codriving.gym.layout import FloatArray, Layout
 from codriving.reasoning.sharing.cda import CdaLevel
 from codriving.reasoning.sharing.detection import Glimpse
 from codriving.reasoning.sharing.intent_sharing import HiddenIntents, IntentSharing, SharedIntents
 from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates, StateSharing
 
+
+class Intention(IntEnum):
+    """Where a vehicle is bound; numbered from left to right."""
+
+    HIDDEN = 0
+    LEFT = 1
+    STRAIGHT = 2
+    RIGHT = 3
+
+
+_OF_TURN = {Turn.LEFT: Intention.LEFT, Turn.STRAIGHT: Intention.STRAIGHT, Turn.RIGHT: Intention.RIGHT}
+
+
+def intention(intent: Intent | None, lane: LaneId | None, routes: Mapping[str, Route]) -> Intention:
+    """Reduce an intent to one number.
+
+    A lane change under way comes first, then one that the route still asks for (a ramp that ends, say), and then what
+    the route does at the junction.
+    """
+    if intent is None:
+        return Intention.HIDDEN
+    if lane is not None and beside(lane, intent.target_lane):
+        return _side(lane, intent.target_lane)
+    route = routes[intent.route]
+    for place, (one, other) in enumerate(pairwise(route.lanes)):
+        if beside(one, other) and (lane is None or lane in route.lanes[: place + 1]):
+            return _side(one, other)
+    return _OF_TURN[route.turn]
+
+
+def _side(lane: LaneId, other: LaneId) -> Intention:
+    return Intention.LEFT if other[2] < lane[2] else Intention.RIGHT
+
+
+FEATURES = ("x", "y", "vx", "vy", "lane", "intention")
+"""The columns of an observation (paper Section II)."""
+
+COORDINATES = ("relative", "absolute")
+MOST_ROWS = 100
+
+MARGIN = 10.0
+"""A vehicle is at most this far from the nearest centre line: a collision or leaving the road ends the episode [m]."""
+
+FloatArray = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """What an observation looks like.
+
+    Attributes:
+        coordinates: ``relative``: places of others are seen from the ego vehicle; ``absolute``: on the map.
+
+    Raises:
+        ConfigError: If a setting is not one of the allowed values.
+    """
+
+    rows: int = 8
+    coordinates: str = "relative"
+    normalise: bool = False
+
+    def __post_init__(self) -> None:
+        if isinstance(self.rows, bool) or not isinstance(self.rows, int) or not 1 <= self.rows <= MOST_ROWS:
+            raise ConfigError(f"rows must be a whole number from 1 to {MOST_ROWS}, got {self.rows!r}")
+        if self.coordinates not in COORDINATES:
+            raise ConfigError(f"coordinates must be {' or '.join(COORDINATES)}, got {self.coordinates!r}")
+        if not isinstance(self.normalise, bool):
+            raise ConfigError(f"normalise must be True or False, got {self.normalise!r}")
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and features."""
+        return self.rows, len(FEATURES)
+
+    def bounds(self, road_map: RoadMap) -> tuple[FloatArray, FloatArray]:
+        """Return the smallest and largest values on a road (rows, 6) each, in SI units; 0 is always within."""
+        paths = [lane_path(lane).points for lane in road_map.road.lanes]
+        least = reduce(np.minimum, [points.min(axis=0) for points in paths]) - MARGIN
+        most = reduce(np.maximum, [points.max(axis=0) for points in paths]) + MARGIN
+        low, high = np.zeros(self.shape, np.float32), np.zeros(self.shape, np.float32)
+        low[:, :2], high[:, :2] = np.minimum(least, 0.0), np.maximum(most, 0.0)
+        if self.coordinates == "relative":
+            low[1:, :2], high[1:, :2] = least - most, most - least
+        low[:, 2:4], high[:, 2:4] = -TOP_SPEED, TOP_SPEED
+        high[:, 4], high[:, 5] = len(road_map.road.lanes), max(Intention)
+        return low, high
+
+
 Row = tuple[float, float, float, float, float, float]
 
 
-class Observer:
+class Observer(ABC):
     """Turns a world into what each CAV observes of it."""
+
+    @abstractmethod
+    def observe(self, world: WorldState) -> dict[str, FloatArray]:
+        """Return the observation of each CAV on the road, by id."""
+
+    @abstractmethod
+    def nothing(self) -> FloatArray:
+        """Return the observation of a CAV that has left the road."""
+
+
+class CdaObserver(Observer):
+    """The paper's matrix, in which the CDA level hides what a CAV is not told."""
 
     def __init__(self, road_map: RoadMap, model: DrivingModel, cda: CdaLevel, layout: Layout) -> None:
         self._road_map, self._model, self._layout = road_map, model, layout

@@ -12,13 +12,11 @@ from pettingzoo import ParallelEnv
 from codriving.animation.live import LivePicture
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError, EpisodeError
-from codriving.gym.actions import ACTIONS
+from codriving.gym.actions import ACTIONS, check_seed, draw_seed
 from codriving.gym.configured import configured
-from codriving.gym.drive import Drive
-from codriving.gym.layout import FloatArray, Layout
-from codriving.gym.observation import Observer
+from codriving.gym.episode import AgentEpisode
+from codriving.gym.observation import CdaObserver, FloatArray, Layout
 from codriving.gym.reward import RewardWeights, reward_weights
-from codriving.gym.seeding import check_seed, draw_seed
 
 RENDER_MODES = ("rgb_array",)
 METADATA: dict[str, Any] = {"render_modes": list(RENDER_MODES), "is_parallelizable": True}
@@ -61,8 +59,8 @@ class ParallelDriving(ParallelEnv):
         layout, weights = Layout(rows, coordinates, normalise), reward_weights(reward)
         self.environment, level = configured(name, overrides, cda, config_dir, settings)
         model = self.environment.driving_model
-        observer = Observer(self.environment.road_map, model, level, layout)
-        self._drive = Drive(self.environment, observer, weights)
+        observer = CdaObserver(self.environment.road_map, model, level, layout)
+        self._drive = AgentEpisode(self.environment, observer, weights)
         self.name, self.render_mode, self.lanes = name, render_mode, observer.lanes
         about = {"name": f"codriving_{name}_v0", "render_fps": 1 / model.decision_interval}
         self.metadata = {**METADATA, **about}
@@ -130,10 +128,10 @@ class ParallelDriving(ParallelEnv):
                 that the road does not allow is carried out as IDLE and counted.
 
         Returns:
-            Observations, rewards, terminations, truncations and infos of all who were on the road.
+            Observations, rewards, terminations, truncations and infos of all CAVs that were on the road.
 
         Raises:
-            EpisodeError: If no episode is going on, or an action is missing, for nobody, or no action.
+            EpisodeError: If no episode is going on, or an action is missing, unknown, or of no CAV.
         """
         driving = self.agents
         turn = self._drive.step(actions)

@@ -1,7 +1,6 @@
 """The ids under which Gymnasium knows our scenarios: ``codriving/<scenario>-v0``."""
 
 from pathlib import Path
-from typing import Any
 
 import gymnasium
 
@@ -24,8 +23,5 @@ def register_scenarios(config_dir: str | Path | None = None) -> None:
     for name in choices("scenario", folder):
         if env_id(name) not in gymnasium.registry:
             own = {} if name in ours else {"config_dir": str(folder)}
-            gymnasium.register(env_id(name), _make, kwargs={"name": name, **own})
-
-
-def _make(**settings: Any) -> JointDriving:  # noqa: ANN401 - what JointDriving takes
-    return JointDriving(**settings)
+            # The class itself, since Gymnasium reads the render modes off it.
+            gymnasium.register(env_id(name), JointDriving, kwargs={"name": name, **own})  # type: ignore[arg-type]

@@ -41,7 +41,7 @@ class RewardWeights:
 
 
 @dataclass(frozen=True, slots=True)
-class Driven:
+class CavStep:
     """What one CAV did in one decision step.
 
     Attributes:
@@ -71,7 +71,7 @@ def reward_weights(given: RewardWeights | Mapping[str, Any] | None) -> RewardWei
     return RewardWeights(**(given or {}))
 
 
-def rewards(weights: RewardWeights, driven: Sequence[Driven], duration: float, top_speed: float) -> list[float]:
+def rewards(weights: RewardWeights, driven: Sequence[CavStep], duration: float, top_speed: float) -> list[float]:
     """Reward one decision step.
 
     Args:
@@ -85,7 +85,7 @@ def rewards(weights: RewardWeights, driven: Sequence[Driven], duration: float, t
     return [(1 - weights.cooperation) * value + weights.cooperation * mean for value in own]
 
 
-def _reward(weights: RewardWeights, one: Driven, duration: float, top_speed: float) -> float:
+def _reward(weights: RewardWeights, one: CavStep, duration: float, top_speed: float) -> float:
     # Who has left the road is taken to have kept its speed.
     start, end = one.before.speed, (one.after or one.before).speed
     acceleration = (end - start) / duration

@@ -1,6 +1,7 @@
 """One CAV that learns among human drivers: our environment as a Gymnasium `Env` of a single vehicle."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import gymnasium
@@ -8,21 +9,60 @@ import numpy as np
 from gymnasium.spaces import Box, Discrete
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.road import Road
+from codriving.datatypes.scene import Scene
+from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
-from codriving.gym.actions import ACTIONS
+from codriving.environment.scenarios.pace import Pace
+from codriving.environment.scenarios.protocol import Scenario
+from codriving.gym.actions import ACTIONS, check_seed, draw_seed
 from codriving.gym.configured import configured
-from codriving.gym.drive import Drive, Eyes
-from codriving.gym.layout import FloatArray
-from codriving.gym.one_cav import OneCav
+from codriving.gym.episode import AgentEpisode
+from codriving.gym.observation import FloatArray, Observer
 from codriving.gym.reward import RewardWeights, reward_weights
-from codriving.gym.seeding import check_seed, draw_seed
 
-EyesOf: TypeAlias = Callable[[Environment], Eyes]
-"""Gives eyes to whoever drives in an environment."""
+DRAW = 2
+"""Key of the random numbers that choose the CAV, apart from those of the scene and of the drivers."""
+
+
+class OneCav:
+    """Another scenario with a single CAV among human drivers."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario = scenario
+        self.name = scenario.name
+
+    @property
+    def road(self) -> Road:
+        """The road."""
+        return self.scenario.road
+
+    @property
+    def pace(self) -> Pace:
+        """Frequencies, target speeds, time limit and perception."""
+        return self.scenario.pace
+
+    def scene(self, seed: int) -> Scene:
+        """Draw the scene, and which of the CAVs is the one that is left; it is called ``CAV1`` always.
+
+        Raises:
+            ScenarioError: If the vehicles cannot be placed.
+        """
+        scene = self.scenario.scene(seed)
+        cavs = [start for start in scene.starts if start.kind is Kind.CAV]
+        rng = np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(DRAW,)))
+        chosen = cavs[int(rng.integers(len(cavs)))]
+        others = [start for start in scene.starts if start is not chosen]
+        humans = (replace(start, id=f"HDV{k}", kind=Kind.HDV) for k, start in enumerate(others, 1))
+        return Scene(scene.seed, (replace(chosen, id="CAV1"), *humans))
+
+
+ObserverFactory: TypeAlias = Callable[[Environment], Observer]
+"""Makes the observer of an environment."""
 
 
 class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
-    """One agent that drives one CAV; everybody else is a human driver.
+    """One agent that drives one CAV; all others are human drivers.
 
     Args:
         overrides: ``key=value`` tokens, as for ``codriving.parallel_env``.
@@ -35,7 +75,7 @@ class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
     def __init__(
         self,
         name: str,
-        eyes: EyesOf,
+        observer: ObserverFactory,
         actions: Sequence[Action],
         overrides: Sequence[str] = (),
         reward: RewardWeights | Mapping[str, float] | None = None,
@@ -43,12 +83,12 @@ class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
     ) -> None:
         full, _ = configured(name, overrides, "full", None, settings)
         self.environment = Environment(OneCav(full.scenario), full.control, full.drivers, full.corrections)
-        sees = eyes(self.environment)
-        self._drive = Drive(self.environment, sees, reward_weights(reward))
+        observing = observer(self.environment)
+        self._drive = AgentEpisode(self.environment, observing, reward_weights(reward))
         (self._cav,) = self._drive.cavs
         self._numbers = [ACTIONS.index(action) for action in actions]
         self.action_space = Discrete(len(actions))
-        self.observation_space = Box(-1.0, 1.0, sees.nothing().shape, np.float32)
+        self.observation_space = Box(-1.0, 1.0, observing.nothing().shape, np.float32)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

@@ -30,11 +30,11 @@ class AttentionActor(nn.Module):
         slots = observations[:, first:last].reshape(-1, SLOTS, len(SLOT))
         own = torch.cat([observations[:, :first], observations[:, last:]], 1)
         ego = torch.relu(self.ego(own))
-        # The ego vehicle is a token as well, so that there is somebody to attend to on an empty road.
-        everyone = torch.cat([ego[:, None], torch.relu(self.other(slots))], 1)
+        # The ego vehicle is a token as well, so that there is one to attend to on an empty road.
+        tokens = torch.cat([ego[:, None], torch.relu(self.other(slots))], 1)
         there = torch.cat([torch.ones_like(slots[:, :1, 0]), slots[:, :, 0]], 1) > 0.0
         shape = (-1, SLOTS + 1, HEADS, WIDTH // HEADS)
-        key, value = self.key(everyone).reshape(shape), self.value(everyone).reshape(shape)
+        key, value = self.key(tokens).reshape(shape), self.value(tokens).reshape(shape)
         query = self.query(ego).reshape(-1, 1, HEADS, WIDTH // HEADS)
         scores = (query * key).sum(3) / (WIDTH // HEADS) ** 0.5
         shares = torch.softmax(scores.masked_fill(~there[:, :, None], -1e9), 1)

@@ -1,4 +1,4 @@
-"""Transitions over several steps, one agent at a time: who has arrived stops, and nobody is blamed for others."""
+"""Transitions over several steps, one agent at a time; an agent that has arrived has none after its arrival."""
 
 from dataclasses import dataclass
 from typing import NamedTuple

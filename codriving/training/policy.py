@@ -17,7 +17,7 @@ SURE = 0.9
 
 
 class DriverPolicy(ActorCriticPolicy):
-    """Actor and critic for observations that are features, mask and advice in one row (see ``Sight``).
+    """Actor and critic for observations that are features, mask and advice in one row (see ``AdvisedObserver``).
 
     Stable-Baselines3 adds to its loss what ``evaluate_actions`` returns as entropy, times a coefficient. The divergence
     from the teacher enters by the same door: entropy - pull KL(teacher || policy), with the pull in units of that

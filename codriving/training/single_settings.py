@@ -15,7 +15,7 @@ from codriving.training.teacher import Guidance
 from codriving.training.validation import Exam
 
 if TYPE_CHECKING:
-    from codriving.gym.single import EyesOf, SingleDriving
+    from codriving.gym.single import ObserverFactory, SingleDriving
     from codriving.training.single_trainer import SingleTrainer
 
 LEARNERS = ("ppo", "tell")
@@ -39,7 +39,7 @@ class SingleTraffic:
         if self.copies < 1:
             raise ConfigError(f"copies must be 1 or more, got {self.copies}")
 
-    def environment(self, eyes: "EyesOf", family: str, reward: RewardWeights) -> "SingleDriving":
+    def environment(self, observer: "ObserverFactory", family: str, reward: RewardWeights) -> "SingleDriving":
         """Return an environment of this kind.
 
         Raises:
@@ -48,7 +48,7 @@ class SingleTraffic:
         from codriving.gym.single import SingleDriving
 
         settings = {"hdvs": list(self.hdvs), **self.settings}
-        return SingleDriving(self.scenario, eyes, ACTIONS[family], reward=reward, cavs=self.cavs, **settings)
+        return SingleDriving(self.scenario, observer, ACTIONS[family], reward=reward, cavs=self.cavs, **settings)
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class SingleSettings:
         learner: ``ppo`` or ``tell``.
         family: ``junction`` or ``lanes``.
         form: Kind of the actor, ``perceptron`` or ``attention``.
-        guidance: Who teaches; None for nobody.
+        guidance: The teacher; None for none.
 
     Raises:
         ConfigError: If a value is out of range.
@@ -132,5 +132,5 @@ class SingleSettings:
 
     @property
     def teacher(self) -> str:
-        """Name of who teaches; empty for nobody."""
+        """Name of the teacher; empty for none."""
         return "" if self.guidance is None else self.guidance.llm.name

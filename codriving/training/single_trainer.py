@@ -11,12 +11,12 @@ from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import DummyVecEnv
 
 from codriving.datatypes.outcome import Ending
-from codriving.gym.seeding import draw_seed
+from codriving.gym.actions import draw_seed
 from codriving.gym.single import SingleDriving
 from codriving.methods.learned.forms import ATTENTION, AnyNetwork
 from codriving.methods.learned.layout import feature_count
+from codriving.training.advised_observer import AdvisedObserver
 from codriving.training.policy import DriverPolicy, actor_as_numpy
-from codriving.training.sight import Sight
 from codriving.training.single_settings import SingleSettings
 from codriving.training.teacher import Advisor
 
@@ -35,7 +35,7 @@ class SingleTrainer:
         self.settings, self.decisions, self.rollouts = settings, 0, 0
         self._advisors: list[Advisor] = []
         kinds = [kind for kind in settings.traffic for _ in range(kind.copies)]
-        environments = [kind.environment(self._eyes, settings.family, settings.weights) for kind in kinds]
+        environments = [kind.environment(self._observer, settings.family, settings.weights) for kind in kinds]
         self._count = len(environments)
         # Each is handed over at once; a lambda in a loop would hand over the last one.
         self._roads = DummyVecEnv([_handing(environment) for environment in environments])
@@ -63,12 +63,12 @@ class SingleTrainer:
         assert isinstance(policy, DriverPolicy)
         self._policy = policy
 
-    def _eyes(self, environment: Any) -> Sight:  # noqa: ANN401 - the environment's room is not for this one
+    def _observer(self, environment: Any) -> AdvisedObserver:  # noqa: ANN401 - the environment's room is not for this one
         road, guidance = (environment.road_map, environment.driving_model), self.settings.guidance
         if guidance is None:
-            return Sight(*road, self.settings.family, None)
+            return AdvisedObserver(*road, self.settings.family, None)
         self._advisors.append(guidance.teacher(*road))
-        return Sight(*road, self.settings.family, self._advisors[-1])
+        return AdvisedObserver(*road, self.settings.family, self._advisors[-1])
 
     @property
     def network(self) -> AnyNetwork:

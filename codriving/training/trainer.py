@@ -10,7 +10,7 @@ import torch
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
-from codriving.gym.seeding import draw_seed
+from codriving.gym.actions import draw_seed
 from codriving.methods.learned.actions import ACTIONS
 from codriving.methods.learned.layout import feature_count
 from codriving.methods.learned.network import FloatArray, Network, greedy
@@ -148,7 +148,7 @@ class Trainer:
 def remember(moment: Moment, trails: dict[str, Trail], steps: int, discount: float) -> Iterator[Transition]:
     """Turn one step of all agents into transitions.
 
-    Who has arrived or crashed has nothing to come. At the time limit everybody else would have gone on. When others
+    A CAV that has arrived or crashed has nothing to come. At the time limit the others would have gone on. When others
     crash, the last step of who had no part in it is dropped.
     """
     for k, name in enumerate(moment.agents):

@@ -10,8 +10,8 @@ from choosers import FASTER, IDLE, LANE_LEFT, SLOWER, always, episode
 from codriving.config.schema import LARGEST_SEED
 from codriving.datatypes.action import Action
 from codriving.errors import EpisodeError
+from codriving.gym.actions import draw_seed
 from codriving.gym.parallel import ParallelDriving
-from codriving.gym.seeding import draw_seed
 
 Make = Callable[..., ParallelDriving]
 

@@ -2,7 +2,7 @@
 
 from codriving.datatypes.road import LaneId, Route, Turn
 from codriving.datatypes.vehicle import Intent
-from codriving.gym.intention import Intention, intention
+from codriving.gym.observation import Intention, intention
 
 RAMP: tuple[LaneId, ...] = (("j", "b", 0), ("b", "c", 2), ("b", "c", 1), ("c", "d", 1))
 ROUTES = {

@@ -12,8 +12,7 @@ from worlds import FULL, Car, Junction, car
 
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
-from codriving.gym.layout import FEATURES, FloatArray, Layout
-from codriving.gym.observation import Observer
+from codriving.gym.observation import FEATURES, CdaObserver, FloatArray, Layout
 from codriving.reasoning.sharing.cda import CdaLevel
 
 X, Y, VX, VY, LANE, INTENTION = range(6)
@@ -29,7 +28,7 @@ def see(junction: Junction) -> See:
     def show(world: WorldState, **settings: Any) -> dict[str, FloatArray]:
         level = CdaLevel(**{key: settings.pop(key, value) for key, value in FULL.items()})
         layout = Layout(**{"coordinates": "absolute", **settings})
-        observer = Observer(junction.road_map, junction.model, level, layout)
+        observer = CdaObserver(junction.road_map, junction.model, level, layout)
         seen = observer.observe(world)
         assert all(observer.space().contains(matrix) for matrix in seen.values())
         return seen

@@ -10,7 +10,7 @@ import pytest
 
 from codriving.config.choices import choices
 from codriving.datatypes.action import Action
-from codriving.gym.layout import FEATURES
+from codriving.gym.observation import FEATURES
 from codriving.gym.parallel import ParallelDriving
 from codriving.gym.registration import env_id
 from codriving.gym.reward import RewardWeights

@@ -8,18 +8,18 @@ import pytest
 from codriving.datatypes.action import Action
 from codriving.datatypes.vehicle import Kind, VehicleState
 from codriving.errors import ConfigError
-from codriving.gym.reward import Driven, RewardWeights, reward_weights, rewards
+from codriving.gym.reward import CavStep, RewardWeights, reward_weights, rewards
 
 NOTHING = RewardWeights(**{field.name: 0.0 for field in fields(RewardWeights)})
 STATE = VehicleState("CAV1", Kind.CAV, 0.0, 0.0, 0.0, 6.0, 0.0, ("a", "b", 0))
 
 
-def driven(start: float = 6.0, end: float | None = 6.0, action: Action = Action.IDLE, failed: bool = False) -> Driven:
+def driven(start: float = 6.0, end: float | None = 6.0, action: Action = Action.IDLE, failed: bool = False) -> CavStep:
     after = None if end is None else replace(STATE, speed=end)
-    return Driven(replace(STATE, speed=start), after, action, failed)
+    return CavStep(replace(STATE, speed=start), after, action, failed)
 
 
-def reward(one: Driven, duration: float = 0.5, top: float = 9.0, **weights: float) -> float:
+def reward(one: CavStep, duration: float = 0.5, top: float = 9.0, **weights: float) -> float:
     (value,) = rewards(replace(NOTHING, **weights), [one], duration, top)
     return value
 

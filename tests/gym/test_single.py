@@ -8,12 +8,10 @@ from codriving.config.choices import choices
 from codriving.datatypes.vehicle import Kind
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
-from codriving.gym.actions import ACTIONS
+from codriving.gym.actions import ACTIONS, FIRST_DRAWN
 from codriving.gym.configured import configured
-from codriving.gym.layout import FloatArray
-from codriving.gym.one_cav import OneCav
-from codriving.gym.seeding import FIRST_DRAWN
-from codriving.gym.single import SingleDriving
+from codriving.gym.observation import FloatArray
+from codriving.gym.single import OneCav, SingleDriving
 
 SLOWER, IDLE, FASTER, LANE_LEFT = range(4)
 

@@ -15,8 +15,8 @@ from codriving.errors import ConfigError
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
 from codriving.methods.learned.layout import JUNCTION, feature_count
+from codriving.training.advised_observer import AdvisedObserver
 from codriving.training.schedule import Linear
-from codriving.training.sight import Sight
 from codriving.training.teacher import Advisor, Guidance
 
 HERE = str(Path(__file__).parent)
@@ -111,11 +111,11 @@ def test_a_model_is_not_asked_what_is_plain(junction: Junction) -> None:
 
 def test_sight_puts_features_mask_and_advice_into_a_row(junction: Junction) -> None:
     model, features = junction.model, feature_count(JUNCTION)
-    taught = Sight(junction.road_map, model, JUNCTION, advisor(junction, Rules()))
+    taught = AdvisedObserver(junction.road_map, model, JUNCTION, advisor(junction, Rules()))
     row = taught.observe(junction.world(EGO))["CAV1"]
     assert row.shape == taught.nothing().shape == (features + 6,)
     assert row[features:].tolist() == [1, 1, 1, 0, 0, 1]
-    alone = Sight(junction.road_map, model, JUNCTION, None).observe(junction.world(EGO))["CAV1"]
+    alone = AdvisedObserver(junction.road_map, model, JUNCTION, None).observe(junction.world(EGO))["CAV1"]
     assert alone[features:].tolist() == [1, 1, 1, 0, 0, 0]
     assert alone[:features].tolist() == row[:features].tolist()
 

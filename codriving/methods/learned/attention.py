@@ -45,10 +45,10 @@ class Attention:
         slots = observations[:, first:last].reshape(-1, SLOTS, len(SLOT))
         own = np.concatenate([observations[:, :first], observations[:, last:]], axis=1)
         ego = np.maximum(self._layer(OWN, own), 0.0)
-        everyone = np.concatenate([ego[:, None], np.maximum(self._layer("other", slots), 0.0)], axis=1)
+        tokens = np.concatenate([ego[:, None], np.maximum(self._layer("other", slots), 0.0)], axis=1)
         there = np.concatenate([np.ones_like(slots[:, :1, 0]), slots[:, :, 0]], axis=1) > 0.0
         shape = (-1, SLOTS + 1, HEADS, WIDTH // HEADS)
-        key, value = (self._layer(name, everyone).reshape(shape) for name in ("key", "value"))
+        key, value = (self._layer(name, tokens).reshape(shape) for name in ("key", "value"))
         query = self._layer("query", ego).reshape(-1, 1, HEADS, WIDTH // HEADS)
         scores = (query * key).sum(axis=3) / np.float32((WIDTH // HEADS) ** 0.5)
         scores = np.where(there[:, :, None], scores, -np.inf)

@@ -77,7 +77,7 @@ class Beside:
         """Return arc length and lateral offset of places on a lane, which goes straight on beyond its ends [m]."""
         shape = self._road_map.lanes[lane].shape
         if isinstance(shape, Straight):
-            # Most lanes are, and this is asked for by everybody in every step.
+            # Most lanes are, and this is read for every vehicle in every step.
             (x0, y0), (x1, y1) = shape.start, shape.end
             length = hypot(x1 - x0, y1 - y0)
             cos, sin = (x1 - x0) / length, (y1 - y0) / length

@@ -34,7 +34,7 @@ class Features:
     def __init__(self, road_map: RoadMap, model: DrivingModel, family: str, shared: bool) -> None:
         self._road_map, self._top, self._family = road_map, model.target_speeds[-1], family
         self._range, self._shared = model.detection_range, shared
-        # Where no two routes have a zone in which the order is open, nobody's route matters.
+        # Where no two routes have a zone in which the order is open, no route matters.
         self._meets = family == JUNCTION or _any_open(road_map)
         self._beside = Beside(road_map, self._top) if family == LANES else None
         self.reset()

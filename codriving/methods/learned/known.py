@@ -12,7 +12,7 @@ from codriving.reasoning.sharing.tracking import Places, Tracking
 FORESIGHT = 1.0
 """A human driver is expected to go on accelerating or braking for this long [s]."""
 
-EVERYBODY = ""
+SHARED = ""
 """In whose name the CAVs watch together when they share what they see."""
 
 
@@ -44,7 +44,7 @@ class Other:
 
 
 class Knowledge:
-    """Watches the others from one decision to the next; nobody reads a human driver's mind.
+    """Watches the others from one decision to the next; the intent of a human driver is never known.
 
     Args:
         detection_range: Radius of perception of a CAV [m].
@@ -99,7 +99,7 @@ class Knowledge:
     def _human(self, v: VehicleState) -> Other:
         """A human driver whom all CAVs watch together."""
         target = max(v.speed + FORESIGHT * v.acceleration, 0.0)
-        places = self._watched(EVERYBODY, v)
+        places = self._watched(SHARED, v)
         return Other(v.id, False, v.x, v.y, v.speed, v.heading, target, v.length, places, self.priority(v))
 
     def _stranger(self, ego: str, v: VehicleState) -> Other:

@@ -26,7 +26,7 @@ EGO = ("speed", "target", "to_entry", "to_goal", "left", "straight", "right", "o
 SLOT = ("there", "is_cav", "same_path", "crossing", "own_entry", "other_entry", "other_exit", "speed", "target")
 """A leader (both entries are the gap) or a conflict zone: ways of both to it and of the other out of it.
 
-``there`` is 1. Where CAVs share and the road has rules of precedence, it is less in a conflict with somebody on a lane
+``there`` is 1. Where CAVs share and the road has rules of precedence, it is less in a conflict with a vehicle on a lane
 of the same priority (0.6) or of a higher one (0.2): such human drivers will not give way.
 """
 

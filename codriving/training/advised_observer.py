@@ -1,4 +1,4 @@
-"""What a CAV that learns on its own is handed: its features, what it may do, and what a teacher would do."""
+"""What a CAV that learns on its own is handed: its features, what it may do, and the advice of a teacher."""
 
 import numpy as np
 
@@ -6,6 +6,7 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
+from codriving.gym.observation import Observer
 from codriving.methods.learned.actions import ACTIONS, allowed
 from codriving.methods.learned.features import Features
 from codriving.methods.learned.layout import feature_count
@@ -13,7 +14,7 @@ from codriving.methods.learned.network import FloatArray
 from codriving.training.teacher import Teacher
 
 
-class Sight:
+class AdvisedObserver(Observer):
     """Three rows in one: features, 1 for each action that is allowed, and 1 for the action that the teacher advises.
 
     The network sees the features alone. Masks and advice go the same way because Stable-Baselines3 keeps nothing else
@@ -21,7 +22,7 @@ class Sight:
 
     Args:
         family: ``junction`` or ``lanes``.
-        teacher: Who gives advice; None for nobody.
+        teacher: Gives advice; None for no advice.
     """
 
     def __init__(self, road_map: RoadMap, model: DrivingModel, family: str, teacher: Teacher | None) -> None:

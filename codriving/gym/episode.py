@@ -1,8 +1,8 @@
-"""One episode after another as its CAVs live through it: what they observe, what they do, what it is worth."""
+"""Episodes as CAVs that learn go through them: observations, actions, rewards and endings."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
@@ -11,12 +11,12 @@ from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
 from codriving.errors import EpisodeError, ScenarioError
 from codriving.gym.actions import action_mask, action_of
-from codriving.gym.layout import FloatArray
-from codriving.gym.reward import Driven, RewardWeights, rewards
+from codriving.gym.observation import FloatArray, Observer
+from codriving.gym.reward import CavStep, RewardWeights, rewards
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class StepResult:
     """What one decision step brought each CAV that was on the road, by id."""
 
     rewards: dict[str, float]
@@ -24,26 +24,14 @@ class Turn:
     truncated: dict[str, bool]
 
 
-class Eyes(Protocol):
-    """What CAVs observe."""
-
-    def observe(self, world: WorldState) -> dict[str, FloatArray]:
-        """Return what each CAV on the road observes, by id."""
-        ...
-
-    def nothing(self) -> FloatArray:
-        """Return what is observed by a CAV that has left the road."""
-        ...
-
-
-class Drive:
-    """An environment with eyes and rewards.
+class AgentEpisode:
+    """Drives the environment by actions as numbers, and gives observations and rewards.
 
     Attributes:
         world: The world as it is now; None before the first episode.
     """
 
-    def __init__(self, environment: Environment, observer: Eyes, weights: RewardWeights) -> None:
+    def __init__(self, environment: Environment, observer: Observer, weights: RewardWeights) -> None:
         self.environment, self.observer, self.weights = environment, observer, weights
         self.cavs = [start.id for start in environment.scenario.scene(0).starts if start.kind is Kind.CAV]
         self.driving: list[str] = []
@@ -70,11 +58,11 @@ class Drive:
         self._refused = dict.fromkeys(self.cavs, 0)
         self._views = self.observer.observe(world)
 
-    def step(self, actions: Mapping[str, object]) -> Turn:
+    def step(self, actions: Mapping[str, object]) -> StepResult:
         """Carry out one decision of every CAV on the road.
 
         Raises:
-            EpisodeError: If no episode is going on, or an action is missing, for nobody, or no action.
+            EpisodeError: If no episode is going on, or an action is missing, unknown, or of no CAV.
         """
         before = self.world
         if before is None or not self.driving:
@@ -87,7 +75,7 @@ class Drive:
         outcome = self.environment.outcome
         late = on_road if outcome is not None and outcome.ending is Ending.TIMEOUT else []
         self.driving = on_road if outcome is None else []
-        return Turn(
+        return StepResult(
             rewards=dict(zip(driving, self._rewards(before, world), strict=True)),
             terminated={name: name not in self.driving and name not in late for name in driving},
             truncated={name: name in late for name in driving},
@@ -129,13 +117,13 @@ class Drive:
         return wanted
 
     def _rewards(self, before: WorldState, after: WorldState) -> list[float]:
-        """Reward everybody who decided, in the same order."""
+        """Return the reward of each CAV that decided, in the same order."""
         outcome = self.environment.outcome
         failed: tuple[str, ...] = ()
         if outcome is not None:
             crash = outcome.collision
             failed = outcome.off_road if crash is None else (crash.striker, crash.struck)
         then, now = ({v.id: v for v in world.cavs} for world in (before, after))
-        driven = [Driven(then[name], now.get(name), done, name in failed) for name, done in self.actions.items()]
+        driven = [CavStep(then[name], now.get(name), done, name in failed) for name, done in self.actions.items()]
         top = self.environment.driving_model.target_speeds[-1]
         return rewards(self.weights, driven, after.time - before.time, top)
