@@ -25,7 +25,6 @@ from codriving.reasoning.execution.protocol import Executor
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.ordering.protocol import Ordering, OrderRule
 from codriving.reasoning.prediction.rollout import rollout
-from codriving.reasoning.sharing.movers import movers
 
 
 def configured_executor(name: str) -> dict[str, Any]:
@@ -53,7 +52,7 @@ def ordered(world: Junction, rule: OrderRule | None = None, executor: Executor |
 
 def stage_of(thoughts: Thoughts, time: float = 0.0) -> Stage:
     """One moment as an executor sees it."""
-    known = {name: movers(scene) for name, scene in thoughts.scenes.items()}
+    known = {name: scene.vehicles() for name, scene in thoughts.scenes.items()}
     return Stage(
         thoughts.scenes,
         thoughts.conflicts,

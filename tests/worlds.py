@@ -21,7 +21,6 @@ from codriving.reasoning.prediction.expectation import expect
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.safety.outlook import CONTINUATIONS, LONGITUDINAL, Outlook, motions
-from codriving.reasoning.sharing.movers import movers
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
 from codriving.reasoning.sharing.state_sharing import SharedStates, StateSharing
 from codriving.reasoning.sharing.tracking import Tracking
@@ -116,7 +115,7 @@ class Thoughts:
         """The view of one CAV that goes by an order: the coordinator's, or the one given."""
         order, actions = order or self.negotiate(), actions or self.available[ego]
         scene, road_map = self.scenes[ego], self.junction.road_map
-        known = movers(scene)
+        known = scene.vehicles()
         expected = expect(known, order, road_map, self.forecast, LAG, minds_conflicts=True)
         stops, goes = motions(scene, actions, self.forecast)
         return Outlook(

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.vehicle import Intent, VehicleState
+from codriving.datatypes.vehicle import Intent, Kind, VehicleState
 
 
 class Role(StrEnum):
@@ -17,11 +17,10 @@ class Role(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Neighbour:
-    """Another vehicle as far as the ego vehicle knows it; what it does not know is None.
+class TrackedVehicle:
+    """A vehicle as far as the ego vehicle knows it; what it does not know is None.
 
     Attributes:
-        kind: ``CAV``, ``HDV``, or None if it cannot tell.
         x: Position [m].
         y: Position [m].
         speed: Speed [m/s].
@@ -34,7 +33,7 @@ class Neighbour:
     """
 
     id: str
-    kind: str | None
+    kind: Kind | None
     x: float
     y: float
     speed: float
@@ -42,11 +41,21 @@ class Neighbour:
     acceleration: float | None
     lane: LaneId | None
     length: float
-    routes: tuple[tuple[str, float], ...]
-    intent: Intent | None
-    standing: float
-    role: Role
-    gap: float | None
+    routes: tuple[tuple[str, float], ...] = ()
+    intent: Intent | None = None
+    standing: float = 0.0
+    role: Role = Role.OTHER
+    gap: float | None = None
+
+    @property
+    def is_cav(self) -> bool:
+        """Whether it has shared its intent, as only a CAV can."""
+        return self.intent is not None
+
+    @property
+    def target(self) -> float:
+        """Target speed; its speed where that is not known [m/s]."""
+        return self.speed if self.intent is None else self.intent.target_speed
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,10 +85,19 @@ class SceneDescription:
     place: float
     adjacent_lanes: tuple[LaneId, ...]
     conflict_lanes: tuple[LaneId, ...]
-    neighbours: tuple[Neighbour, ...]
+    neighbours: tuple[TrackedVehicle, ...]
     covers: tuple[tuple[str, float], ...] = ()
     must_change: LaneChange | None = None
 
-    def neighbour(self, name: str) -> Neighbour | None:
+    def neighbour(self, name: str) -> TrackedVehicle | None:
         """Return a neighbour by id, or None if the ego vehicle does not know of it."""
         return next((n for n in self.neighbours if n.id == name), None)
+
+    def vehicles(self) -> dict[str, TrackedVehicle]:
+        """Return the ego vehicle and its neighbours, by id and in the order of the ids."""
+        v = self.ego
+        routes = ((self.intent.route, self.place), *self.covers)
+        ego = TrackedVehicle(
+            v.id, v.kind, v.x, v.y, v.speed, v.heading, v.acceleration, v.lane, v.length, routes, self.intent
+        )
+        return {v.id: v for v in sorted((ego, *self.neighbours), key=lambda v: v.id)}

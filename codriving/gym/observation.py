@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.road import LaneId, Route, Turn, beside
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.datatypes.vehicle import Intent, VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.environment.scenarios.pace import TOP_SPEED
@@ -21,7 +22,6 @@ from codriving.errors import ConfigError
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.sharing.cda import CdaLevel
-from codriving.reasoning.sharing.detection import Glimpse
 from codriving.reasoning.sharing.intent_sharing import HiddenIntents, IntentSharing, SharedIntents
 from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates, StateSharing
 
@@ -160,7 +160,7 @@ class CdaObserver(Observer):
         return {cav.id: self._matrix(cav, world.intents[cav.id], views[cav.id], intents) for cav in world.cavs}
 
     def _matrix(
-        self, ego: VehicleState, own: Intent, view: tuple[Glimpse, ...], intents: Mapping[str, Intent]
+        self, ego: VehicleState, own: Intent, view: tuple[TrackedVehicle, ...], intents: Mapping[str, Intent]
     ) -> FloatArray:
         near = sorted(view, key=lambda seen: (hypot(seen.x - ego.x, seen.y - ego.y), seen.id))
         x, y = (ego.x, ego.y) if self._layout.coordinates == "relative" else (0.0, 0.0)
@@ -172,7 +172,7 @@ class CdaObserver(Observer):
         # Only a vehicle that a fault of the simulator carries off the map is farther out than the bounds.
         return np.clip(matrix, self._low, self._high, out=matrix)
 
-    def _row(self, seen: VehicleState | Glimpse, intent: Intent | None, x: float, y: float) -> Row:
+    def _row(self, seen: VehicleState | TrackedVehicle, intent: Intent | None, x: float, y: float) -> Row:
         # A speed without a direction stands in vx; the unknown lane beside it says that it is one.
         vx, vy = seen.speed, 0.0
         if seen.heading is not None:

@@ -5,7 +5,7 @@ from math import cos, hypot, isfinite, sin
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.experience import Description
-from codriving.datatypes.scene_description import Neighbour, Role
+from codriving.datatypes.scene_description import Role, TrackedVehicle
 from codriving.datatypes.situation import Situation
 
 NOBODY = "nobody"
@@ -70,7 +70,7 @@ def _nearest(situation: Situation, numbers: dict[str, float]) -> list[str]:
     ego = situation.scene.ego
     along, across = cos(ego.heading), sin(ego.heading)
 
-    def place(n: Neighbour) -> tuple[float, float]:
+    def place(n: TrackedVehicle) -> tuple[float, float]:
         dx, dy = n.x - ego.x, n.y - ego.y
         return along * dx + across * dy, along * dy - across * dx
 

@@ -4,13 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.scene_description import SceneDescription
+from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.sharing.intent_sharing import GuessedIntents, IntentSharing
-from codriving.reasoning.sharing.movers import Mover, movers
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
 from codriving.reasoning.sharing.state_sharing import StateSharing, WatchedStates
 from codriving.reasoning.sharing.tracking import Tracking
@@ -22,7 +21,7 @@ class Perceived:
 
     scenes: Mapping[str, SceneDescription]
     conflicts: Mapping[str, tuple[Conflict, ...]]
-    known: Mapping[str, dict[str, Mover]]
+    known: Mapping[str, dict[str, TrackedVehicle]]
 
 
 @dataclass(slots=True)
@@ -45,7 +44,7 @@ class Perception:
         if self.intent_sharing.finds_conflicts:
             conflicts = {ego: find_conflicts(scene, self.road_map) for ego, scene in scenes.items()}
             scenes = {ego: with_conflicts(scene, conflicts[ego], self.road_map) for ego, scene in scenes.items()}
-        return Perceived(scenes, conflicts, {ego: movers(scene) for ego, scene in scenes.items()})
+        return Perceived(scenes, conflicts, {ego: scene.vehicles() for ego, scene in scenes.items()})
 
 
 def single_vehicle_perception(road_map: RoadMap, forecast: Forecast) -> Perception:

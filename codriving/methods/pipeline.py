@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.scene_description import SceneDescription
+from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
@@ -17,11 +17,10 @@ from codriving.methods.perception import Perception
 from codriving.reasoning.decision.clear_times import clear_time
 from codriving.reasoning.decision.decider import Decider
 from codriving.reasoning.ordering.negotiation import Negotiation
-from codriving.reasoning.prediction.expectation import Expected, expect
+from codriving.reasoning.prediction.expectation import Expected, Motions, expect, motions_of
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.safety.assessment import SafetyCheck
 from codriving.reasoning.safety.outlook import Outlook, motions
-from codriving.reasoning.sharing.movers import Mover
 
 
 @dataclass(slots=True)
@@ -93,20 +92,17 @@ class Pipeline:
         return round(self.margin / self.forecast.sample)
 
     def _expectations(
-        self, known: Mapping[str, dict[str, Mover]], orders: Mapping[str, PassingOrder]
+        self, known: Mapping[str, dict[str, TrackedVehicle]], orders: Mapping[str, PassingOrder]
     ) -> dict[str, dict[str, tuple[Expected, ...]]]:
         """Expect what follows from each CAV's knowledge and order; those who agree in both share one expectation."""
-        done: list[tuple[dict[str, Mover], PassingOrder, dict[str, tuple[Expected, ...]]]] = []
+        done: dict[tuple[int, Motions], dict[str, tuple[Expected, ...]]] = {}
         found = {}
         for ego, vehicles in known.items():
             order = orders[ego]
-            for seen, went, expected in done:
-                if order is went and vehicles == seen:
-                    found[ego] = expected
-                    break
-            else:
-                found[ego] = expect(vehicles, order, self.road_map, self.forecast, self._lag, self._finds_conflicts)
-                done.append((vehicles, order, found[ego]))
+            key = id(order), motions_of(vehicles)
+            if key not in done:
+                done[key] = expect(vehicles, order, self.road_map, self.forecast, self._lag, self._finds_conflicts)
+            found[ego] = done[key]
         return found
 
     def _situation(
@@ -114,7 +110,7 @@ class Pipeline:
         scene: SceneDescription,
         conflicts: tuple[Conflict, ...],
         order: PassingOrder,
-        known: dict[str, Mover],
+        known: dict[str, TrackedVehicle],
         expected: dict[str, tuple[Expected, ...]],
         actions: tuple[Action, ...],
     ) -> Situation:

@@ -1,7 +1,7 @@
 """The conflict description: everybody whose way ahead shares a zone with the ego vehicle's (Section III-C.3)."""
 
 from codriving.datatypes.conflict import Conflict, Relation
-from codriving.datatypes.scene_description import Neighbour, SceneDescription
+from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
 from codriving.reasoning.severity import severity, ttcp
@@ -40,7 +40,7 @@ def is_open(zone: ConflictZone, place_i: float, place_j: float) -> bool:
 
 def _conflict(
     scene: SceneDescription,
-    neighbour: Neighbour,
+    neighbour: TrackedVehicle,
     route: str,
     place: float,
     index: int,

@@ -11,13 +11,12 @@ from codriving.datatypes.order import PassingOrder
 from codriving.reasoning.prediction.clearance import first_overlap
 from codriving.reasoning.prediction.expectation import HEADWAY, Expected, expect, is_behind, keeps_order, worth
 from codriving.reasoning.prediction.plans import FIRST, HOLDS, PLANS, ROLLS, STARTS_WITH, WAITS
-from codriving.reasoning.sharing.movers import movers
 
 
 def expected(
     thoughts: Thoughts, order: PassingOrder, ego: str = "CAV1", minds_conflicts: bool = True
 ) -> dict[str, tuple[Expected, ...]]:
-    known, road_map = movers(thoughts.scenes[ego]), thoughts.junction.road_map
+    known, road_map = thoughts.scenes[ego].vehicles(), thoughts.junction.road_map
     return expect(known, order, road_map, thoughts.forecast, LAG, minds_conflicts)
 
 
@@ -86,7 +85,7 @@ def test_a_follower_keeps_a_headway_or_the_margin_if_that_is_less(
     gap: float, lag: int, keeps: bool, junction: Junction
 ) -> None:
     thoughts = junction.thoughts(car("CAV1", "south-north", 30.0, 9.0), car("CAV2", "south-north", 60.0, 9.0))
-    known, times = movers(thoughts.scenes["CAV1"]), thoughts.forecast.times
+    known, times = thoughts.scenes["CAV1"].vehicles(), thoughts.forecast.times
     assert round(HEADWAY / thoughts.forecast.sample) < LAG
     # At 20 m/s the headway takes 16 m and the margin of these worlds 20 m, from one planning footprint to the next.
     ahead = {"CAV2": (Expected("south-north", 30.0 + gap + 20 * times, True, {}),)}

@@ -7,7 +7,6 @@ from worlds import Car, Junction, car
 
 from codriving.geometry.road_map import RoadMap, road_map
 from codriving.reasoning.prediction.right_of_way import gives_way
-from codriving.reasoning.sharing.movers import movers
 
 PLACES = [60.0 + 0.5 * k for k in range(80)]
 
@@ -24,7 +23,7 @@ def reason(
     # Far from one another nobody is perceived: a second CAV beside the driver tells of it.
     witness = car("CAV2", human.route, max(human.place - 20.0, 0.0), 0.0)
     thoughts = junction.thoughts(cav, witness, human)
-    mover = replace(movers(thoughts.scenes["CAV1"])["HDV1"], standing=standing, acceleration=pedal)
+    mover = replace(thoughts.scenes["CAV1"].vehicles()["HDV1"], standing=standing, acceleration=pedal)
     reasons = {
         gives_way(c, mover, road or junction.road_map)
         for c in thoughts.conflicts["CAV1"]

@@ -1,6 +1,6 @@
 """What each CAV knows of the others, with and without state sharing."""
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 from worlds import Car, Junction, car
 
@@ -27,20 +27,20 @@ def test_all_cavs_are_shared_and_every_human_driver_near_any_of_them(junction: J
 
 def test_shared_states_are_complete(junction: Junction) -> None:
     world = junction.world(*cars())
-    glimpse = SharedStates().views(world, junction.model)["CAV1"][1]
+    seen = SharedStates().views(world, junction.model)["CAV1"][1]
     state = next(v for v in world.vehicles if v.id == "HDV1")
-    told = asdict(glimpse)
-    assert told == {key: getattr(state, key) for key in told}
+    told = ("id", "kind", "x", "y", "speed", "heading", "acceleration", "lane", "length")
+    assert {key: getattr(seen, key) for key in told} == {key: getattr(state, key) for key in told}
 
 
 def test_sensed_states_are_position_and_speed_within_range(junction: Junction) -> None:
     world = junction.world(*cars())
     views = SensedStates().views(world, junction.model)
     assert views["CAV1"] == ()
-    (glimpse,) = views["CAV2"]
+    (seen,) = views["CAV2"]
     state = next(v for v in world.vehicles if v.id == "HDV1")
-    assert (glimpse.id, glimpse.x, glimpse.y, glimpse.speed) == ("HDV1", state.x, state.y, state.speed)
-    assert all(getattr(glimpse, name) is None for name in NOT_SENSED)
+    assert (seen.id, seen.x, seen.y, seen.speed) == ("HDV1", state.x, state.y, state.speed)
+    assert all(getattr(seen, name) is None for name in NOT_SENSED)
 
 
 def test_the_detection_range_is_a_circle_around_the_cav(junction: Junction) -> None:
@@ -74,12 +74,12 @@ def test_watched_states_are_position_speed_and_heading_within_range(junction: Ju
     world = junction.world(*cars())
     views = WatchedStates().views(world, junction.model)
     assert views["CAV1"] == ()
-    (glimpse,) = views["CAV2"]
+    (seen,) = views["CAV2"]
     state = next(v for v in world.vehicles if v.id == "HDV1")
-    told = {name for name, value in asdict(glimpse).items() if value is not None}
-    assert told == {"id", "x", "y", "speed", "heading", "length"}
-    assert (glimpse.x, glimpse.y, glimpse.speed, glimpse.heading) == (state.x, state.y, state.speed, state.heading)
-    assert glimpse.length == USUAL_LENGTH
+    told = {name for name in ("kind", "acceleration", "lane", "intent", "gap") if getattr(seen, name) is not None}
+    assert not told
+    assert (seen.x, seen.y, seen.speed, seen.heading) == (state.x, state.y, state.speed, state.heading)
+    assert seen.length == USUAL_LENGTH
 
 
 def test_watching_does_not_tell_who_drives(junction: Junction) -> None:

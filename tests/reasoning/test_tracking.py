@@ -3,36 +3,36 @@
 import pytest
 from worlds import Junction, car
 
-from codriving.datatypes.vehicle import Intent
-from codriving.reasoning.sharing.detection import Glimpse
+from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.vehicle import Intent, Kind
 from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates
 from codriving.reasoning.sharing.tracking import Tracking
 
 
-def seen(junction: Junction, route: str, place: float, speed: float = 6.0, full: bool = True) -> Glimpse:
+def perceived(junction: Junction, route: str, place: float, speed: float = 6.0, full: bool = True) -> TrackedVehicle:
     """What CAV1 is told of a human driver, or senses itself."""
     human = car("HDV1", route, place, speed)
     path = junction.road_map.paths[route]
     watcher = car("CAV1", route, max(place - 20.0, 0.0), 6.0)
     assert path.length > place
     sharing = SharedStates() if full else SensedStates()
-    (glimpse,) = sharing.views(junction.world(watcher, human), junction.model)["CAV1"]
-    return glimpse
+    (seen,) = sharing.views(junction.world(watcher, human), junction.model)["CAV1"]
+    return seen
 
 
-def routes(tracking: Tracking, glimpse: Glimpse, ego: str = "CAV1") -> set[str]:
+def routes(tracking: Tracking, seen: TrackedVehicle, ego: str = "CAV1") -> set[str]:
     tracking.begin_step()
-    return {route for route, _ in tracking.places(ego, glimpse, None)}
+    return {route for route, _ in tracking.places(ego, seen, None)}
 
 
 @pytest.mark.parametrize("route", ["south-west", "south-north", "south-east", "east-south"])
 def test_possible_routes_narrow_as_a_driver_turns(route: str, junction: Junction) -> None:
     tracking = Tracking(junction.road_map)
     source = route.split("-")[0]
-    before = routes(tracking, seen(junction, route, 60.0))
+    before = routes(tracking, perceived(junction, route, 60.0))
     assert before == {name for name in junction.road_map.routes if name.startswith(source)}
     for place in range(62, 122, 3):
-        now = routes(tracking, seen(junction, route, float(place)))
+        now = routes(tracking, perceived(junction, route, float(place)))
         assert route in now, "the true route is never ruled out"
         assert now <= before, "what has been ruled out stays out"
         before = now
@@ -42,34 +42,34 @@ def test_possible_routes_narrow_as_a_driver_turns(route: str, junction: Junction
 def test_routes_are_remembered_past_the_junction(junction: Junction) -> None:
     tracking, fresh = Tracking(junction.road_map), Tracking(junction.road_map)
     for place in (60.0, 100.0, 110.0, 118.0, 150.0):
-        after = routes(tracking, seen(junction, "south-north", place))
+        after = routes(tracking, perceived(junction, "south-north", place))
     assert after == {"south-north"}
-    assert len(routes(fresh, seen(junction, "south-north", 150.0))) > 1
+    assert len(routes(fresh, perceived(junction, "south-north", 150.0))) > 1
 
 
 def test_each_cav_watches_for_itself(junction: Junction) -> None:
     tracking = Tracking(junction.road_map)
     for place in (60.0, 118.0):
-        routes(tracking, seen(junction, "south-north", place))
-    late = seen(junction, "south-north", 150.0)
+        routes(tracking, perceived(junction, "south-north", place))
+    late = perceived(junction, "south-north", 150.0)
     assert routes(tracking, late, "CAV1") < routes(tracking, late, "CAV2")
 
 
 def test_arc_lengths_are_those_of_the_vehicle(junction: Junction) -> None:
     tracking = Tracking(junction.road_map)
-    for route, place in tracking.places("CAV1", seen(junction, "south-west", 60.0), None):
+    for route, place in tracking.places("CAV1", perceived(junction, "south-west", 60.0), None):
         assert place == pytest.approx(60.0, abs=0.1), route
 
 
 def test_without_headings_more_routes_are_possible(junction: Junction) -> None:
-    full = routes(Tracking(junction.road_map), seen(junction, "south-north", 109.0))
-    sensed = routes(Tracking(junction.road_map), seen(junction, "south-north", 109.0, full=False))
+    full = routes(Tracking(junction.road_map), perceived(junction, "south-north", 109.0))
+    sensed = routes(Tracking(junction.road_map), perceived(junction, "south-north", 109.0, full=False))
     assert full < sensed
 
 
 def test_a_shared_route_is_believed(junction: Junction) -> None:
     intent = Intent("south-west", 6.0, ("o0", "ir0", 0))
-    ((route, place),) = Tracking(junction.road_map).places("CAV1", seen(junction, "south-north", 60.0), intent)
+    ((route, place),) = Tracking(junction.road_map).places("CAV1", perceived(junction, "south-north", 60.0), intent)
     assert route == "south-west"
     assert place == pytest.approx(60.0, abs=0.1)
 
@@ -90,15 +90,15 @@ def test_who_is_still_on_the_ramp_lane_beside_its_taper_is_on_the_ramp(merge: Ju
     for place in (latest - 30.0, latest, end - 5.0):
         # The route bends towards the main road there; the driver has stayed on the centre line of the ramp lane.
         x, y = place - merge.road_map.lane_start("ramp", ("b", "c", 2)) + 230.0, 8.0
-        glimpse = Glimpse("HDV1", "HDV", x, y, 10.0, 0.0, 0.0, ("b", "c", 2), 5.0)
-        found = dict(Tracking(merge.road_map).places("CAV1", glimpse, None))
+        seen = TrackedVehicle("HDV1", Kind.HDV, x, y, 10.0, 0.0, 0.0, ("b", "c", 2), 5.0)
+        found = dict(Tracking(merge.road_map).places("CAV1", seen, None))
         assert found["ramp"] == pytest.approx(place, abs=1.0)
         assert "main-0" not in found
 
 
 def test_standing_is_timed_and_forgotten_when_it_moves(junction: Junction) -> None:
     tracking = Tracking(junction.road_map)
-    stands, moves = seen(junction, "west-east", 80.0, 0.0), seen(junction, "west-east", 80.0, 3.0)
+    stands, moves = perceived(junction, "west-east", 80.0, 0.0), perceived(junction, "west-east", 80.0, 3.0)
     assert tracking.standing("CAV1", moves, 0.0) == 0
     assert tracking.standing("CAV1", stands, 1.0) == 0
     assert tracking.standing("CAV1", stands, 2.5) == pytest.approx(1.5)

@@ -6,7 +6,7 @@ from typing import Any
 
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene_description import Neighbour, Role, SceneDescription
+from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
 from codriving.datatypes.situation import ActionAssessment, Situation
 from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for
 from codriving.llm.prompts.views import (
@@ -88,7 +88,7 @@ def side_name(scene: SceneDescription, lane: LaneId) -> str:
     return "LANE_LEFT" if lane[2] < scene.ego.lane[2] else "LANE_RIGHT"
 
 
-def lane_views(scene: SceneDescription, neighbours: Sequence[Neighbour], names: Names) -> list[LaneView]:
+def lane_views(scene: SceneDescription, neighbours: Sequence[TrackedVehicle], names: Names) -> list[LaneView]:
     """Return the ego lane and those beside it, each with whoever is next ahead and next behind."""
     own = {n.role: VehicleView(names(n.id), DRIVERS[n.kind], n.gap or 0.0, n.speed) for n in neighbours}
     lanes = [LaneView("ego lane", own.get(Role.LEADING), own.get(Role.REARING))]
@@ -106,20 +106,22 @@ def lane_views(scene: SceneDescription, neighbours: Sequence[Neighbour], names: 
     return lanes
 
 
-def _others(scene: SceneDescription, neighbours: Sequence[Neighbour], names: Names) -> list[OtherView]:
+def _others(scene: SceneDescription, neighbours: Sequence[TrackedVehicle], names: Names) -> list[OtherView]:
     """List those nearest whose lane is not known."""
     unplaced = [n for n in neighbours if n.lane is None and n.role is Role.OTHER]
     unplaced.sort(key=lambda n: (hypot(n.x - scene.ego.x, n.y - scene.ego.y), n.id))
     return [OtherView(names(n.id), DRIVERS[n.kind], *_offset(scene, n), n.speed) for n in unplaced[:OTHERS]]
 
 
-def _offset(scene: SceneDescription, n: Neighbour) -> tuple[float, float]:
+def _offset(scene: SceneDescription, n: TrackedVehicle) -> tuple[float, float]:
     """Return how far ahead and how far to the right of the CAV a vehicle is [m]."""
     dx, dy, along, across = n.x - scene.ego.x, n.y - scene.ego.y, cos(scene.ego.heading), sin(scene.ego.heading)
     return along * dx + across * dy, along * dy - across * dx
 
 
-def _conflict(situation: Situation, neighbours: Sequence[Neighbour], ks: Sequence[int], names: Names) -> ConflictView:
+def _conflict(
+    situation: Situation, neighbours: Sequence[TrackedVehicle], ks: Sequence[int], names: Names
+) -> ConflictView:
     c: Conflict = situation.conflicts[ks[0]]
     n = next(n for n in neighbours if n.id == c.other)
     return ConflictView(

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.errors import ConfigError
 from codriving.methods.coop_game_fuzzy.joint_choice import Costs, Joint, settle
 from codriving.methods.coop_game_fuzzy.joint_costs import Weights, joint_costs
@@ -14,7 +15,6 @@ from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.rollout import Plan
 from codriving.reasoning.safety.outlook import then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
-from codriving.reasoning.sharing.movers import Mover
 
 OPTIONS = (Action.FASTER, Action.IDLE, Action.SLOWER)
 """What each CAV chooses from; the first one wins where all cost the same."""
@@ -110,7 +110,7 @@ class FuzzyCoalition:
             )
         return Drive(actions, reasons, self._humans(stage) | expected, progress)
 
-    def _allowed(self, stage: Stage, v: Mover) -> list[int]:
+    def _allowed(self, stage: Stage, v: TrackedVehicle) -> list[int]:
         """Return the options that the road allows a CAV: where its lane ends it must still be able to stop."""
         found = [k for k, action in enumerate(OPTIONS) if action in stage.available[v.id]] or [0]
         change = stage.scenes[v.id].must_change

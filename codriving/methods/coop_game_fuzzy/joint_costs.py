@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.geometry.path import Path
 from codriving.methods.coop_game_fuzzy.joint_choice import Array, Costs
 from codriving.methods.coop_game_fuzzy.risk_field import Body, risk
 from codriving.reasoning.execution.stage import Stage
-from codriving.reasoning.sharing.movers import Mover
 
 YIELDS_AFTER = 2.0
 """A driver who has been standing for this long keeps its place [s]."""
@@ -30,7 +30,7 @@ class Weights:
 
 
 def joint_costs(
-    stage: Stage, vehicles: Mapping[str, Mover], travels: Mapping[str, Array], samples: int, weights: Weights
+    stage: Stage, vehicles: Mapping[str, TrackedVehicle], travels: Mapping[str, Array], samples: int, weights: Weights
 ) -> Costs:
     """Return what joint actions cost: the greatest risk from each other vehicle, and the means of the other terms.
 

@@ -4,7 +4,7 @@ from math import atan2, cos, degrees, hypot, sin
 from typing import Any
 
 from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.scene_description import Neighbour, SceneDescription
+from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.llm.prompts.decision_view import lane_views, side_name
 from codriving.llm.prompts.free_text import Names
 from codriving.llm.prompts.seen_names import seen_names
@@ -57,11 +57,11 @@ def seen_view(told: Told, nearest: int | None = None) -> dict[str, Any]:
     }
 
 
-def _distance(scene: SceneDescription, n: Neighbour) -> float:
+def _distance(scene: SceneDescription, n: TrackedVehicle) -> float:
     return hypot(n.x - scene.ego.x, n.y - scene.ego.y)
 
 
-def _seen(told: Told, n: Neighbour, names: Names) -> SeenView:
+def _seen(told: Told, n: TrackedVehicle, names: Names) -> SeenView:
     """Describe one vehicle; of each way that it may take, the most urgent place where that meets the CAV's."""
     scene = told.situation.scene
     ways: dict[str, Conflict] = {}
@@ -85,7 +85,7 @@ def _apart(ways: list[WayView]) -> tuple[WayView, ...]:
     return tuple(w for w in ways if w in apart.values())
 
 
-def _direction(scene: SceneDescription, n: Neighbour) -> str:
+def _direction(scene: SceneDescription, n: TrackedVehicle) -> str:
     dx, dy, along, across = n.x - scene.ego.x, n.y - scene.ego.y, cos(scene.ego.heading), sin(scene.ego.heading)
     # The y axis points to the right of the x axis, so that angles grow clockwise.
     angle = degrees(atan2(along * dy - across * dx, along * dx + across * dy))

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from math import hypot
 
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.datatypes.vehicle import Kind, VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.sharing.detection import Glimpse
 from codriving.reasoning.sharing.tracking import Places, Tracking
 
 FORESIGHT = 1.0
@@ -108,5 +108,5 @@ class Knowledge:
     def _watched(self, watcher: str, v: VehicleState) -> Places:
         if not self._routes:
             return ()
-        seen = Glimpse(v.id, None, v.x, v.y, v.speed, v.heading, None, None, v.length)
+        seen = TrackedVehicle(v.id, None, v.x, v.y, v.speed, v.heading, None, None, v.length)
         return self._tracking.places(watcher, seen, None)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import cos, pi, sin
 
 from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.scene_description import Neighbour
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.geometry.box import Footprint
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
@@ -28,7 +28,7 @@ class Encounter:
     """
 
     conflict: Conflict
-    other: Neighbour
+    other: TrackedVehicle
     zone: ConflictZone
     stops: float
     firm: float

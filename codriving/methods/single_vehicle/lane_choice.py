@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene_description import Neighbour, Role, SceneDescription
+from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
 from codriving.errors import ConfigError
 from codriving.methods.single_vehicle.protocol import View
 from codriving.reasoning.prediction.idm import IntelligentDriver
@@ -34,8 +34,8 @@ class Side:
     """The lane beside, as seen from there."""
 
     lane: LaneId
-    ahead: Neighbour | None
-    behind: Neighbour | None
+    ahead: TrackedVehicle | None
+    behind: TrackedVehicle | None
     far: str
 
 
@@ -194,12 +194,12 @@ def look(view: View, action: Action, alongside: float) -> Side | None:
     return Side(lane, role(there, Role.LEADING), role(there, Role.REARING), near)
 
 
-def role(scene: SceneDescription, wanted: Role) -> Neighbour | None:
+def role(scene: SceneDescription, wanted: Role) -> TrackedVehicle | None:
     """Return who drives next ahead or behind."""
     return next((n for n in scene.neighbours if n.role is wanted), None)
 
 
-def _follow(idm: IntelligentDriver, speed: float, top: float, ahead: Neighbour | None) -> float:
+def _follow(idm: IntelligentDriver, speed: float, top: float, ahead: TrackedVehicle | None) -> float:
     if ahead is None or ahead.gap is None:
         return idm.accelerate(speed, top)
     return idm.accelerate(speed, top, ahead.gap, ahead.speed)

@@ -3,7 +3,7 @@
 from math import cos, sin
 
 from codriving.datatypes.action import Action
-from codriving.datatypes.scene_description import Neighbour, Role, SceneDescription
+from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
 from codriving.datatypes.situation import Situation
 from codriving.reasoning.decision.rules import EAGERNESS, decide_one
 
@@ -42,7 +42,7 @@ def is_plain(situation: Situation, sees_conflicts: bool) -> bool:
     return decide_one(situation).action is Action.FASTER
 
 
-def _catches_up(n: Neighbour, reach: float) -> bool:
+def _catches_up(n: TrackedVehicle, reach: float) -> bool:
     """Whether the CAV comes near a vehicle on its lane within the horizon, or is near it already."""
     if n.role is not Role.LEADING:
         return False
@@ -50,6 +50,6 @@ def _catches_up(n: Neighbour, reach: float) -> bool:
     return min(gap, gap + HORIZON * n.speed - reach) < HEADWAY * pace
 
 
-def _is_ahead(scene: SceneDescription, n: Neighbour, reach: float) -> bool:
+def _is_ahead(scene: SceneDescription, n: TrackedVehicle, reach: float) -> bool:
     along = cos(scene.ego.heading) * (n.x - scene.ego.x) + sin(scene.ego.heading) * (n.y - scene.ego.y)
     return 0 < along <= reach

@@ -3,18 +3,18 @@
 import numpy as np
 
 from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.geometry.box import PLANNING, TRUE
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.execution.violations import SIZES, Array, Steps, meets, passes_too_early
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
-from codriving.reasoning.sharing.movers import Mover
 
 ROOM = 0.5
 """Room that a driver who gives way leaves to the zone [m]."""
 
 
-def minds_humans(stage: Stage, ego: Mover, travels: Array, lag: int, following: int, pad: float) -> Steps:
+def minds_humans(stage: Stage, ego: TrackedVehicle, travels: Array, lag: int, following: int, pad: float) -> Steps:
     """Return when each plan of a CAV first comes too close to a human driver.
 
     Whoever drives behind on the same way has to mind the CAV, not the other way round; whoever gives way, by standing
@@ -37,7 +37,7 @@ def minds_humans(stage: Stage, ego: Mover, travels: Array, lag: int, following: 
     return found
 
 
-def _drives_ahead(stage: Stage, ego: Mover, other: Mover, travels: Array, following: int) -> Steps:
+def _drives_ahead(stage: Stage, ego: TrackedVehicle, other: TrackedVehicle, travels: Array, following: int) -> Steps:
     n = travels.shape[1]
     found: Steps = np.full(len(travels), n)
     low, _ = stage.forecast.likely(other.speed)
@@ -52,7 +52,7 @@ def _drives_ahead(stage: Stage, ego: Mover, other: Mover, travels: Array, follow
     return found
 
 
-def _in_zone(stage: Stage, c: Conflict, other: Mover, travels: Array, lag: int, pad: float) -> Steps:
+def _in_zone(stage: Stage, c: Conflict, other: TrackedVehicle, travels: Array, lag: int, pad: float) -> Steps:
     place, there = c.places
     low, high = stage.forecast.likely(other.speed)
     yields = gives_way(c, other, stage.road_map)

@@ -67,8 +67,8 @@ class JointPlans:
         names = list(self._continued)
         if not names:
             return {}
-        movers = [self.vehicles[name] for name in names]
-        states, plans = [(v.speed, v.target) for v in movers], [self._continued[name] for name in names]
+        cavs = [self.vehicles[name] for name in names]
+        states, plans = [(v.speed, v.target) for v in cavs], [self._continued[name] for name in names]
         return dict(zip(names, self.stage.forecast.travel_each(states, plans)[:, None], strict=True))
 
     def plan_of(self, name: str, k: int) -> Plan:

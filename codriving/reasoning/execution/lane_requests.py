@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.scene_description import Neighbour, Role, SceneDescription
+from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.ordering.problem import Scenes
 from codriving.reasoning.ordering.protocol import Ordering
@@ -132,11 +132,11 @@ def incentive(scene: SceneDescription, there: SceneDescription, stage: Stage) ->
     return own + POLITENESS * others
 
 
-def _role(scene: SceneDescription, role: Role) -> Neighbour | None:
+def _role(scene: SceneDescription, role: Role) -> TrackedVehicle | None:
     return next((n for n in scene.neighbours if n.role is role), None)
 
 
-def _behind(speed: float, top: float, ahead: Neighbour | None) -> float:
+def _behind(speed: float, top: float, ahead: TrackedVehicle | None) -> float:
     if ahead is None or ahead.gap is None:
         return DRIVER.accelerate(speed, top)
     return DRIVER.accelerate(speed, top, ahead.gap, ahead.speed)

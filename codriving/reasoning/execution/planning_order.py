@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.reasoning.conflicts import is_open
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.prediction.expectation import is_behind
-from codriving.reasoning.sharing.movers import Mover
 
 LANE_CHANGES = frozenset((Action.LANE_LEFT, Action.LANE_RIGHT))
 
@@ -14,12 +14,12 @@ BODY = 5.0
 """Length of a vehicle [m]."""
 
 
-def cavs(stage: Stage) -> dict[str, Mover]:
-    """Return all CAVs as movers, each as it knows itself."""
+def cavs(stage: Stage) -> dict[str, TrackedVehicle]:
+    """Return all CAVs, each as it knows itself."""
     return {name: known[name] for name, known in sorted(stage.known.items())}
 
 
-def drives_ahead(stage: Stage, vehicles: Mapping[str, Mover]) -> set[tuple[str, str]]:
+def drives_ahead(stage: Stage, vehicles: Mapping[str, TrackedVehicle]) -> set[tuple[str, str]]:
     """Return the pairs of CAVs (ahead, behind) that follow one another, whatever the order says."""
     found = set()
     for behind in vehicles.values():
@@ -36,7 +36,7 @@ def drives_ahead(stage: Stage, vehicles: Mapping[str, Mover]) -> set[tuple[str, 
     return found
 
 
-def _is_alongside(stage: Stage, changing: Mover, other: Mover) -> bool:
+def _is_alongside(stage: Stage, changing: TrackedVehicle, other: TrackedVehicle) -> bool:
     """Whether somebody drives ahead or alongside on the lane that a CAV must change to, which then cannot go first."""
     change = stage.scenes[changing.id].must_change
     if change is None or not LANE_CHANGES & set(stage.available[changing.id]):
@@ -50,7 +50,9 @@ def _is_alongside(stage: Stage, changing: Mover, other: Mover) -> bool:
     return False
 
 
-def planning_order(sequence: Sequence[str], vehicles: Mapping[str, Mover], ahead: set[tuple[str, str]]) -> list[str]:
+def planning_order(
+    sequence: Sequence[str], vehicles: Mapping[str, TrackedVehicle], ahead: set[tuple[str, str]]
+) -> list[str]:
     """Line all CAVs up for planning."""
     rank = {name: i for i, name in enumerate(sequence)}
     leaders: dict[str, list[str]] = {}

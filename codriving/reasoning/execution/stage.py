@@ -5,10 +5,9 @@ from dataclasses import dataclass
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.scene_description import SceneDescription
+from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.sharing.movers import Mover
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +20,7 @@ class Stage:
 
     scenes: Mapping[str, SceneDescription]
     conflicts: Mapping[str, tuple[Conflict, ...]]
-    known: Mapping[str, dict[str, Mover]]
+    known: Mapping[str, dict[str, TrackedVehicle]]
     available: Mapping[str, tuple[Action, ...]]
     road_map: RoadMap
     forecast: Forecast

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.scene_description import Neighbour, SceneDescription
+from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.geometry.box import TRUE
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.ordering.separation import GAP, lag_length
@@ -14,7 +14,9 @@ CERTAIN_GAP = 0.4
 """Time between a CAV's leaving a zone and the earliest moment at which a human driver can be there [s]."""
 
 
-def window(c: Conflict, n: Neighbour, reference: float, road_map: RoadMap, forecast: Forecast) -> tuple[float, float]:
+def window(
+    c: Conflict, n: TrackedVehicle, reference: float, road_map: RoadMap, forecast: Forecast
+) -> tuple[float, float]:
     """Return the times at which a CAV must not pass its reference point because of a human driver.
 
     Args:
@@ -35,7 +37,7 @@ def window(c: Conflict, n: Neighbour, reference: float, road_map: RoadMap, forec
 
 
 def passes_first(
-    scene: SceneDescription, n: Neighbour, conflicts: Iterable[Conflict], road_map: RoadMap, forecast: Forecast
+    scene: SceneDescription, n: TrackedVehicle, conflicts: Iterable[Conflict], road_map: RoadMap, forecast: Forecast
 ) -> bool:
     """Whether a CAV that accelerates is through all its conflicts with a human driver before that one can be there."""
     travel = forecast.reach(scene.ego.speed, True).most

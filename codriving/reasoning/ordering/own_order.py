@@ -9,7 +9,7 @@ import numpy as np
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.order import PassingOrder, Precedence
 from codriving.datatypes.road import Turn
-from codriving.datatypes.scene_description import Neighbour, SceneDescription
+from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.ordering.acyclic import without_cycles
 from codriving.reasoning.ordering.coordinator import TURN_YIELDS
@@ -60,7 +60,7 @@ class OwnOrders:
         kept, sequence = without_cycles(precedences, times)
         return PassingOrder(sequence, kept)
 
-    def _compare(self, scene: SceneDescription, n: Neighbour, mine: float, theirs: float) -> tuple[bool, str]:
+    def _compare(self, scene: SceneDescription, n: TrackedVehicle, mine: float, theirs: float) -> tuple[bool, str]:
         handicap = self._handicap(scene.intent.route) - self._handicap(n.routes[0][0])
         lead = theirs - mine - handicap
         said = f"{mine:.1f} s against {theirs:.1f} s for {n.id}"
@@ -78,7 +78,7 @@ class OwnOrders:
     def _arrival(self, scene: SceneDescription, c: Conflict) -> float:
         return self.forecast.time_to(c.distances[0], self.forecast.reach(scene.ego.speed, True).most)
 
-    def _other_arrival(self, n: Neighbour, c: Conflict) -> float:
+    def _other_arrival(self, n: TrackedVehicle, c: Conflict) -> float:
         if self.reading == "own_view" or n.intent is None:
             return ttcp(c.distances[1], n.speed)
         return self.forecast.time_to(c.distances[1], self.forecast.reach(n.speed, True).most)

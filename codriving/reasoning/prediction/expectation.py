@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,13 +10,13 @@ from numpy.typing import NDArray
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Relation
 from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
 from codriving.reasoning.conflicts import is_open
 from codriving.reasoning.prediction.clearance import stays_behind
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.plans import PLANS, STARTS_WITH
-from codriving.reasoning.sharing.movers import Mover
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -46,8 +47,16 @@ class Expected:
     progress: Mapping[Action, float]
 
 
+Motions = tuple[tuple[Any, ...], ...]
+
+
+def motions_of(vehicles: Mapping[str, TrackedVehicle]) -> Motions:
+    """Return all of some vehicles that an expectation depends on, to be compared."""
+    return tuple((v.id, v.is_cav, v.speed, v.target, v.routes) for v in vehicles.values())
+
+
 def expect(
-    vehicles: dict[str, Mover],
+    vehicles: dict[str, TrackedVehicle],
     order: PassingOrder,
     road_map: RoadMap,
     forecast: Forecast,
@@ -92,7 +101,7 @@ def keeps_order(
     name: str,
     route: str,
     places: Array,
-    vehicles: Mapping[str, Mover],
+    vehicles: Mapping[str, TrackedVehicle],
     expected: Mapping[str, tuple[Expected, ...]],
     order: PassingOrder,
     road_map: RoadMap,

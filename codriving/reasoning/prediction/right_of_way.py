@@ -1,9 +1,8 @@
 """Whether a human driver has to give way, and can: the traffic rules that everybody knows (Section III-C.3)."""
 
 from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.scene_description import Neighbour
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.sharing.movers import Mover
 
 STANDS = 2.0
 """A human driver who has been standing before the zone for this long is taken to give way [s]."""
@@ -18,7 +17,7 @@ FRONT = 2.5
 """Distance from the centre of a vehicle to its front [m]."""
 
 
-def gives_way(c: Conflict, human: Mover | Neighbour, road_map: RoadMap) -> str:
+def gives_way(c: Conflict, human: TrackedVehicle, road_map: RoadMap) -> str:
     """Say why a human driver is expected to let the CAV pass first.
 
     A driver who stands does, and one who can still stop before a zone that the CAV is in. So does one who can still

@@ -1,7 +1,7 @@
 """Second layer: a lane change must not collide with the vehicles of the adjacent lane (Section III-C.4)."""
 
 from codriving.datatypes.action import Action
-from codriving.datatypes.scene_description import Neighbour
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.reasoning.prediction.expectation import is_behind
 from codriving.reasoning.safety.beside import SIDES, beside
 from codriving.reasoning.safety.conflict_lane import check_conflicts
@@ -49,7 +49,7 @@ def check_adjacent(outlook: Outlook) -> dict[Action, list[str]]:
     return found
 
 
-def _cuts_in(there: Outlook, n: Neighbour) -> str:
+def _cuts_in(there: Outlook, n: TrackedVehicle) -> str:
     """Say that a vehicle behind on the new lane could not brake in time, if it could not."""
     ego = there.scene.ego
     for route, place in n.routes:
@@ -63,13 +63,13 @@ def _cuts_in(there: Outlook, n: Neighbour) -> str:
     return ""
 
 
-def _alongside(there: Outlook, n: Neighbour, route: str, place: float) -> bool:
+def _alongside(there: Outlook, n: TrackedVehicle, route: str, place: float) -> bool:
     return (
         route == there.scene.intent.route and abs(place - there.scene.place) < (n.length + there.scene.ego.length) / 2
     )
 
 
-def _meets(there: Outlook, n: Neighbour, action: Action, must: bool) -> str:
+def _meets(there: Outlook, n: TrackedVehicle, action: Action, must: bool) -> str:
     """Say that a vehicle two lanes away might change onto the same lane, if it is near and does not have to wait."""
     scene = there.scene
     far = there.road_map.changes.routes_beside(scene.intent.route, scene.intent.target_lane)

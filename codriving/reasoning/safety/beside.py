@@ -10,7 +10,6 @@ from codriving.datatypes.road import LaneId
 from codriving.datatypes.scene_description import SceneDescription
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.safety.outlook import Outlook
-from codriving.reasoning.sharing.movers import Mover
 from codriving.reasoning.sharing.scenes import with_conflicts, with_roles
 
 SIDES: Mapping[Action, int] = {Action.LANE_LEFT: -1, Action.LANE_RIGHT: 1}
@@ -60,7 +59,7 @@ def _look(outlook: Outlook, action: Action) -> Outlook | None:
     conflicts = find_conflicts(there, road_map) if outlook.minds_conflicts else ()
     there = with_conflicts(there, conflicts, road_map)
     own = outlook.others[scene.ego.id]
-    moved = Mover(own.id, True, own.speed, own.target, ((route, place), *there.covers), own.acceleration, own.standing)
+    moved = replace(own, routes=((route, place), *there.covers), intent=there.intent)
     k = outlook.actions.index(action)
     return replace(
         outlook,

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict, Relation
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.geometry.box import TRUE, Footprint
 from codriving.geometry.zone import ConflictZone
 from codriving.reasoning.prediction.clearance import first_overlap, reacts, stays_ahead, stays_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.outlook import Outlook
-from codriving.reasoning.sharing.movers import Mover
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -163,7 +163,7 @@ def keeps_clear(outlook: Outlook, c: Conflict, motions: Array, other: Array) -> 
     return np.zeros(len(motions), dtype=np.bool_)
 
 
-def _goes_on(outlook: Outlook, other: Mover) -> bool:
+def _goes_on(outlook: Outlook, other: TrackedVehicle) -> bool:
     """Whether a CAV can be relied on to go on: it waits for nobody and has said that it wants to keep its speed."""
     expected = outlook.expected.get(other.id, ())
     return other.is_cav and bool(expected) and expected[0].free and other.target >= other.speed - 0.5

@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.scene_description import SceneDescription
+from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.rollout import Plan
-from codriving.reasoning.sharing.movers import Mover
 
 Array = NDArray[np.float64]
 
@@ -46,7 +45,7 @@ class Outlook:
     scene: SceneDescription
     conflicts: tuple[Conflict, ...]
     order: PassingOrder
-    others: dict[str, Mover]
+    others: dict[str, TrackedVehicle]
     expected: dict[str, tuple[Expected, ...]]
     actions: tuple[Action, ...]
     stops: Array

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
-from codriving.datatypes.scene_description import Neighbour, Role
+from codriving.datatypes.scene_description import Role, TrackedVehicle
 from codriving.reasoning.prediction.clearance import stays_behind
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind
 from codriving.reasoning.safety.outlook import Outlook
@@ -88,7 +88,7 @@ def check_behind(outlook: Outlook) -> dict[Action, list[str]]:
     return found
 
 
-def forced_braking(outlook: Outlook, behind: Neighbour, goes: Array) -> float:
+def forced_braking(outlook: Outlook, behind: TrackedVehicle, goes: Array) -> float:
     """Return how hard the rearing vehicle would have to brake to come down to the CAV's speed.
 
     Args:

@@ -6,11 +6,10 @@ from math import cos, pi
 
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene_description import LaneChange, Neighbour, Role, SceneDescription
-from codriving.datatypes.vehicle import Intent, VehicleState
+from codriving.datatypes.scene_description import LaneChange, Role, SceneDescription, TrackedVehicle
+from codriving.datatypes.vehicle import Intent, Kind, VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.sharing.detection import Glimpse
 from codriving.reasoning.sharing.state_sharing import Views
 from codriving.reasoning.sharing.tracking import Tracking
 
@@ -59,8 +58,8 @@ def describe_scenes(
 
 
 def with_roles(
-    neighbours: Iterable[Neighbour], ego: VehicleState, route: str, place: float, road_map: RoadMap
-) -> tuple[Neighbour, ...]:
+    neighbours: Iterable[TrackedVehicle], ego: VehicleState, route: str, place: float, road_map: RoadMap
+) -> tuple[TrackedVehicle, ...]:
     """Mark who drives ahead of the ego vehicle and who behind it on its lane.
 
     Args:
@@ -77,7 +76,7 @@ def with_roles(
 
 
 def _roles(
-    others: Sequence[Glimpse] | Sequence[Neighbour], ego: VehicleState, route: str, place: float, road_map: RoadMap
+    others: Sequence[TrackedVehicle], ego: VehicleState, route: str, place: float, road_map: RoadMap
 ) -> dict[str, tuple[Role, float | None]]:
     """Return who drives next ahead and next behind on the ego vehicle's lane, and at which gap."""
     path = road_map.paths[route]
@@ -114,12 +113,18 @@ def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
 
 
 def _neighbour(
-    seen: Glimpse, intent: Intent | None, tracking: Tracking, ego: str, time: float, role: Role, gap: float | None
-) -> Neighbour:
-    return Neighbour(
+    seen: TrackedVehicle,
+    intent: Intent | None,
+    tracking: Tracking,
+    ego: str,
+    time: float,
+    role: Role,
+    gap: float | None,
+) -> TrackedVehicle:
+    return TrackedVehicle(
         id=seen.id,
         # Whoever shares an intent has said that it is a CAV.
-        kind="CAV" if intent is not None else seen.kind,
+        kind=Kind.CAV if intent is not None else seen.kind,
         x=seen.x,
         y=seen.y,
         speed=seen.speed,

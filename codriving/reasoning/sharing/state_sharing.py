@@ -4,15 +4,15 @@ from math import hypot
 from typing import Protocol
 
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.vehicle import Kind, VehicleState
+from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.vehicle import VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.geometry.box import TRUE
-from codriving.reasoning.sharing.detection import Glimpse
 
 USUAL_LENGTH = TRUE.length
 """Length that is assumed of a vehicle which is only sensed [m]."""
 
-Views = dict[str, tuple[Glimpse, ...]]
+Views = dict[str, tuple[TrackedVehicle, ...]]
 """Vehicles that each CAV knows of, by id of the CAV."""
 
 
@@ -42,7 +42,7 @@ class SensedStates:
         """Return what each CAV's own sensors tell."""
         return {
             cav.id: tuple(
-                Glimpse(v.id, None, v.x, v.y, v.speed, None, None, None, USUAL_LENGTH)
+                TrackedVehicle(v.id, None, v.x, v.y, v.speed, None, None, None, USUAL_LENGTH)
                 for v in world.vehicles
                 if v.id != cav.id and _within(cav, v, model.detection_range)
             )
@@ -60,7 +60,7 @@ class WatchedStates:
         """Return what each CAV's own sensors tell."""
         return {
             cav.id: tuple(
-                Glimpse(v.id, None, v.x, v.y, v.speed, v.heading, None, None, USUAL_LENGTH)
+                TrackedVehicle(v.id, None, v.x, v.y, v.speed, v.heading, None, None, USUAL_LENGTH)
                 for v in world.vehicles
                 if v.id != cav.id and _within(cav, v, model.detection_range)
             )
@@ -72,6 +72,5 @@ def _within(one: VehicleState, other: VehicleState, distance: float) -> bool:
     return hypot(one.x - other.x, one.y - other.y) <= distance
 
 
-def _full(v: VehicleState) -> Glimpse:
-    kind = "CAV" if v.kind is Kind.CAV else "HDV"
-    return Glimpse(v.id, kind, v.x, v.y, v.speed, v.heading, v.acceleration, v.lane, v.length)
+def _full(v: VehicleState) -> TrackedVehicle:
+    return TrackedVehicle(v.id, v.kind, v.x, v.y, v.speed, v.heading, v.acceleration, v.lane, v.length)

@@ -2,9 +2,9 @@
 
 from math import acos, cos, hypot
 
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.datatypes.vehicle import Intent
 from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.sharing.detection import Glimpse
 
 STANDING = 0.5
 """Below this speed a vehicle counts as standing [m/s]."""
@@ -40,7 +40,7 @@ class Tracking:
         self._shared.clear()
         self._narrowed.clear()
 
-    def places(self, ego: str, seen: Glimpse, intent: Intent | None) -> Places:
+    def places(self, ego: str, seen: TrackedVehicle, intent: Intent | None) -> Places:
         """Return the routes on which a vehicle may be.
 
         A shared route is believed. Otherwise every route that fits the position (and the heading, if it is known) and
@@ -83,7 +83,7 @@ class Tracking:
             misfits.append(hypot(px - x, py - y) / SIDE + turned / TURN)
         return tuple(p for p, misfit in zip(near, misfits, strict=True) if misfit <= min(misfits) + CLEARLY)
 
-    def standing(self, ego: str, seen: Glimpse, time: float) -> float:
+    def standing(self, ego: str, seen: TrackedVehicle, time: float) -> float:
         """Return how long a vehicle has been standing.
 
         Args:

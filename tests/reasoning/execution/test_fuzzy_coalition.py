@@ -12,7 +12,6 @@ from codriving.methods.coop_game_fuzzy.fuzzy_coalition import LIBRARY, OPTIONS, 
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.ordering.protocol import Ordering
 from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.sharing.movers import movers
 
 ORDER = Ordering((), {})
 
@@ -38,7 +37,7 @@ def stage(junction: Junction, *cars: Car) -> Stage:
     thoughts = junction.think(world)
     forecast = Forecast(junction.model, LIBRARY)
     forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
-    known = {name: movers(scene) for name, scene in thoughts.scenes.items()}
+    known = {name: scene.vehicles() for name, scene in thoughts.scenes.items()}
     return Stage(thoughts.scenes, thoughts.conflicts, known, world.available, junction.road_map, forecast, world.time)
 
 

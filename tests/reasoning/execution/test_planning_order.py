@@ -5,18 +5,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from worlds import Junction, car
 
+from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.vehicle import Kind
 from codriving.reasoning.execution.planning_order import cavs, drives_ahead, planning_order
-from codriving.reasoning.sharing.movers import Mover
 
 NAMES = [f"CAV{k}" for k in range(1, 8)]
 
 
-def mover(name: str, place: float) -> Mover:
-    return Mover(name, True, 5.0, 5.0, (("east", place),), 0.0, 0.0)
+def tracked(name: str, place: float) -> TrackedVehicle:
+    return TrackedVehicle(name, Kind.CAV, 0.0, 0.0, 5.0, None, None, None, 5.0, (("east", place),))
 
 
-def everybody(places: list[float]) -> dict[str, Mover]:
-    return {name: mover(name, place) for name, place in zip(NAMES, places, strict=False)}
+def everybody(places: list[float]) -> dict[str, TrackedVehicle]:
+    return {name: tracked(name, place) for name, place in zip(NAMES, places, strict=False)}
 
 
 vehicles = st.lists(st.floats(0.0, 100.0), min_size=1, max_size=7).map(everybody)
@@ -24,14 +25,16 @@ links = st.sets(st.tuples(st.sampled_from(NAMES), st.sampled_from(NAMES)).filter
 
 
 @st.composite
-def orders(draw: st.DrawFn) -> tuple[dict[str, Mover], list[str]]:
+def orders(draw: st.DrawFn) -> tuple[dict[str, TrackedVehicle], list[str]]:
     """Some vehicles, and the passing order of some of them."""
     some = draw(vehicles)
     return some, draw(st.lists(st.sampled_from(sorted(some)), unique=True))
 
 
 @given(orders())
-def test_where_nobody_drives_ahead_the_passing_order_is_kept(drawn: tuple[dict[str, Mover], list[str]]) -> None:
+def test_where_nobody_drives_ahead_the_passing_order_is_kept(
+    drawn: tuple[dict[str, TrackedVehicle], list[str]],
+) -> None:
     some, sequence = drawn
     order = planning_order(sequence, some, set())
     assert order[: len(sequence)] == sequence
@@ -42,7 +45,7 @@ def test_where_nobody_drives_ahead_the_passing_order_is_kept(drawn: tuple[dict[s
 
 @given(orders(), st.permutations(NAMES), links)
 def test_whoever_drives_ahead_is_planned_before_those_behind(
-    drawn: tuple[dict[str, Mover], list[str]], lane: list[str], some_links: set[tuple[str, str]]
+    drawn: tuple[dict[str, TrackedVehicle], list[str]], lane: list[str], some_links: set[tuple[str, str]]
 ) -> None:
     some, sequence = drawn
     rank = {name: k for k, name in enumerate(lane)}
@@ -57,7 +60,7 @@ def test_whoever_drives_ahead_is_planned_before_those_behind(
 
 @given(orders(), links)
 def test_everybody_is_planned_once_even_if_they_follow_one_another_in_a_circle(
-    drawn: tuple[dict[str, Mover], list[str]], some_links: set[tuple[str, str]]
+    drawn: tuple[dict[str, TrackedVehicle], list[str]], some_links: set[tuple[str, str]]
 ) -> None:
     some, sequence = drawn
     ahead = {pair for pair in some_links if set(pair) <= some.keys()}
