@@ -7,9 +7,8 @@ from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.gym.observation import Observer
-from codriving.methods.learned.actions import ACTIONS, allowed
 from codriving.methods.learned.features import Features
-from codriving.methods.learned.layout import feature_count
+from codriving.methods.learned.layout import ACTIONS, allowed, feature_count
 from codriving.methods.learned.network import FloatArray
 from codriving.training.teacher import Teacher
 

@@ -3,11 +3,9 @@
 import torch
 from torch import nn
 
-from codriving.methods.learned.attention import HEADS, WIDTH, Attention
 from codriving.methods.learned.layout import EGO, SLOT, SLOTS
-from codriving.methods.learned.network import FloatArray
-from codriving.training.double_dqn import as_numpy
-from codriving.training.perceptron import perceptron
+from codriving.methods.learned.network import HEADS, WIDTH, Attention, FloatArray
+from codriving.training.double_dqn import as_numpy, perceptron
 
 
 class AttentionActor(nn.Module):

@@ -13,6 +13,14 @@ from codriving.methods.learned.network import Network
 from codriving.training.replay import Batch
 
 
+def perceptron(sizes: Sequence[int]) -> nn.Sequential:
+    """Return a multilayer perceptron."""
+    layers: list[nn.Module] = []
+    for inputs, outputs in pairwise(sizes):
+        layers += [nn.Linear(inputs, outputs), nn.ReLU()]
+    return nn.Sequential(*layers[:-1])
+
+
 class DoubleDqn:
     """A network that judges actions, and its slow average, which judges what comes later and is what is kept."""
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.world import WorldState
 from codriving.gym.actions import ACTIONS as NUMBERS
-from codriving.methods.learned.actions import ACTIONS, allowed
 from codriving.methods.learned.features import Features
+from codriving.methods.learned.layout import ACTIONS, allowed
 from codriving.methods.learned.network import FloatArray
 
 if TYPE_CHECKING:

@@ -8,12 +8,51 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import Any, Protocol
 
 from codriving.config.show import show
-from codriving.errors import RunFolderError
-from codriving.runs.atomic import write_text
+from codriving.errors import RunFolderError, TrainingError
+from codriving.runs.atomic import whole_folder, write_text
 from codriving.runs.lock import FolderLock
+
+STATE = "state.json"
+
+
+class Resumable(Protocol):
+    """A training that can go on from what it has written."""
+
+    def write(self, folder: Path) -> dict[str, Any]:
+        """Write what is large into a folder, and return the rest, JSON-ready."""
+        ...
+
+    def read(self, folder: Path, state: dict[str, Any]) -> None:
+        """Go on from the folder, and from what was returned."""
+        ...
+
+
+def store(folder: Path, trainer: Resumable, more: dict[str, Any]) -> None:
+    """Write a checkpoint."""
+    with whole_folder(folder) as partial:
+        state = trainer.write(partial)
+        write_text(partial / STATE, json.dumps({"trainer": state, "more": more}))
+
+
+def recall(folder: Path, trainer: Resumable) -> dict[str, Any]:
+    """Go on from a checkpoint.
+
+    Raises:
+        TrainingError: If the checkpoint is damaged.
+    """
+    try:
+        state = json.loads((folder / STATE).read_text(encoding="utf-8"))
+        trainer.read(folder, state["trainer"])
+        more: dict[str, Any] = state["more"]
+    except (OSError, ValueError, KeyError, TypeError, RuntimeError) as err:
+        raise TrainingError(
+            f"the checkpoint in {folder} cannot be used ({type(err).__name__}: {err}); "
+            "delete the run folder to begin anew"
+        ) from err
+    return more
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +75,14 @@ class TrainingFolder:
 
 
 def fingerprint(config: Mapping[str, Any]) -> str:
-    """Reduce the config of a training to a short text that differs with every setting."""
-    return hashlib.sha256(json.dumps(config, sort_keys=True).encode()).hexdigest()[:16]
+    """Reduce the names and values of a training to a short text; where its classes stand does not count."""
+    return hashlib.sha256(json.dumps(_values(config), sort_keys=True).encode()).hexdigest()[:16]
+
+
+def _values(node: Any) -> Any:  # noqa: ANN401 - any plain value
+    if isinstance(node, Mapping):
+        return {key: _values(value) for key, value in node.items() if key != "_target_"}
+    return [_values(value) for value in node] if isinstance(node, list) else node
 
 
 @contextmanager

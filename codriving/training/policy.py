@@ -7,10 +7,9 @@ import torch
 from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import nn
 
-from codriving.methods.learned.forms import AnyNetwork
+from codriving.methods.learned.network import AnyNetwork
 from codriving.training.attention import AttentionActor
-from codriving.training.double_dqn import as_numpy
-from codriving.training.perceptron import perceptron
+from codriving.training.double_dqn import as_numpy, perceptron
 
 SURE = 0.9
 """Probability of the advised action in the distribution of a teacher; the other actions share the rest."""

@@ -5,22 +5,19 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from codriving.errors import TrainingError
-from codriving.methods.learned.actions import ACTIONS
-from codriving.methods.learned.forms import AnyNetwork
-from codriving.methods.learned.layout import FAR, NEAR, VERSION
+from codriving.methods.learned.layout import ACTIONS, FAR, NEAR, VERSION
+from codriving.methods.learned.network import AnyNetwork
 from codriving.methods.learned.weights import Purpose, Trained, load, save
 from codriving.runs.atomic import whole_file, write_text
-from codriving.training.checkpoint import recall, store
 from codriving.training.curve import COLLISION, DURATION, SUCCESS, Row, curve_csv, curve_png
 from codriving.training.display import Display
-from codriving.training.folder import Stop, TrainingFolder
-from codriving.training.settings import MadqnSettings
-from codriving.training.single_settings import SingleSettings
+from codriving.training.folder import Stop, TrainingFolder, recall, store
+from codriving.training.settings import MadqnSettings, SingleSettings
 from codriving.training.single_trainer import SingleTrainer
 from codriving.training.trainer import Trainer
 from codriving.training.validation import Grade, examine, overall
 
-Settings: TypeAlias = MadqnSettings | SingleSettings
+AnySettings: TypeAlias = MadqnSettings | SingleSettings
 Learner: TypeAlias = Trainer | SingleTrainer
 
 EXAM_SEEDS = 1000
@@ -30,7 +27,7 @@ FINAL_SEEDS = 100_000
 """How far the seeds of the last validation lie beyond those of the others."""
 
 
-def train(settings: Settings, folder: TrainingFolder, display: Display, stop: Stop) -> Path:
+def train(settings: AnySettings, folder: TrainingFolder, display: Display, stop: Stop) -> Path:
     """Train, validate and choose.
 
     Raises:
@@ -58,7 +55,7 @@ def train(settings: Settings, folder: TrainingFolder, display: Display, stop: St
     return _choose(settings, rows, folder, display, trainer)
 
 
-def _validate(settings: Settings, trainer: Learner, folder: TrainingFolder) -> dict[str, Any]:
+def _validate(settings: AnySettings, trainer: Learner, folder: TrainingFolder) -> dict[str, Any]:
     """Validate the network as it is, keep it, and return a row of the curve."""
     decisions, network = trainer.decisions, trainer.network
     row = {**trainer.section(), **_columns(_exams(settings, network, settings.exam_seed, None))}
@@ -66,7 +63,7 @@ def _validate(settings: Settings, trainer: Learner, folder: TrainingFolder) -> d
     return row
 
 
-def _exams(settings: Settings, network: AnyNetwork, first: int, episodes: int | None) -> dict[str, Grade]:
+def _exams(settings: AnySettings, network: AnyNetwork, first: int, episodes: int | None) -> dict[str, Grade]:
     return {
         exam.name: examine(
             exam, network, settings.family, settings.shared, first + k * EXAM_SEEDS, episodes or exam.episodes
@@ -85,7 +82,7 @@ def _columns(grades: Mapping[str, Grade]) -> dict[str, float | None]:
 
 
 def _choose(
-    settings: Settings, rows: list[dict[str, Any]], folder: TrainingFolder, display: Display, trainer: Learner
+    settings: AnySettings, rows: list[dict[str, Any]], folder: TrainingFolder, display: Display, trainer: Learner
 ) -> Path:
     """Validate the best states once more on further seeds, and keep the best of them."""
     best = sorted(rows, key=lambda row: (-row["score"], row["decisions"]))[: settings.finalists]
@@ -111,7 +108,7 @@ def _choose(
     return folder.best
 
 
-def _purpose(settings: Settings, folder: TrainingFolder, said: Mapping[str, Any]) -> Purpose:
+def _purpose(settings: AnySettings, folder: TrainingFolder, said: Mapping[str, Any]) -> Purpose:
     models = [exam.environment.environment.driving_model for exam in settings.exams]
     intervals = {model.decision_interval for model in models}
     if len(intervals) > 1:
@@ -137,11 +134,11 @@ def _purpose(settings: Settings, folder: TrainingFolder, said: Mapping[str, Any]
     )
 
 
-def _write_curve(rows: list[Row] | list[dict[str, Any]], settings: Settings, folder: TrainingFolder) -> None:
+def _write_curve(rows: list[Row] | list[dict[str, Any]], settings: AnySettings, folder: TrainingFolder) -> None:
     write_text(folder.path / "curve.csv", curve_csv(rows))
     with whole_file(folder.path / "curve.png") as file:
         file.write_bytes(curve_png(rows, f"{settings.learner}, {settings.family}, seed {settings.seed}"))
 
 
-def _taught(settings: Settings) -> dict[str, str]:
+def _taught(settings: AnySettings) -> dict[str, str]:
     return {"teacher": settings.teacher} if settings.teacher else {}

@@ -1,18 +1,19 @@
-"""Every number of a training of MADQN; the configs in conf/train are calls of this."""
+"""Every number of a training; the YAMLs in conf/train are calls of these classes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from codriving.errors import ConfigError
 from codriving.gym.reward import RewardWeights, reward_weights
-from codriving.methods.learned.forms import PERCEPTRON
 from codriving.methods.learned.layout import FAMILIES
-from codriving.training.schedule import Linear
-from codriving.training.traffic import Traffic
+from codriving.methods.learned.network import FORMS, PERCEPTRON
+from codriving.training.curriculum import Linear, SingleTraffic, Traffic
+from codriving.training.teacher import Guidance
 from codriving.training.validation import Exam
 
 if TYPE_CHECKING:
+    from codriving.training.single_trainer import SingleTrainer
     from codriving.training.trainer import Trainer
 
 LEAST_SEED = 10_000
@@ -20,11 +21,12 @@ LEAST_SEED = 10_000
 
 
 @dataclass(frozen=True)
-class MadqnSettings:
-    """How a network is trained.
+class Settings:
+    """What every training has to know: what is learned, how it is validated and which states are kept.
 
     Attributes:
         family: ``junction`` or ``lanes``.
+        exam_seed: First seed of the validations; ``LEAST_SEED`` or more.
 
     Raises:
         ConfigError: If a value is out of range.
@@ -34,51 +36,117 @@ class MadqnSettings:
     seed: int
     decisions: int
     hidden: tuple[int, ...]
-    steps: int
-    discount: float
-    capacity: int
-    warm_up: int
     batch: int
-    every: int
-    average: float
+    discount: float
     clip: float
     rate: Linear
-    exploration: Linear
-    faster: float
     reward: Mapping[str, float]
-    traffic: tuple[Traffic, ...]
     exams: tuple[Exam, ...]
     exam_every: int
     exam_seed: int
     finalists: int
     final_episodes: int
 
-    learner, form, teacher = "madqn", PERCEPTRON, ""
-    shared = True
-    """CAVs tell one another states and intents."""
+    least: ClassVar[Mapping[str, int]] = {
+        "seed": 0,
+        "decisions": 1,
+        "exam_every": 1,
+        "exam_seed": LEAST_SEED,
+        "finalists": 1,
+        "final_episodes": 1,
+    }
+    """The smallest value of each whole number."""
 
     def __post_init__(self) -> None:
-        if self.family not in FAMILIES:
-            raise ConfigError(f"family must be one of {', '.join(FAMILIES)}, got {self.family!r}")
-        for name, low in (
-            ("seed", 0),
-            ("decisions", 1),
-            ("steps", 1),
-            ("capacity", 1),
-            ("warm_up", 1),
-            ("batch", 1),
-            ("every", 1),
-            ("exam_every", 1),
-            ("exam_seed", LEAST_SEED),
-            ("finalists", 1),
-            ("final_episodes", 1),
-        ):
-            if getattr(self, name) < low:
-                raise ConfigError(f"{name} must be {low} or more, got {getattr(self, name)}")
+        self._one_of("family", FAMILIES)
+        for name, least in {**Settings.least, **self.least}.items():
+            if getattr(self, name) < least:
+                raise ConfigError(f"{name} must be {least} or more, got {getattr(self, name)}")
         if not self.hidden or min(self.hidden) < 1:
             raise ConfigError(f"hidden must name the units of at least one layer, got {list(self.hidden)}")
-        if not 0 <= self.discount < 1:
-            raise ConfigError(f"discount must be at least 0 and below 1, got {self.discount:g}")
+        self._below_one("discount")
+        reward_weights(self.reward)
+
+    def _one_of(self, name: str, choices: tuple[str, ...]) -> None:
+        if getattr(self, name) not in choices:
+            raise ConfigError(f"{name} must be one of {', '.join(choices)}, got {getattr(self, name)!r}")
+
+    def _below_one(self, name: str) -> None:
+        if not 0 <= getattr(self, name) < 1:
+            raise ConfigError(f"{name} must be at least 0 and below 1, got {getattr(self, name):g}")
+
+    @property
+    def weights(self) -> RewardWeights:
+        """The weights of the reward."""
+        return reward_weights(self.reward)
+
+
+@dataclass(frozen=True)
+class SingleSettings(Settings):
+    """How a network is trained by PPO (Schulman et al., 2017), with one CAV that learns.
+
+    Attributes:
+        learner: ``ppo`` or ``tell``.
+        form: Kind of the actor, ``perceptron`` or ``attention``.
+        guidance: The teacher; None for none.
+    """
+
+    learner: str
+    form: str
+    rollout: int
+    epochs: int
+    trace: float
+    entropy: float
+    guidance: Guidance | None
+    traffic: tuple[SingleTraffic, ...]
+
+    least: ClassVar[Mapping[str, int]] = {"rollout": 2, "batch": 2, "epochs": 1}
+    shared = False
+    """A vehicle on its own is told nothing by others."""
+
+    def __post_init__(self) -> None:
+        self._one_of("learner", ("ppo", "tell"))
+        self._one_of("form", FORMS)
+        super().__post_init__()
+        self._below_one("trace")
+        self._below_one("clip")
+        if self.entropy <= 0:
+            raise ConfigError(f"entropy must be positive, got {self.entropy:g}")
+        if not self.exams or not self.traffic:
+            raise ConfigError("traffic and exams must hold at least one kind each")
+
+    def trainer(self) -> "SingleTrainer":
+        """Return a training that has not begun."""
+        from codriving.training.single_trainer import SingleTrainer
+
+        return SingleTrainer(self)
+
+    @property
+    def teacher(self) -> str:
+        """Name of the teacher; empty for none."""
+        return "" if self.guidance is None else self.guidance.llm.name
+
+
+@dataclass(frozen=True)
+class MadqnSettings(Settings):
+    """How a network is trained by Double DQN, with all CAVs learning together."""
+
+    steps: int
+    capacity: int
+    warm_up: int
+    every: int
+    average: float
+    exploration: Linear
+    faster: float
+    traffic: tuple[Traffic, ...]
+
+    least: ClassVar[Mapping[str, int]] = {"steps": 1, "capacity": 1, "warm_up": 1, "batch": 1, "every": 1}
+    learner, form, teacher = "madqn", PERCEPTRON, ""
+    shared = True
+    """CAVs share states and intents."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
         if not 0 < self.average <= 1:
             raise ConfigError(f"average must be above 0 and at most 1, got {self.average:g}")
         if self.clip <= 0 or self.faster <= 0:
@@ -88,15 +156,9 @@ class MadqnSettings:
                 raise ConfigError(f"exploration.{name} must be 0 to 1, got {getattr(self.exploration, name):g}")
         if not self.exams or not any(kind.weight > 0 and kind.since == 0 for kind in self.traffic):
             raise ConfigError("traffic must hold a kind that is driven from the beginning, and exams at least one")
-        reward_weights(self.reward)
 
     def trainer(self) -> "Trainer":
         """Return a training that has not begun."""
         from codriving.training.trainer import Trainer
 
         return Trainer(self)
-
-    @property
-    def weights(self) -> RewardWeights:
-        """What is rewarded."""
-        return reward_weights(self.reward)

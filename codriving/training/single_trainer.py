@@ -13,11 +13,11 @@ from stable_baselines3.common.vec_env import DummyVecEnv
 from codriving.datatypes.outcome import Ending
 from codriving.gym.actions import draw_seed
 from codriving.gym.single import SingleDriving
-from codriving.methods.learned.forms import ATTENTION, AnyNetwork
 from codriving.methods.learned.layout import feature_count
+from codriving.methods.learned.network import ATTENTION, AnyNetwork
 from codriving.training.advised_observer import AdvisedObserver
 from codriving.training.policy import DriverPolicy, actor_as_numpy
-from codriving.training.single_settings import SingleSettings
+from codriving.training.settings import SingleSettings
 from codriving.training.teacher import Advisor
 
 NETWORK = "network.pt"

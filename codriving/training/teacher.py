@@ -18,7 +18,7 @@ from codriving.methods.single_vehicle.alone import Alone
 from codriving.methods.single_vehicle.protocol import Driver
 from codriving.reasoning.prediction.forecast import HORIZON
 from codriving.reasoning.prediction.rollout import rollout
-from codriving.training.schedule import Linear
+from codriving.training.curriculum import Linear
 
 if TYPE_CHECKING:
     from codriving.methods.language_model.model_decider import ModelDecider

@@ -11,15 +11,14 @@ import torch
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
 from codriving.gym.actions import draw_seed
-from codriving.methods.learned.actions import ACTIONS
-from codriving.methods.learned.layout import feature_count
+from codriving.methods.learned.layout import ACTIONS, feature_count
 from codriving.methods.learned.network import FloatArray, Network, greedy
+from codriving.training.curriculum import shares
 from codriving.training.double_dqn import DoubleDqn, as_numpy
 from codriving.training.episode import Masks, Moment, drive
 from codriving.training.nstep import Trail, Transition
 from codriving.training.replay import Replay
 from codriving.training.settings import MadqnSettings
-from codriving.training.traffic import shares
 from codriving.training.validation import features_of
 
 NETWORK, REPLAY = "network.pt", "replay.npz"

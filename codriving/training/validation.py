@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 from codriving.datatypes.outcome import Ending
 from codriving.errors import ConfigError
 from codriving.methods.learned.features import Features
-from codriving.methods.learned.forms import AnyNetwork
-from codriving.methods.learned.network import greedy
+from codriving.methods.learned.network import AnyNetwork, greedy
 from codriving.training.episode import drive
 
 if TYPE_CHECKING:

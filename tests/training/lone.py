@@ -4,7 +4,7 @@ from typing import Any
 
 from codriving.config.build import build
 from codriving.config.training import compose_training
-from codriving.training.single_settings import SingleSettings
+from codriving.training.settings import SingleSettings
 
 TINY = (
     "decisions=96",

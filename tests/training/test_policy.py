@@ -10,9 +10,15 @@ pytest.importorskip("stable_baselines3")
 
 from gymnasium.spaces import Box, Discrete  # noqa: E402  (needs the skip above)
 
-from codriving.methods.learned.actions import ACTIONS  # noqa: E402
-from codriving.methods.learned.forms import ATTENTION, FORMS, network_of, shapes, tensors  # noqa: E402
-from codriving.methods.learned.layout import FAMILIES, JUNCTION, SLOT, SLOTS, feature_count  # noqa: E402
+from codriving.methods.learned.layout import (  # noqa: E402
+    ACTIONS,
+    FAMILIES,
+    JUNCTION,
+    SLOT,
+    SLOTS,
+    feature_count,
+)
+from codriving.methods.learned.network import ATTENTION, FORMS, network_of, shapes, tensors  # noqa: E402
 from codriving.training.policy import SURE, DriverPolicy, actor_as_numpy  # noqa: E402
 
 FEATURES, OUTPUTS = feature_count(JUNCTION), len(ACTIONS[JUNCTION])

@@ -3,7 +3,7 @@
 import pytest
 
 from codriving.errors import ConfigError
-from codriving.training.schedule import Linear
+from codriving.training.curriculum import Linear
 
 
 @pytest.mark.parametrize(("decisions", "value"), [(0, 1.0), (50, 0.55), (100, 0.1), (10_000, 0.1), (-5, 1.0)])

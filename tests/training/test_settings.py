@@ -8,8 +8,8 @@ import pytest
 from codriving.config.build import build
 from codriving.config.training import compose_training, trainings
 from codriving.errors import ConfigError
+from codriving.training.curriculum import shares
 from codriving.training.settings import MadqnSettings
-from codriving.training.traffic import shares
 
 MADQN = [name for name in trainings() if name.startswith("madqn")]
 

@@ -16,7 +16,7 @@ from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
 from codriving.methods.learned.layout import JUNCTION, feature_count
 from codriving.training.advised_observer import AdvisedObserver
-from codriving.training.schedule import Linear
+from codriving.training.curriculum import Linear
 from codriving.training.teacher import Advisor, Guidance
 
 HERE = str(Path(__file__).parent)

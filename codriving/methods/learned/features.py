@@ -10,10 +10,9 @@ from codriving.datatypes.road import Turn
 from codriving.datatypes.vehicle import VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
-from codriving.methods.learned.beside import Beside
 from codriving.methods.learned.known import Knowledge, Other
 from codriving.methods.learned.layout import FAR, JUNCTION, LANES
-from codriving.methods.learned.slots import Slot, conflict_slots, filled, leader_ahead, leader_slot
+from codriving.methods.learned.slots import Beside, Slot, conflict_slots, filled, leader_ahead, leader_slot
 from codriving.reasoning.conflicts import OPEN
 
 Observation: TypeAlias = NDArray[np.float32]

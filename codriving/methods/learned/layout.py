@@ -1,5 +1,11 @@
 """How the features of a learned driver are laid out: which number stands where, and in which unit."""
 
+from collections.abc import Collection
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.action import Action
 from codriving.datatypes.road import Road
 from codriving.geometry.road_map import RoadMap
 
@@ -71,3 +77,22 @@ def family_of(road_map: RoadMap) -> str:
 def family_of_road(road: Road) -> str:
     """Return the family of a road that has not been precomputed."""
     return LANES if any(lane.id[2] > 0 for lane in road.lanes) else JUNCTION
+
+
+ACTIONS: dict[str, tuple[Action, ...]] = {
+    JUNCTION: (Action.SLOWER, Action.IDLE, Action.FASTER),
+    LANES: tuple(Action),
+}
+"""The action of each output, by family."""
+
+
+def allowed(family: str, available: Collection[Action]) -> NDArray[np.bool_]:
+    """Mark the actions that the road allows.
+
+    Args:
+        family: ``junction`` or ``lanes``.
+
+    Returns:
+        Whether each output's action is allowed (actions,).
+    """
+    return np.array([action in available for action in ACTIONS[family]])

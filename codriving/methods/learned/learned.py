@@ -13,9 +13,8 @@ from codriving.datatypes.road import Road
 from codriving.datatypes.world import WorldState
 from codriving.errors import WeightsError
 from codriving.geometry.road_map import RoadMap
-from codriving.methods.learned.actions import ACTIONS, allowed
 from codriving.methods.learned.features import Features, Observation
-from codriving.methods.learned.layout import family_of, family_of_road, feature_names
+from codriving.methods.learned.layout import ACTIONS, allowed, family_of, family_of_road, feature_names
 from codriving.methods.learned.network import FloatArray, greedy, shares
 from codriving.methods.learned.weights import Trained, load, shipped
 

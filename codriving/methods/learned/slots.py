@@ -1,16 +1,121 @@
 """The leader and the conflicts of one CAV as features, the most urgent first."""
 
-from collections.abc import Iterable, Iterator
-from math import cos
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from math import cos, hypot
 
+import numpy as np
+
+from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Relation
-from codriving.datatypes.vehicle import VehicleState
+from codriving.datatypes.road import LaneId, Straight
+from codriving.datatypes.vehicle import Intent, VehicleState
+from codriving.geometry.box import TRUE
+from codriving.geometry.lane_path import lane_path
+from codriving.geometry.path import Path
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.learned.known import Other
-from codriving.methods.learned.layout import FAR, NEAR, SLOT, SLOTS
+from codriving.methods.learned.layout import FAR, NEAR, SIDE, SLOT, SLOTS
 from codriving.reasoning.conflicts import is_open
 from codriving.reasoning.severity import ttcp
 from codriving.reasoning.sharing.scenes import ALIGNED, SAME_LANE
+
+LEANS = 0.6
+"""A body that comes this near to a lane counts as being on it [m]; drivers who change lanes are seen early."""
+
+STANDSTILL, HEADWAY = 3.0, 0.5
+"""A gap beside is free if it is longer than this [m], and this much longer for each m/s of closing speed [s]."""
+
+Ahead = tuple[Other, float] | None
+
+
+class Beside:
+    """Looks at the own lane and at the lanes beside it, in coordinates of the lane that is steered for.
+
+    Args:
+        top: Highest target speed [m/s].
+    """
+
+    def __init__(self, road_map: RoadMap, top: float) -> None:
+        self._road_map, self._top = road_map, top
+        self._paths: dict[LaneId, Path] = {}
+
+    def look(
+        self, ego: VehicleState, intent: Intent, place: float, others: Sequence[Other], available: Collection[Action]
+    ) -> tuple[Ahead, list[float]]:
+        """Return who is next ahead with the gap [m], and the numbers of ``SIDES`` and ``LANE_CHANGE``.
+
+        Args:
+            place: Its arc length on its route [m].
+        """
+        lane = intent.target_lane
+        (own, offset), *places = self._along(lane, [(ego.x, ego.y), *((o.x, o.y) for o in others)])
+        width = self._road_map.lanes[lane].width
+        reach = width / 2 + TRUE.width / 2 + LEANS
+        found: dict[tuple[int, bool], tuple[float, Other]] = {}
+        for other, (s, side) in zip(others, places, strict=True):
+            ahead = s > own
+            gap = abs(s - own) - (other.length + ego.length) / 2
+            # On the lane that is steered for, or in the way of a body that has not left its own yet.
+            sides = [k for k in (-1, 0, 1) if abs(side - k * width) < reach]
+            if 0 not in sides and abs(side - offset) < TRUE.width + LEANS:
+                sides.append(0)
+            for k in sides:
+                if (k, ahead) not in found or gap < found[k, ahead][0]:
+                    found[k, ahead] = gap, other
+        numbers: list[float] = []
+        for k in (-1, 1):
+            exists = (lane[0], lane[1], lane[2] + k) in self._road_map.lanes
+            for ahead in (True, False):
+                numbers += self._side(ego, found.get((k, ahead)) if exists else None)
+        allowed = [Action.LANE_LEFT in available, Action.LANE_RIGHT in available]
+        free = [a and _free(ego, found, k) for k, a in zip((-1, 1), allowed, strict=True)]
+        numbers += [float(value) for value in (*allowed, *free)]
+        numbers += self._must(intent, place, lane)
+        numbers.append(offset / width)
+        behind = found.get((0, False))
+        numbers.append(1.0 if behind is None else behind[0] / (NEAR * self._top))
+        leader = found.get((0, True))
+        return (None if leader is None else (leader[1], leader[0])), numbers
+
+    def _along(self, lane: LaneId, places: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+        """Return arc length and lateral offset of places on a lane, which goes straight on beyond its ends [m]."""
+        shape = self._road_map.lanes[lane].shape
+        if isinstance(shape, Straight):
+            # Most lanes are, and this is read for every vehicle in every step.
+            (x0, y0), (x1, y1) = shape.start, shape.end
+            length = hypot(x1 - x0, y1 - y0)
+            cos, sin = (x1 - x0) / length, (y1 - y0) / length
+            return [((x - x0) * cos + (y - y0) * sin, (y - y0) * cos - (x - x0) * sin) for x, y in places]
+        if lane not in self._paths:
+            self._paths[lane] = lane_path(self._road_map.lanes[lane])
+        return self._paths[lane].project_all(*np.array(places).T)
+
+    def _side(self, ego: VehicleState, found: tuple[float, Other] | None) -> list[float]:
+        if found is None:
+            return [0.0] * len(SIDE)
+        gap, other = found
+        return [gap / (NEAR * self._top), (other.speed - ego.speed) / self._top, 1.0]
+
+    def _must(self, intent: Intent, place: float, lane: LaneId) -> list[float]:
+        """Return the side to which the route asks to change, and the way left for it; zeros if it does not."""
+        change = self._road_map.changes.ahead(intent.route, place)
+        if change is None or change[0] == lane:
+            return [0.0, 0.0]
+        target, _, ends = change
+        ending = next(k for k in self._road_map.routes[intent.route].lanes if k[:2] == target[:2])
+        return [float(target[2] - ending[2]), (ends - place) / (FAR * self._top)]
+
+
+def _free(ego: VehicleState, found: dict[tuple[int, bool], tuple[float, Other]], side: int) -> bool:
+    """Whether there is room on the lane beside, ahead and behind."""
+    for ahead in (True, False):
+        if (side, ahead) in found:
+            gap, other = found[side, ahead]
+            closing = ego.speed - other.speed if ahead else other.speed - ego.speed
+            if gap < STANDSTILL + HEADWAY * max(closing, 0.0):
+                return False
+    return True
+
 
 LEADER_URGENCY = 10.0
 """Gap to a leader that counts as one unit of urgency [m]."""

@@ -14,9 +14,8 @@ from safetensors.numpy import load_file
 from safetensors.numpy import save as packed
 
 from codriving.errors import WeightsError
-from codriving.methods.learned.actions import ACTIONS
-from codriving.methods.learned.forms import FORMS, PERCEPTRON, AnyNetwork, network_of, shapes, tensors
-from codriving.methods.learned.layout import FAMILIES, FAR, NEAR, VERSION, feature_count
+from codriving.methods.learned.layout import ACTIONS, FAMILIES, FAR, NEAR, VERSION, feature_count
+from codriving.methods.learned.network import FORMS, PERCEPTRON, AnyNetwork, network_of, shapes, tensors
 
 CLOSE = 1e-6
 """Numbers of a road and of the weights that differ by less are the same."""

@@ -1,4 +1,4 @@
-"""What is driven in a training: scenarios, how many CAVs and human drivers, and from when on."""
+"""What is driven in a training, how often and from when on, and the numbers that change on the way."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,9 +6,33 @@ from typing import TYPE_CHECKING, Any
 
 from codriving.errors import ConfigError
 from codriving.gym.reward import RewardWeights
+from codriving.methods.learned.layout import ACTIONS
 
 if TYPE_CHECKING:
     from codriving.gym.parallel import ParallelDriving
+    from codriving.gym.single import ObserverFactory, SingleDriving
+
+
+@dataclass(frozen=True, slots=True)
+class Linear:
+    """A number that goes from one value to another in a straight line, and then stays.
+
+    Raises:
+        ConfigError: If ``over`` is not positive.
+    """
+
+    start: float
+    end: float
+    over: int
+
+    def __post_init__(self) -> None:
+        if self.over < 1:
+            raise ConfigError(f"over must be 1 or more, got {self.over}")
+
+    def at(self, decisions: int) -> float:
+        """Return the value after some decisions."""
+        share = min(max(decisions, 0) / self.over, 1.0)
+        return self.start + share * (self.end - self.start)
 
 
 @dataclass(frozen=True)
@@ -51,3 +75,33 @@ def shares(kinds: tuple[Traffic, ...], progress: float) -> list[float]:
     """Return how often each kind of traffic is driven at a moment of the training; the sum is 1."""
     weights = [kind.weight if progress >= kind.since else 0.0 for kind in kinds]
     return [weight / sum(weights) for weight in weights]
+
+
+@dataclass(frozen=True)
+class SingleTraffic:
+    """One kind of traffic, in which a single CAV is left and all others are human drivers.
+
+    Raises:
+        ConfigError: If there are no copies.
+    """
+
+    scenario: str
+    cavs: int
+    hdvs: tuple[int, int]
+    copies: int
+    settings: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        if self.copies < 1:
+            raise ConfigError(f"copies must be 1 or more, got {self.copies}")
+
+    def environment(self, observer: "ObserverFactory", family: str, reward: RewardWeights) -> "SingleDriving":
+        """Return an environment of this kind.
+
+        Raises:
+            ConfigError: If the scenario refuses a setting.
+        """
+        from codriving.gym.single import SingleDriving
+
+        settings = {"hdvs": list(self.hdvs), **self.settings}
+        return SingleDriving(self.scenario, observer, ACTIONS[family], reward=reward, cavs=self.cavs, **settings)
