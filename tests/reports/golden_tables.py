@@ -1,0 +1,207 @@
+"""All tables of a few made-up episodes, in which everything occurs that a table can show."""
+
+import io
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
+
+from codriving.config.locate import experiments_dir
+from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.datatypes.record import EpisodeRecord, Participant
+from codriving.datatypes.score import Pet, Score, TravelScore
+from codriving.reports.comparison import Entry, comparison_columns, comparison_rows
+from codriving.reports.comparison_display import measured_display
+from codriving.reports.console import print_table
+from codriving.reports.display import Display
+from codriving.reports.learning import LearningCell, learning_columns, learning_rows
+from codriving.reports.learning_display import learning_display
+from codriving.reports.load import load_columns, load_rows
+from codriving.reports.load_display import load_display
+from codriving.reports.markdown import markdown_text
+from codriving.reports.memory_display import Built, built_display
+from codriving.reports.pairs_display import paired_display
+from codriving.reports.paper import read_paper
+from codriving.reports.paper_learning import read_learning
+from codriving.reports.rows import csv_text
+from codriving.reports.run_tables import run_tables
+from codriving.reports.timing_table import timing_columns, timing_rows
+from codriving.runs.timing import timing_of
+
+ASKED = {"model_calls": 1200, "prompt_tokens": 400_000, "completion_tokens": 20_000, "cost_usd": 0.1, "re_asks": 190,
+         "fallbacks": 10, "shortened": 10, "model_seconds": 6.5}  # fmt: skip
+
+
+def record(
+    seed: int,
+    ending: Ending = Ending.SUCCESS,
+    method: str = "codriving",
+    variant: str = "full",
+    reasoner: str = "rules",
+    scenario: str = "intersection",
+    faster: float = 0.0,
+    counts: dict[str, Any] | None = None,
+    memory: str = "",
+) -> EpisodeRecord:
+    """One episode; pets and velocities go by the seed."""
+    hit = Collision(3.25, "CAV0", "HDV0", "CAV-HDV") if ending is Ending.COLLISION else None
+    outcome = Outcome(
+        ending,
+        12.0 + seed / 3,
+        {"CAV0": 9.0} if ending is Ending.SUCCESS else {},
+        hit,
+        (Collision(4.0, "HDV1", "HDV0", "HDV-HDV"),) if seed % 5 == 4 else (),
+        ("CAV1",) if ending is Ending.OFF_ROAD else (),
+        "RuntimeError: x, y" if ending is Ending.ERROR else "",
+    )
+    pets = (Pet("CAV0", "CAV1", "crossing", 1.2 + seed / 2), Pet("HDV0", "CAV1", "merging", 3.75)) if seed != 3 else ()
+    travels = (
+        TravelScore("CAV0", 7.123 + seed / 7 + faster, 10.5 + seed, 1.25),
+        TravelScore("CAV1", 6.0 + faster, 11.0, None if seed == 2 else -0.5),
+    )
+    return EpisodeRecord(
+        scenario,
+        method,
+        variant,
+        reasoner,
+        seed,
+        outcome,
+        None if ending is Ending.ERROR else Score(ending is Ending.SUCCESS, pets, travels),
+        (
+            Participant("CAV0", "CAV", "a", None),
+            Participant("CAV1", "CAV", "b", 9.0),
+            Participant("HDV0", "HDV", "c", None),
+        ),
+        12 + seed,
+        counts or {},
+        memory,
+    )
+
+
+def episodes(failing: dict[int, Ending], number: int = 12, **told: Any) -> list[EpisodeRecord]:
+    """The episodes of a cell, of which some fail."""
+    return [record(seed, failing.get(seed, Ending.SUCCESS), **told) for seed in range(number)]
+
+
+FULL = episodes({4: Ending.COLLISION})
+DEGRADED = episodes(
+    {1: Ending.TIMEOUT, 2: Ending.OFF_ROAD, 3: Ending.ERROR, 4: Ending.COLLISION}, variant="no_negotiation/own_view"
+)
+FCFS = episodes({}, method="fcfs", variant="", reasoner="none", faster=-1.5, counts={"nodes": 3, "cavs": 7})
+MODEL = [
+    record(seed, reasoner="gpt-4o-mini", counts={**ASKED, **({"unpriced_calls": 3} if seed == 1 else {})})
+    for seed in range(3)
+]
+PRICED = episodes({1: Ending.ERROR}, 3, reasoner="gpt-4o-mini", counts=ASKED, method="tell", variant="")
+DILU = episodes({seed: Ending.COLLISION for seed in range(8)}, method="dilu-rule", variant="")
+MERGE = episodes({7: Ending.TIMEOUT}, scenario="merge", memory="frozen abc, 2 interactions", counts={"recalled": 5})
+
+
+def printed(*tables: Display | None) -> str:
+    """What a pipe gets."""
+    stream = io.StringIO()
+    for table in filter(None, tables):
+        print_table(table, stream)
+    return stream.getvalue()
+
+
+def tables() -> dict[str, str]:
+    """All tables by the names of their files."""
+    found: dict[str, str] = {}
+    paper = read_paper(experiments_dir())
+    runs: dict[str, tuple[list[list[EpisodeRecord]], dict[str, Any]]] = {
+        "run": ([FULL], {}),
+        "ablation": ([FULL, DEGRADED, MERGE, [replace(r, variant="no_negotiation") for r in MERGE]], {}),
+        "sweep": (
+            [FULL, DEGRADED, FCFS],
+            {
+                "metrics": "authors",
+                "swept": [{"scenario.cavs": c, "cda.own_order": o} for c, o in (("4", "1"), ("8", "1"), ("8", "own"))],
+                "notes": ["A note."],
+            },
+        ),
+        "model": ([MODEL, PRICED, FULL, DILU], {"seconds": [1.234, None, None, 0.5]}),
+    }
+    for name, (cells, more) in runs.items():
+        made = run_tables(cells, paper, **more)
+        found[f"{name}-episodes.csv"], found[f"{name}-summary.csv"] = made.episodes.csv(), made.summary.csv()
+        found[f"{name}-summary.md"], found[f"{name}-printed.txt"] = markdown_text(made.display), printed(made.printed)
+    found |= _comparisons()
+    loads = [
+        (cavs, Entry([replace(r, scenario=s) for r in cell[: cavs + 3]], {"environment.x": x}, cavs / 1000))
+        for s, x in (("intersection", "1"), ("intersection", "2"), ("merge", "1"))
+        for cavs in (4, 8)
+        for cell in (FCFS, FULL, MODEL, *([DILU] if s == "merge" else []))
+    ]
+    rows = load_rows(loads, ("fcfs", "mcts", "dilu", "codriving"))
+    table = load_display(rows, (4, 8), "standard", ["environment.x"])
+    screen = load_display(rows, (4, 8), "standard", ["environment.x"], cpu=True)
+    columns = load_columns((4, 8), ["environment.x"], any(row.model for row in rows))
+    found["load.csv"] = csv_text(columns, [row.row() for row in rows])
+    found["load.md"], found["load-printed.txt"] = markdown_text(table), printed(screen)
+    found |= _learning()
+    timings = [timing_of(2.0, [0.25, 0.75], [0.125, 0.375]), None, timing_of(1.0, [], [])]
+    timed = timing_rows(zip(FULL, timings, strict=False), {"scenario.cavs": "8"})
+    found["timing.csv"] = csv_text(timing_columns(["scenario.cavs"]), timed)
+    kept = [SimpleNamespace(count=count) for count in (2, 1, 1)]
+    reading = SimpleNamespace(
+        recollection=SimpleNamespace(kept=kept, digest="0123456789abcdef"),
+        verdicts={("eased", "SLOWER"): 3, ("intensified", "FASTER"): 1},
+        interactions=(1, 2),
+        path=Path("outputs/memory/a.sqlite"),
+    )
+    built = [Built("merge", "codriving full", "rules", {"cda.x": x}, cast(Any, reading)) for x in ("1", "2")]
+    found["memory.md"] = markdown_text(built_display(built))
+    return found
+
+
+def _comparisons() -> dict[str, str]:
+    paper = read_paper(experiments_dir())
+    found = {}
+    blocks = {
+        "comparison": [[Entry(FCFS, cpu=0.0042), Entry(FULL, cpu=0.0205), Entry(DILU)]],
+        "comparison-model": [
+            [Entry(MODEL, {"scenario.cavs": c}), Entry(PRICED, {"scenario.cavs": c}, 0.1)] for c in ("4", "8")
+        ],
+        "comparison-scenarios": [
+            [Entry(MERGE)],
+            [Entry(FULL), Entry(DEGRADED), Entry([replace(r, method="a") for r in FULL])],
+        ],
+    }
+    for name, entries in blocks.items():
+        swept = ["scenario.cavs"] if "model" in name else []
+        rows = [
+            row for block in entries for row in comparison_rows(block, ("fcfs", "madqn", "dilu", "codriving"), paper)
+        ]
+        model = any("fallback_rate" in row.row for row in rows)
+        found[f"{name}.csv"] = csv_text(comparison_columns(swept, model), [row.row for row in rows])
+        kept, screen = (measured_display(rows, paper, "standard", swept, cpu) for cpu in (False, True))
+        against = paired_display(rows, "standard", swept)
+        found[f"{name}.md"] = markdown_text(kept) + (markdown_text(against, level=2) if against else "")
+        found[f"{name}-printed.txt"] = printed(screen, against)
+    return found
+
+
+def _learning() -> dict[str, str]:
+    paper = read_learning(experiments_dir())
+    cells = [
+        LearningCell(
+            [replace(r, scenario=scenario, memory=f"frozen {n}", counts={"recalled": n}) for r in records],
+            n,
+            setting,
+            {"cda.x": "1"},
+            5,
+        )
+        for setting, (scenario, few, many) in enumerate((("merge", DILU, FULL), ("highway", FULL, FULL)))
+        for n, records in ((0, few), (10, many))
+    ]
+    cells = [
+        replace(cell, records=[replace(r, method="codriving", variant="full") for r in cell.records]) for cell in cells
+    ]
+    rows = learning_rows(cells, paper)
+    table = learning_display(rows, "standard", ["cda.x"])
+    return {
+        "learn.csv": csv_text(learning_columns(["cda.x"]), rows),
+        "learn.md": markdown_text(table),
+        "learn-printed.txt": printed(table),
+    }
