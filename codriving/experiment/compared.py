@@ -8,17 +8,13 @@ from codriving.config.locate import experiments_dir
 from codriving.experiment.cells import Cell
 from codriving.experiment.comparison import ALL, BASELINES, CAVS, LOAD, SINGLE_VEHICLE, setting
 from codriving.experiment.further import Driven, Further
-from codriving.reports.comparison import METHOD_CHOICE, TEXT, Entry, comparison_columns, comparison_rows, swept_keys
-from codriving.reports.comparison_display import measured_display
-from codriving.reports.load import load_columns, load_rows
-from codriving.reports.load_display import load_display
-from codriving.reports.load_figure import load_figure
-from codriving.reports.markdown import markdown_text
-from codriving.reports.model_columns import FALLBACK_RATE
-from codriving.reports.pairs_display import paired_display
+from codriving.reports.comparison import METHOD_CHOICE, comparison_rows, comparison_table, print_comparison, print_pairs
+from codriving.reports.figures import load_figure
+from codriving.reports.load import load_rows, load_table, print_loads
 from codriving.reports.paper import read_paper
-from codriving.reports.run_tables import Table
-from codriving.reports.timing_table import cpu_per_decision
+from codriving.reports.printed import markdown_text
+from codriving.reports.results import CellResults
+from codriving.reports.timing import cpu_per_decision
 
 
 def methods(table: str, driven: Driven) -> Further:
@@ -28,15 +24,14 @@ def methods(table: str, driven: Driven) -> Further:
         ``comparison.csv`` and ``comparison.md``, and what is printed: the same with computing times.
     """
     paper, metrics = read_paper(experiments_dir()), driven.metrics
-    blocks: dict[str, list[Entry]] = {}
-    for cell, entry in _entries(driven):
-        blocks.setdefault(setting(cell.resolved), []).append(entry)
+    blocks: dict[str, list[CellResults]] = {}
+    for cell, results in _results(driven):
+        blocks.setdefault(setting(cell.resolved), []).append(results)
     rows = [row for block in blocks.values() for row in comparison_rows(block, TAKING_PART[table], paper)]
-    swept = swept_keys(entry for block in blocks.values() for entry in block)
-    model = any(FALLBACK_RATE in row.row for row in rows)
-    whole = Table(comparison_columns(swept, model), tuple(row.row for row in rows), swept, TEXT)
-    kept, printed = (measured_display(rows, paper, metrics, swept, cpu) for cpu in (False, True))
-    against = paired_display(rows, metrics, swept)
+    swept = tuple(dict.fromkeys(key for block in blocks.values() for results in block for key in results.swept))
+    whole = comparison_table(rows, swept)
+    kept, printed = (print_comparison(rows, metrics, swept, screen) for screen in (False, True))
+    against = print_pairs(rows, metrics, swept)
     page = markdown_text(kept) + (f"\n{markdown_text(against, level=2)}" if against else "")
     files = {"comparison.csv": whole.csv().encode(), "comparison.md": page.encode()}
     return Further(files, (printed, against) if against else (printed,), (whole,))
@@ -48,13 +43,12 @@ def load(driven: Driven) -> Further:
     Returns:
         ``load.csv``, ``load.md`` and ``figures/load.*``, and what is printed: the table with computing times.
     """
-    cells = [(int(cell.resolved["scenario"]["cavs"]), entry) for cell, entry in _entries(driven, without=CAVS)]
+    cells = [(int(cell.resolved["scenario"]["cavs"]), results) for cell, results in _results(driven, without=CAVS)]
     loads = list(dict.fromkeys(cavs for cavs, _ in cells))
     rows = load_rows(cells, TAKING_PART[LOAD])
-    swept = swept_keys(entry for _, entry in cells)
-    model = any(row.model for row in rows)
-    table = Table(load_columns(loads, swept, model), tuple(row.row() for row in rows), swept, TEXT)
-    kept, printed = (load_display(rows, loads, driven.metrics, swept, cpu) for cpu in (False, True))
+    swept = tuple(dict.fromkeys(key for _, results in cells for key in results.swept))
+    table = load_table(rows, loads, swept)
+    kept, printed = (print_loads(rows, loads, driven.metrics, swept, screen) for screen in (False, True))
     files = {"load.csv": table.csv().encode(), "load.md": markdown_text(kept).encode()}
     figures = {f"figures/{name}": content for name, content in load_figure(rows, loads, driven.metrics).items()}
     return Further({**files, **figures}, (printed,), (table,))
@@ -67,13 +61,13 @@ FURTHER: Mapping[str, Callable[[Driven], Further]] = {
 """What makes each table of ``codriving compare``."""
 
 
-def _entries(driven: Driven, without: str = "") -> Iterator[tuple[Cell, Entry]]:
+def _results(driven: Driven, without: str = "") -> Iterator[tuple[Cell, CellResults]]:
     dropped = {without}
     if len({_told(cell) for cell in driven.cells}) == len(driven.cells):
         dropped.add(METHOD_CHOICE)
     for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True):
         swept = {key: value for key, value in cell.swept.items() if key not in dropped}
-        yield cell, Entry(records, swept, cpu_per_decision(timings))
+        yield cell, CellResults(records, swept, cpu=cpu_per_decision(timings))
 
 
 def _told(cell: Cell) -> tuple[object, ...]:

@@ -23,11 +23,12 @@ from codriving.experiment.plan import Plan
 from codriving.experiment.remembering import growing
 from codriving.experiment.shares import run_shares
 from codriving.experiment.stopping import HaltedError, Interrupted
-from codriving.reports.display import Display
+from codriving.reports.columns import table
 from codriving.reports.paper import Paper
-from codriving.reports.rows import Row, csv_text
-from codriving.reports.run_tables import RunTables, run_tables, write_tables
-from codriving.reports.timing_table import seconds_per_decision, timing_columns, timing_rows
+from codriving.reports.printed import PrintedTable
+from codriving.reports.results import CellResults
+from codriving.reports.run_tables import RunTables, run_tables
+from codriving.reports.timing import TimedEpisode, seconds_per_decision, timing_columns
 from codriving.runs.atomic import write_text
 from codriving.runs.continuation import changed_versions
 from codriving.runs.manifest import FORMAT, MANIFEST, CellEntry, Manifest
@@ -53,7 +54,7 @@ class Finished:
     extra: Further = field(default_factory=Further)
 
     @property
-    def displays(self) -> tuple[Display, ...]:
+    def displays(self) -> tuple[PrintedTable, ...]:
         """What is printed."""
         return self.extra.displays or (self.tables.printed,)
 
@@ -166,9 +167,11 @@ def _records(
 
 
 def _tables(plan: Plan, driven: Driven, paper: Paper) -> RunTables:
-    seconds = [seconds_per_decision(timings) for timings in driven.timings]
-    swept = [cell.swept for cell in driven.cells]
-    return run_tables(driven.records, paper, driven.metrics, swept, plan.notes, seconds)
+    cells = [
+        CellResults(records, cell.swept, seconds_per_decision(timings))
+        for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True)
+    ]
+    return run_tables(cells, paper, driven.metrics, plan.notes)
 
 
 def _timings(
@@ -181,15 +184,17 @@ def _timings(
 
 
 def _timing_table(driven: Driven) -> str:
-    lines: list[Row] = []
-    for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True):
-        lines += timing_rows(zip(records, timings, strict=True), cell.swept)
-    return csv_text(timing_columns(list(driven.cells[0].swept)), lines)
+    timed = [
+        TimedEpisode(record, timing, cell.swept)
+        for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True)
+        for record, timing in zip(records, timings, strict=True)
+    ]
+    return table(timing_columns(driven.cells[0].swept), timed).csv()
 
 
 def _write(folder: RunFolder, tables: RunTables, timing: str, extra: Further) -> None:
     try:
-        write_tables(tables, folder.path)
+        tables.write(folder.path)
         extra.write(folder.path)
         write_text(folder.path / "timing.csv", timing)
     except OSError as error:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from codriving.datatypes.record import EpisodeRecord
 from codriving.experiment.cells import Cell
-from codriving.reports.display import Display
-from codriving.reports.run_tables import Table
+from codriving.reports.columns import Table
+from codriving.reports.printed import PrintedTable
 from codriving.runs.atomic import whole_file
 from codriving.runs.timing import Timing
 
@@ -36,7 +36,7 @@ class Further:
     """What was made of them."""
 
     files: Mapping[str, bytes] = field(default_factory=dict)
-    displays: tuple[Display, ...] = ()
+    displays: tuple[PrintedTable, ...] = ()
     tables: tuple[Table, ...] = ()
 
     def write(self, folder: Path) -> None:

@@ -16,12 +16,11 @@ from codriving.experiment.plan import make_plan
 from codriving.experiment.remembering import memory_file
 from codriving.experiment.run import INTERRUPTED, drive_plan, report, resume_command
 from codriving.experiment.stopping import HaltedError, Interrupted
-from codriving.reports.learning import LearningCell, learning_columns, learning_rows
-from codriving.reports.learning_display import learning_display
-from codriving.reports.learning_figure import learning_figure
-from codriving.reports.markdown import markdown_text
-from codriving.reports.paper_learning import read_learning
-from codriving.reports.run_tables import Table
+from codriving.reports.figures import learning_figure
+from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
+from codriving.reports.paper import read_learning
+from codriving.reports.printed import markdown_text
+from codriving.reports.results import CellResults
 
 INTERACTIONS = "interactions"
 SIZES = (0, 2, 5, 10, 20)
@@ -144,19 +143,18 @@ def learned(driven: Driven, settings: int) -> Further:
     paper = read_learning(experiments_dir())
     each = len(driven.cells) // settings
     cells = [
-        LearningCell(
-            records=records,
+        LearningRow(
+            CellResults(records, {k: v for k, v in cell.swept.items() if k not in (KEY, "scenario", "cda")}),
             interactions=int(cell.resolved["memory"]["interactions"]),
             setting=index // each,
-            swept={key: value for key, value in cell.swept.items() if key not in (KEY, "scenario", "cda")},
             shots=int(cell.resolved["memory"]["shots"]),
         )
         for index, (cell, records) in enumerate(zip(driven.cells, driven.records, strict=True))
     ]
     rows = learning_rows(cells, paper)
-    swept = tuple(dict.fromkeys(key for cell in cells for key in cell.swept))
-    table = Table(learning_columns(swept), tuple(rows), swept)
-    display = learning_display(rows, driven.metrics, swept)
+    swept = tuple(dict.fromkeys(key for row in rows for key in row.cell.swept))
+    table = learning_table(rows, swept)
+    display = print_learning(rows, driven.metrics, swept)
     figures = {f"figures/{name}": content for name, content in learning_figure(rows, paper, driven.metrics).items()}
     files = {"learn.csv": table.csv().encode(), "learn.md": markdown_text(display).encode(), **figures}
     return Further(files, (display,), (table,))

@@ -11,8 +11,8 @@ from codriving.experiment.plan import Plan
 from codriving.experiment.remembering import learns, memory_file
 from codriving.experiment.run import command
 from codriving.memory.reading import read_memory
-from codriving.reports.markdown import markdown_text
-from codriving.reports.memory_display import Built, built_display
+from codriving.reports.built_memory import BuiltMemory, print_built
+from codriving.reports.printed import markdown_text
 
 INTERACTIONS = "interactions"
 """The word for how many episodes to learn from."""
@@ -99,8 +99,8 @@ def built(driven: Driven) -> Further:
         reading = read_memory(file if named is None else Path(named))
         labels = cell.labels
         name = f"{labels.method} {labels.variant}".strip()
-        rows.append(Built(labels.scenario, name, labels.reasoner, cell.swept, reading))
-    display = built_display(rows)
+        rows.append(BuiltMemory(labels.scenario, name, labels.reasoner, cell.swept, reading))
+    display = print_built(rows)
     return Further({"memory.md": markdown_text(display).encode()}, (display,))
 
 

@@ -20,8 +20,8 @@ from codriving.experiment.further import Driven, Further
 from codriving.experiment.objects import BuildObjects, modules_to_preload
 from codriving.experiment.plan import Plan, make_plan
 from codriving.experiment.stopping import HaltedError, Interrupted
-from codriving.reports.console import print_table
 from codriving.reports.paper import read_paper
+from codriving.reports.printed import print_table
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -1,15 +1,18 @@
-"""``comparison.csv``: one row a method and scenario, missing methods included, each against codriving."""
+"""``comparison.*``: one row a method and scenario, missing methods included, each against codriving."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
 
-from codriving.datatypes.record import EpisodeRecord
-from codriving.reports.model_columns import FALLBACK_RATE
-from codriving.reports.pairs import PAIRED, better_in, paired, worse_in
-from codriving.reports.paper import Paper
-from codriving.reports.rows import Row
-from codriving.reports.stand_in import STANDS_IN
-from codriving.reports.summary import summary_row
+from codriving.metrics.paired import FEWEST, RESAMPLES
+from codriving.reports.columns import Column, Row, Table, swept_columns, table
+from codriving.reports.pairs import PAIRED, PairedCells
+from codriving.reports.paper import Paper, PaperRow
+from codriving.reports.printed import PrintedTable, printed
+from codriving.reports.results import CellResults
+from codriving.reports.summary import BY_KEY, FALLBACK_NOTE, FALLBACKS, MEASURED, NOTE, paper_row
+from codriving.reports.wording import STANDS_IN, metrics_text, milliseconds, reasoner_text, stand_in_notes, title
 
 REFERENCE = "codriving"
 """The method that all others are compared with."""
@@ -20,88 +23,135 @@ DRIVEN, MISSING, QUOTED_ALONE = "driven", "not there yet", "only in the paper"
 GUIDED = ("dilu", "tell")
 """Methods that go by a language model; with rules in its place they are not set beside the paper's numbers."""
 
-MEASURED = (
-    "episodes",
-    "completed",
-    "success_rate",
-    "success_low",
-    "success_high",
-    "pet_mean",
-    "pet_max",
-    "pet_min",
-    "pet_below_1_5",
-    "velocity_mean",
-    "velocity_max",
-    "velocity_min",
-)
-
-QUOTED = ("success_rate", "pet_mean", "pet_max", "pet_min", "velocity_mean", "velocity_max", "velocity_min")
-
 METHOD_CHOICE = "method_choice"
 """The swept key that two methods of one name are told apart by; it belongs to a row, all others to a block."""
 
-TEXT = frozenset({"scenario", "method", "variant", "reasoner", "status", "better_in", "worse_in"})
-"""Columns of words; all others are numbers."""
+CPU = "CPU [ms]"
+"""Head of the column of computing time; on the screen alone, since it differs from machine to machine."""
+
+ALGORITHM = "Reasoner none: an algorithm that has no reasoner. Rules are never a language model."
+CPU_NOTE = "CPU: computing time of one decision for all CAVs, of this machine; it stands here and in timing.csv alone."
+
+QUOTED = ("success_rate", "pet_mean", "pet_max", "pet_min", "velocity_mean", "velocity_max", "velocity_min")
+
+PAIRED_NOTES = (
+    "Each difference is the method minus codriving on the same seeds. Success: exact McNemar test, two-sided.",
+    "Velocity and PET: means of an episode, over seeds on which both succeed; 95 % bootstrap intervals of "
+    f"{RESAMPLES} resamples, where there are {FEWEST} pairs or more.",
+    "Better or worse: p below 0.05, or an interval without 0; each by itself, not corrected for their number.",
+)
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
-    """One cell that is compared.
-
-    Attributes:
-        cpu: CPU time of a decision [s], or None where that is lost; it goes into no file that has to repeat.
-    """
-
-    records: Sequence[EpisodeRecord]
-    swept: Mapping[str, str] = field(default_factory=dict)
-    cpu: float | None = None
-
-    @property
-    def setting(self) -> Mapping[str, str]:
-        """The swept keys that it shares with all cells of its block."""
-        return {key: value for key, value in self.swept.items() if key != METHOD_CHOICE}
-
-    @property
-    def method(self) -> str:
-        """What the method calls itself."""
-        return self.records[0].method
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Compared:
     """One row of the comparison.
 
     Attributes:
-        cpu: CPU time of a decision [s], or None.
+        cell: What was driven; None for a method that was not.
+        reference: The cell of codriving that it is compared with, if it is another one.
+        quoted: The paper's row, if it has one.
     """
 
-    row: Row
-    cpu: float | None = None
+    scenario: str
+    method: str
+    status: str = DRIVEN
+    cell: CellResults | None = None
+    reference: CellResults | None = None
+    quoted: PaperRow | None = None
+    swept: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """The method, with its variant."""
+        return self.cell.name if self.cell else self.method
+
+    @cached_property
+    def pairs(self) -> PairedCells | None:
+        """The comparison with codriving on the same seeds."""
+        return PairedCells(self.cell, self.reference) if self.cell and self.reference else None
+
+    @property
+    def block(self) -> tuple[object, ...]:
+        """What it shares with all rows of its block."""
+        return self.scenario, *setting_of(self.swept).items()
 
 
-def comparison_columns(swept: Sequence[str] = (), model: bool = False) -> tuple[str, ...]:
-    """Give the columns of ``comparison.csv``."""
-    quoted = (f"paper_{name}" for name in QUOTED)
-    labels = ("scenario", "method", "variant", "reasoner", "status")
-    asked = (FALLBACK_RATE,) if model else ()
-    return (*labels, *swept, *MEASURED, *asked, *PAIRED, "better_in", "worse_in", *quoted)
+def setting_of(swept: Mapping[str, str]) -> Mapping[str, str]:
+    """Give the swept keys that a cell shares with all cells of its block."""
+    return {key: value for key, value in swept.items() if key != METHOD_CHOICE}
 
 
-def comparison_rows(block: Sequence[Entry], methods: Sequence[str], paper: Paper) -> list[Compared]:
+def _cell(row: Compared) -> CellResults | None:
+    return row.cell
+
+
+def status_columns(scenario: bool) -> list[Column[Any]]:
+    """Give the columns of labels and status, of what has a cell.
+
+    Args:
+        scenario: Whether the scenario is shown.
+    """
+    return [
+        Column("scenario", lambda r: r.scenario, "scenario" if scenario else "", words=True),
+        Column("method", lambda r: r.method, words=True),
+        *(BY_KEY[key].of(lambda r: r.cell) for key in ("variant", "reasoner")),
+        Column("status", lambda r: r.status, words=True),
+        Column("name", lambda r: r.name, "method", words=True, csv=False),
+    ]
+
+
+REASONER: Column[Any] = Column(
+    "reasoning",
+    lambda r: reasoner_text(r.cell.first.reasoner) if r.status == DRIVEN else r.status,
+    "reasoner",
+    words=True,
+    csv=False,
+)
+
+
+def comparison_table(rows: Sequence[Compared], swept: Sequence[str] = ()) -> Table:
+    """Make the table of a comparison."""
+    rates = ("collision_rate", "timeout_rate", "off_road", "error_rate")
+    model = any(row.cell and row.cell.asked for row in rows)
+    columns: list[Column[Any]] = [
+        *status_columns(len({row.scenario for row in rows}) > 1),
+        *swept_columns(swept),
+        REASONER,
+        *(column.of(_cell) for column in MEASURED if column.key not in rates),
+        *([FALLBACKS.of(_cell)] if model else []),
+        Column("cpu", lambda r: milliseconds(r.cell.cpu) if r.cell else "", CPU, csv=False, page=False),
+        *(replace(column, head="").of(lambda r: r.pairs) for column in PAIRED if column.csv),
+        *map(_quoted, QUOTED),
+    ]
+    return table(columns, rows)
+
+
+def _quoted(key: str) -> Column[Compared]:
+    return Column(f"paper_{key}", lambda row: row.quoted.numbers.get(key) if row.quoted else None)
+
+
+def comparison_rows(block: Sequence[CellResults], methods: Sequence[str], paper: Paper) -> list[Compared]:
     """Compare the methods of one block: cells on the same seeds that differ in the method alone.
 
     Returns:
         The rows: ``methods`` in their order, then all others as they come.
     """
-    reference = next((entry for entry in block if entry.method == REFERENCE), None)
+    reference = next((cell for cell in block if cell.first.method == REFERENCE), None)
+    scenario, setting = block[0].first.scenario, setting_of(block[0].swept)
+
+    def driven(cell: CellResults) -> Compared:
+        quoted = paper.row(cell.first.scenario, cell.first.method, cell.first.variant)
+        against = None if cell is reference else reference
+        return Compared(cell.first.scenario, cell.first.method, DRIVEN, cell, against, quoted, cell.swept)
+
     rows: list[Compared] = []
     for method in methods:
-        found = [_row(entry, reference, paper) for entry in block if takes_place_of(entry.method) == method]
-        rows += found or [_without(block[0], method, paper, MISSING)]
-        quoted = any(f"paper_{QUOTED[0]}" in compared.row for compared in found)
-        if found and not quoted and method in GUIDED and _quoted(paper, block[0].records[0].scenario, method, ""):
-            rows.append(_without(block[0], method, paper, QUOTED_ALONE))
-    return rows + [_row(entry, reference, paper) for entry in block if takes_place_of(entry.method) not in methods]
+        found = [driven(cell) for cell in block if takes_place_of(cell.first.method) == method]
+        quoted = paper.row(scenario, method, "")
+        rows += found or [Compared(scenario, method, MISSING, quoted=quoted, swept=setting)]
+        if found and quoted and method in GUIDED and not any(row.quoted for row in found):
+            rows.append(Compared(scenario, method, QUOTED_ALONE, quoted=quoted, swept=setting))
+    return rows + [driven(cell) for cell in block if takes_place_of(cell.first.method) not in methods]
 
 
 def takes_place_of(name: str) -> str:
@@ -109,34 +159,80 @@ def takes_place_of(name: str) -> str:
     return STANDS_IN.get(name, name)
 
 
-def _row(entry: Entry, reference: Entry | None, paper: Paper) -> Compared:
-    summary = summary_row(entry.records)
-    against: Row = {}
-    if reference is not None and entry is not reference:
-        against = paired(entry.records, reference.records)
-        against = {**against, "better_in": " ".join(better_in(against)), "worse_in": " ".join(worse_in(against))}
-    row = {
-        **{name: summary[name] for name in ("scenario", "method", "variant", "reasoner", *MEASURED)},
-        **{name: summary[name] for name in (FALLBACK_RATE,) if name in summary},
-        "status": DRIVEN,
-        **entry.swept,
-        **against,
-        **_quoted(paper, str(summary["scenario"]), str(summary["method"]), str(summary["variant"])),
+def print_comparison(
+    rows: Sequence[Compared], metrics: str, swept: Sequence[str] = (), screen: bool = False
+) -> PrintedTable:
+    """Prepare the table of what was measured, the paper's row below each of ours.
+
+    Args:
+        screen: Whether it is for the screen, which shows computing times, too.
+    """
+    made = comparison_table(rows, swept)
+    groups: list[tuple[object, list[Row], list[Row]]] = [
+        (row.block, [values], [paper_row(row.quoted)] if row.quoted else [])
+        for row, values in zip(rows, made.rows, strict=True)
+    ]
+    reasoners = [row.cell.first.reasoner for row in rows if row.cell]
+    heading = title("comparison of methods", [row.scenario for row in rows], reasoners, metrics)
+    cells = [(row.method, row.status, row.cell) for row in rows]
+    return printed(heading, made.columns, groups, (NOTE, *notes_of(cells, screen)), screen)
+
+
+def notes_of(rows: Iterable[tuple[str, str, CellResults | None]], screen: bool) -> list[str]:
+    """Say what a reader has to know of reasoners, missing methods and computing times.
+
+    Args:
+        rows: Method, status and one cell of each row.
+    """
+    rows = list(rows)
+    missing, alone = (
+        ", ".join(dict.fromkeys(method for method, status, _ in rows if status == which))
+        for which in (MISSING, QUOTED_ALONE)
+    )
+    theirs = "the paper's go by a language model, the rows above by rules."
+    return [
+        *([FALLBACK_NOTE] if any(cell and cell.asked for *_, cell in rows) else []),
+        *([ALGORITHM] if any(cell and cell.first.reasoner == "none" for *_, cell in rows) else []),
+        *([f"{MISSING.capitalize()}: {missing}; to come in a later release."] if missing else []),
+        *stand_in_notes(method for method, *_ in rows),
+        *([f"{QUOTED_ALONE.capitalize()}: {alone}; {theirs}"] if alone else []),
+        *([CPU_NOTE] if screen else []),
+    ]
+
+
+def print_pairs(rows: Sequence[Compared], metrics: str, swept: Sequence[str] = ()) -> PrintedTable | None:
+    """Prepare the table of differences to codriving on the same seeds.
+
+    Returns:
+        The table, with a note on every method that is better than codriving in something; None where there is no
+        other method.
+    """
+    columns: list[Column[Any]] = [
+        *status_columns(len({row.scenario for row in rows}) > 1),
+        *swept_columns(swept),
+        *(column.of(lambda r: r.pairs) for column in PAIRED),
+    ]
+    found = [row for row in rows if row.pairs]
+    if not found:
+        return None
+    groups: list[tuple[object, list[Row], list[Row]]] = [
+        (row.block, [values] if row.pairs else [], [])
+        for row, values in zip(rows, table(columns, rows).rows, strict=True)
+    ]
+    notes = [_better_note(row, row.pairs, swept) for row in found if row.pairs and row.pairs.better] or [
+        "No method is shown to be better than codriving in success, velocity or PET on these seeds."
+    ]
+    scenarios = ", ".join(dict.fromkeys(row.scenario for row in rows))
+    heading = f"against {REFERENCE} on the same seeds - {scenarios}{metrics_text(metrics)}"
+    return printed(heading, columns, groups, (*notes, *PAIRED_NOTES))
+
+
+def _better_note(row: Compared, pairs: PairedCells, swept: Sequence[str]) -> str:
+    texts = {column.key: column.text(column.value(pairs)) for column in PAIRED}
+    shown = {
+        "success": f"success by {texts['success_difference']} points (p = {texts['mcnemar_p']})",
+        "velocity": f"velocity by {texts['velocity']} m/s",
+        "PET": f"PET by {texts['pet']} s",
     }
-    return Compared(row, entry.cpu)
-
-
-def _without(beside: Entry, method: str, paper: Paper, status: str) -> Compared:
-    scenario = beside.records[0].scenario
-    row = {"scenario": scenario, "method": method, "status": status, **beside.setting}
-    return Compared({**row, **_quoted(paper, scenario, method, "")})
-
-
-def _quoted(paper: Paper, scenario: str, method: str, variant: str) -> Row:
-    found = paper.row(scenario, method, variant)
-    return {f"paper_{name}": found.numbers.get(name) for name in QUOTED} if found else {}
-
-
-def swept_keys(entries: Iterable[Entry]) -> tuple[str, ...]:
-    """List the swept keys that need a column, in their order."""
-    return tuple(dict.fromkeys(key for entry in entries for key in entry.swept))
+    where = ", ".join([row.scenario, *(f"{key}={row.swept[key]}" for key in swept if row.swept.get(key))])
+    return f"Better than codriving: {row.name} in {' and in '.join(shown[what] for what in pairs.better)} - {where}."

@@ -1,79 +1,131 @@
-"""``learn.csv``: success against the number of past interactions, each paired with none on the same seeds."""
+"""``learn.*``: success against the number of past interactions, each paired with none on the same seeds."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
-from codriving.datatypes.record import EpisodeRecord
-from codriving.reports.pairs import paired
-from codriving.reports.paper_learning import LearningStatement
-from codriving.reports.rows import Row, Value
-from codriving.reports.summary import summary_row
+from codriving.reports.columns import Column, Row, Table, swept_columns, table
+from codriving.reports.pairs import SIGNIFICANT, PairedCells, points
+from codriving.reports.paper import LearningStatement
+from codriving.reports.printed import PrintedTable, printed
+from codriving.reports.results import CellResults
+from codriving.reports.summary import BY_KEY, CLAIM, LABELS, NAME, NOTE
+from codriving.reports.wording import fixed, title, two_digits
 
-QUALITY = (
-    "episodes", "completed", "success_rate", "success_low", "success_high", "collision_rate", "timeout_rate",
-    "pet_mean", "pet_below_1_5", "velocity_mean", "recalled", "reconsidered",
-)  # fmt: skip
-"""Columns of the summary that the table takes over; the last two count memories and changed decisions."""
-
-AGAINST = {
-    "success_difference": "success_gain",
-    "only_method_succeeds": "seeds_gained",
-    "only_codriving_succeeds": "seeds_lost",
-    "mcnemar_p": "mcnemar_p",
-    "velocity_difference": "velocity_gain",
-    "velocity_difference_low": "velocity_gain_low",
-    "velocity_difference_high": "velocity_gain_high",
-}
-"""Columns of the paired comparison with no interactions, and what they are called here."""
-
-TEXTS = ("scenario", "method", "variant", "reasoner", "memory", "paper")
+NOTES = (
+    "Gains are against the fewest interactions on the same seeds, with the exact McNemar test; recalled counts "
+    "memories, reconsidered the decisions that they changed.",
+    "Memories are of other seeds than the tests and do not change while these are driven.",
+)
 
 
-@dataclass(frozen=True, slots=True)
-class LearningCell:
-    """One cell of the tests."""
+@dataclass(frozen=True)
+class LearningRow:
+    """One cell of the tests.
 
-    records: Sequence[EpisodeRecord]
+    Attributes:
+        setting: Number of the setting that it was tested in.
+        fewest: The cell of the same setting with the fewest interactions; None for that one itself.
+        claim: What the paper says of its scenario after so many interactions.
+    """
+
+    cell: CellResults
     interactions: int
     setting: int
-    swept: Mapping[str, str]
     shots: int
+    fewest: CellResults | None = None
+    claim: str | None = None
+
+    @cached_property
+    def pairs(self) -> PairedCells | None:
+        """The comparison with the fewest interactions on the same seeds."""
+        return PairedCells(self.cell, self.fewest) if self.fewest else None
+
+    @property
+    def gain(self) -> str:
+        """The gain in success, with its p-value."""
+        return f"{points(self.pairs.success)} ({fixed(self.pairs.p, 3)})" if self.pairs and self.pairs.driven else ""
 
 
-def learning_columns(swept: Sequence[str] = ()) -> tuple[str, ...]:
-    """Give the columns of ``learn.csv``."""
-    labels = ("scenario", "method", "variant", "reasoner", *swept, "interactions", "shots", "memory")
-    return (*labels, *QUALITY, *AGAINST.values(), "paper")
+def learning_rows(cells: Sequence[LearningRow], paper: Sequence[LearningStatement]) -> list[LearningRow]:
+    """Put beside each cell what it is compared with and what the paper says."""
+    fewest: dict[int, CellResults] = {}
+    for row in cells:
+        fewest.setdefault(row.setting, row.cell)
+    claims = {(s.scenario, s.interactions): s.statement for s in reversed(paper)}
+    return [
+        replace(
+            row,
+            fewest=None if row.cell is fewest[row.setting] else fewest[row.setting],
+            # The paper tests the full framework alone.
+            claim=claims.get((row.cell.first.scenario, row.interactions)) if row.cell.first.variant == "full" else None,
+        )
+        for row in cells
+    ]
 
 
-def learning_rows(cells: Sequence[LearningCell], paper: Sequence[LearningStatement]) -> list[Row]:
-    """Make the rows."""
-    first: dict[int, LearningCell] = {}
-    for cell in cells:
-        first.setdefault(cell.setting, cell)
-    return [_row(cell, first[cell.setting], paper) for cell in cells]
+def learning_table(rows: Sequence[LearningRow], swept: Sequence[str] = ()) -> Table:
+    """Make the table."""
+
+    def cell(*keys: str) -> list[Column[Any]]:
+        return [BY_KEY[key].of(lambda row: row.cell) for key in keys]
+
+    def counted(name: str) -> Column[Any]:
+        return Column(name, lambda row: row.cell.counters.get(name), name, lambda value: str(value or 0))
+
+    def gain(key: str, value: Any) -> Column[Any]:  # noqa: ANN401 - of the pairs
+        return Column(key, lambda row: value(row.pairs) if row.pairs else None)
+
+    columns: list[Column[Any]] = [
+        *(column.of(lambda row: row.cell) for column in (replace(LABELS[0], head="scenario"), *LABELS[1:], NAME)),
+        *(column.of(lambda row: row.cell) for column in swept_columns(swept)),
+        Column("interactions", lambda row: row.interactions, "interactions"),
+        Column("shots", lambda row: row.shots),
+        *(replace(column, head="") for column in cell("memory")),
+        *cell("episodes", "completed", "count", "success_rate", "success_low", "success_high", "interval"),
+        Column("gain", lambda row: row.gain, "gain [points] (p)", csv=False),
+        *cell("collision_rate", "timeout_rate"),
+        replace(*cell("pet_mean"), head="PET mean [s]", text=fixed),
+        *cell("pet_below_1_5"),
+        replace(*cell("velocity_mean"), head="velocity [m/s]", text=two_digits),
+        counted("recalled"),
+        counted("reconsidered"),
+        gain("success_gain", lambda pairs: pairs.success),
+        gain("seeds_gained", lambda pairs: pairs.gained),
+        gain("seeds_lost", lambda pairs: pairs.lost),
+        gain("mcnemar_p", lambda pairs: pairs.p),
+        gain("velocity_gain", lambda pairs: pairs.velocity.mean),
+        gain("velocity_gain_low", lambda pairs: pairs.velocity.low),
+        gain("velocity_gain_high", lambda pairs: pairs.velocity.high),
+        Column("paper", lambda row: row.claim, CLAIM, words=True),
+    ]
+    return table(columns, rows)
 
 
-def _row(cell: LearningCell, first: LearningCell, paper: Sequence[LearningStatement]) -> Row:
-    summary = summary_row(cell.records)
-    against: dict[str, Value] = {}
-    if cell is not first:
-        pairs = paired(cell.records, first.records)
-        against = {name: pairs[column] for column, name in AGAINST.items()}
-    return {
-        **{name: summary[name] for name in ("scenario", "method", "variant", "reasoner")},
-        **cell.swept,
-        "interactions": cell.interactions,
-        "shots": cell.shots,
-        "memory": summary.get("memory"),
-        **{name: summary.get(name) for name in QUALITY},
-        **against,
-        "paper": _statement(str(summary["scenario"]), str(summary["variant"]), cell.interactions, paper),
-    }
+def print_learning(rows: Sequence[LearningRow], metrics: str, swept: Sequence[str] = ()) -> PrintedTable:
+    """Prepare the table for people."""
+    made = learning_table(rows, swept)
+    groups: list[tuple[object, list[Row], list[Row]]] = [
+        (_setting(row, swept), [values], []) for row, values in zip(rows, made.rows, strict=True)
+    ]
+    firsts = [row.cell.first for row in rows]
+    heading = title("learning", [first.scenario for first in firsts], [first.reasoner for first in firsts], metrics)
+    return printed(heading, made.columns, groups, (NOTE, *NOTES, _shown(rows, swept)))
 
 
-def _statement(scenario: str, variant: str, interactions: int, paper: Sequence[LearningStatement]) -> str | None:
-    """What the paper says of this scenario after so many interactions; it tests the full framework alone."""
-    if variant != "full":
-        return None
-    return next((s.statement for s in paper if (s.scenario, s.interactions) == (scenario, interactions)), None)
+def _setting(row: LearningRow, swept: Sequence[str]) -> tuple[object, ...]:
+    return (row.cell.first.scenario, row.cell.first.variant, *(row.cell.swept.get(key) for key in swept))
+
+
+def _shown(rows: Sequence[LearningRow], swept: Sequence[str]) -> str:
+    """Say where the most interactions are shown to differ from the fewest, and that nothing is shown elsewhere."""
+    shown = []
+    for row in {_setting(row, swept): row for row in rows}.values():
+        gain, p = (row.pairs.success, row.pairs.p) if row.pairs else (None, None)
+        if gain is not None and p is not None and p < SIGNIFICANT:
+            how, first = "raise" if gain > 0 else "lower", row.cell.first
+            shown.append(f"{row.interactions} interactions {how} success in {first.scenario} ({first.variant})")
+    if not shown:
+        return "In no setting is a difference in success between the most and the fewest interactions shown (p < 0.05)."
+    return f"Shown (p < 0.05): {'; '.join(shown)}. Elsewhere no difference in success is shown."

@@ -1,119 +1,145 @@
-"""One method against another on the same seeds: who succeeds where, and how far apart they are where both do."""
+"""One method against codriving on the same seeds: where which succeeds, and how far apart they are where both do."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 
 from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
-from codriving.metrics.paired import mcnemar, mean_interval
-from codriving.reports.rows import Value
-from codriving.reports.statistics import mean
+from codriving.metrics.paired import FEWEST, mcnemar, mean_interval
+from codriving.reports.columns import Column, Value, mean
+from codriving.reports.results import CellResults, ScoredEpisode
+from codriving.reports.wording import signed
 
 SIGNIFICANT = 0.05
 """A p-value below this counts as a difference."""
 
-PAIRED = (
-    "pairs",
-    "success_difference",
-    "only_method_succeeds",
-    "only_codriving_succeeds",
-    "mcnemar_p",
-    "pet_pairs",
-    "pet_difference",
-    "pet_difference_low",
-    "pet_difference_high",
-    "velocity_pairs",
-    "velocity_difference",
-    "velocity_difference_low",
-    "velocity_difference_high",
+AGAINST = "against codriving"
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The method minus codriving, over the seeds on which both succeed and have such a number.
+
+    Attributes:
+        mean: Mean difference, or None of no seed.
+        low: Lower limit of its 95 % bootstrap interval; None of too few seeds.
+        high: Upper limit.
+    """
+
+    pairs: int
+    mean: float | None
+    low: float | None
+    high: float | None
+
+    def shown(self, sign: int) -> bool:
+        """Tell whether the whole interval is above (1) or below (-1) zero."""
+        return self.low is not None and self.high is not None and self.low * sign > 0 and self.high * sign > 0
+
+    def __str__(self) -> str:
+        middle = signed(self.mean) or "-"
+        return middle if self.low is None else f"{middle} ({signed(self.low)} to {signed(self.high)})"
+
+
+@dataclass(frozen=True)
+class PairedCells:
+    """The episodes of a method and those of codriving; pairs of which one ended in an error are left out."""
+
+    cell: CellResults
+    reference: CellResults
+
+    @cached_property
+    def driven(self) -> list[tuple[ScoredEpisode, ScoredEpisode]]:
+        """Both episodes of each seed that both drove to an end."""
+        by_seed = {episode.record.seed: episode for episode in self.reference.episodes}
+        pairs = [(one, by_seed[one.record.seed]) for one in self.cell.episodes if one.record.seed in by_seed]
+        return [(a, b) for a, b in pairs if Ending.ERROR not in (a.record.outcome.ending, b.record.outcome.ending)]
+
+    @cached_property
+    def gained(self) -> int:
+        """On how many seeds the method succeeds alone."""
+        return sum(a.success and not b.success for a, b in self.driven)
+
+    @cached_property
+    def lost(self) -> int:
+        """On how many seeds codriving succeeds alone."""
+        return sum(b.success and not a.success for a, b in self.driven)
+
+    @property
+    def success(self) -> float | None:
+        """Difference of the success rates."""
+        return (self.gained - self.lost) / len(self.driven) if self.driven else None
+
+    @cached_property
+    def p(self) -> float | None:
+        """p-value of the exact McNemar test."""
+        return mcnemar(self.gained, self.lost) if self.driven else None
+
+    @cached_property
+    def pet(self) -> Difference:
+        """Difference of the mean PETs of an episode [s]."""
+        return self._difference(lambda episode: mean(episode.pets))
+
+    @cached_property
+    def velocity(self) -> Difference:
+        """Difference of the mean velocities of an episode [m/s]."""
+        return self._difference(lambda episode: mean(episode.velocities))
+
+    def _difference(self, measure: Callable[[ScoredEpisode], float | None]) -> Difference:
+        measured = [(measure(a), measure(b)) for a, b in self.driven if a.success and b.success]
+        differences = [a - b for a, b in measured if a is not None and b is not None]
+        low, high = mean_interval(differences) or (None, None)
+        return Difference(len(differences), mean(differences), low, high)
+
+    @property
+    def better(self) -> tuple[str, ...]:
+        """Of success, velocity and PET those in which the method is shown to be better."""
+        return self._shown(1)
+
+    @property
+    def worse(self) -> tuple[str, ...]:
+        """Of success, velocity and PET those in which it is shown to be worse."""
+        return self._shown(-1)
+
+    def _shown(self, sign: int) -> tuple[str, ...]:
+        success = self.p is not None and self.p < SIGNIFICANT and (self.success or 0.0) * sign > 0
+        found = {"success": success, "velocity": self.velocity.shown(sign), "PET": self.pet.shown(sign)}
+        return tuple(name for name, shown in found.items() if shown)
+
+    def __str__(self) -> str:
+        said = [f"{word} in {', '.join(w)}" for word, w in (("better", self.better), ("worse", self.worse)) if w]
+        few = self.velocity.pairs < FEWEST
+        return "; ".join(said) or (f"fewer than {FEWEST} pairs" if few else "no difference shown")
+
+
+def points(value: Value) -> str:
+    """Write a difference of rates in percentage points."""
+    return signed(100 * value, 1) if isinstance(value, float) else "-"
+
+
+def p_text(value: Value) -> str:
+    """Write a p-value."""
+    return f"{value:.2g}" if isinstance(value, float) else "-"
+
+
+PAIRED: tuple[Column[PairedCells], ...] = (
+    Column("pairs", lambda p: len(p.driven), "pairs"),
+    Column("success_difference", lambda p: p.success, "success [points]", points),
+    Column("only_method_succeeds", lambda p: p.gained),
+    Column("only_codriving_succeeds", lambda p: p.lost),
+    Column("alone", lambda p: f"{p.gained} / {p.lost}", "alone: it / codriving", csv=False),
+    Column("mcnemar_p", lambda p: p.p, "McNemar p", p_text),
+    Column("velocity", lambda p: str(p.velocity), "velocity [m/s] (95 %)", csv=False),
+    Column("pet_pairs", lambda p: p.pet.pairs),
+    Column("pet_difference", lambda p: p.pet.mean),
+    Column("pet_difference_low", lambda p: p.pet.low),
+    Column("pet_difference_high", lambda p: p.pet.high),
+    Column("pet", lambda p: str(p.pet), "PET [s] (95 %)", csv=False),
+    Column("velocity_pairs", lambda p: p.velocity.pairs),
+    Column("velocity_difference", lambda p: p.velocity.mean),
+    Column("velocity_difference_low", lambda p: p.velocity.low),
+    Column("velocity_difference_high", lambda p: p.velocity.high),
+    Column("better_in", lambda p: " ".join(p.better), words=True),
+    Column("worse_in", lambda p: " ".join(p.worse), words=True),
+    Column("against", str, AGAINST, words=True, csv=False),
 )
 """Columns of the paired comparison; every difference is the method minus codriving."""
-
-
-def paired(records: Sequence[EpisodeRecord], reference: Sequence[EpisodeRecord]) -> Mapping[str, Value]:
-    """Compare the episodes of a method with those of codriving.
-
-    Returns:
-        A value for each column of ``PAIRED``; None where nothing defines it. Pairs of which one ended in an error are
-        left out. PET and velocity are means of an episode, over the seeds on which both succeed.
-    """
-    by_seed = {record.seed: record for record in reference}
-    pairs = [(record, by_seed[record.seed]) for record in records if record.seed in by_seed]
-    driven = [(a, b) for a, b in pairs if Ending.ERROR not in (a.outcome.ending, b.outcome.ending)]
-    gained = sum(_succeeds(a) and not _succeeds(b) for a, b in driven)
-    lost = sum(_succeeds(b) and not _succeeds(a) for a, b in driven)
-    both = [(a, b) for a, b in driven if _succeeds(a) and _succeeds(b)]
-    return {
-        "pairs": len(driven),
-        "success_difference": (gained - lost) / len(driven) if driven else None,
-        "only_method_succeeds": gained,
-        "only_codriving_succeeds": lost,
-        "mcnemar_p": mcnemar(gained, lost) if driven else None,
-        **_difference("pet", both, _pet),
-        **_difference("velocity", both, _velocity),
-    }
-
-
-def better_in(row: Mapping[str, Value]) -> tuple[str, ...]:
-    """List in what a method is shown to be better than codriving.
-
-    Args:
-        row: A row with the columns of ``PAIRED``.
-
-    Returns:
-        Of ``success``, ``velocity`` and ``PET`` those in which it is: p below 0.05, or an interval above 0.
-    """
-    return _shown(row, 1)
-
-
-def worse_in(row: Mapping[str, Value]) -> tuple[str, ...]:
-    """List in what a method is shown to be worse than codriving.
-
-    Args:
-        row: A row with the columns of ``PAIRED``.
-
-    Returns:
-        Of ``success``, ``velocity`` and ``PET`` those in which it is: p below 0.05, or an interval below 0.
-    """
-    return _shown(row, -1)
-
-
-def _shown(row: Mapping[str, Value], sign: int) -> tuple[str, ...]:
-    p, success = row.get("mcnemar_p"), row.get("success_difference")
-    found = ["success"] if isinstance(p, float) and isinstance(success, float) and _holds(p, success * sign) else []
-    for what, name in (("velocity", "velocity"), ("pet", "PET")):
-        limits = row.get(f"{what}_difference_low"), row.get(f"{what}_difference_high")
-        if all(isinstance(limit, float) and limit * sign > 0 for limit in limits):
-            found.append(name)
-    return tuple(found)
-
-
-def _holds(p: float, difference: float) -> bool:
-    return p < SIGNIFICANT and difference > 0
-
-
-def _difference(
-    what: str,
-    both: Sequence[tuple[EpisodeRecord, EpisodeRecord]],
-    measure: Callable[[EpisodeRecord], float | None],
-) -> dict[str, Value]:
-    measured = [(measure(a), measure(b)) for a, b in both]
-    differences = [a - b for a, b in measured if a is not None and b is not None]
-    low, high = mean_interval(differences) or (None, None)
-    return {
-        f"{what}_pairs": len(differences),
-        f"{what}_difference": mean(differences),
-        f"{what}_difference_low": low,
-        f"{what}_difference_high": high,
-    }
-
-
-def _succeeds(record: EpisodeRecord) -> bool:
-    return record.score is not None and record.score.success
-
-
-def _pet(record: EpisodeRecord) -> float | None:
-    return mean([pet.value for pet in record.score.pets]) if record.score else None
-
-
-def _velocity(record: EpisodeRecord) -> float | None:
-    return mean([travel.velocity for travel in record.score.travels]) if record.score else None

@@ -1,4 +1,4 @@
-"""The paper's own numbers, read from ``experiments/*.csv``, to stand beside ours."""
+"""The paper's own numbers and statements, read from ``experiments/*.csv``, to stand beside ours."""
 
 import csv
 from dataclasses import dataclass, replace
@@ -7,6 +7,7 @@ from pathlib import Path
 COMPARISON = "paper_comparison.csv"
 SINGLE_VEHICLE = "paper_single_vehicle.csv"
 ABLATION = "paper_ablation.csv"
+LEARNING = "paper_learning.csv"
 SEEDS = 20
 """Seeds of each row of the paper's comparison."""
 
@@ -42,6 +43,20 @@ class PaperStatement:
     scenario: str
     variant: str
     statement: str
+
+
+@dataclass(frozen=True, slots=True)
+class LearningStatement:
+    """One statement of the paper on its learning figure.
+
+    Attributes:
+        interactions: After how many interactions; None where it gives no number.
+    """
+
+    scenario: str
+    interactions: int | None
+    statement: str
+    success: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +99,19 @@ def read_paper(folder: Path) -> Paper:
     )
     single = tuple(replace(_row(row), episodes=None) for row in _read(folder / SINGLE_VEHICLE))
     return Paper(comparison, ablation, single)
+
+
+def read_learning(folder: Path) -> tuple[LearningStatement, ...]:
+    """Read the paper's statements on learning."""
+    return tuple(
+        LearningStatement(
+            row["scenario"],
+            int(row["interactions"]) if row["interactions"] else None,
+            row["statement"],
+            float(row["success"]) if row["success"] else None,
+        )
+        for row in _read(folder / LEARNING)
+    )
 
 
 def _read(path: Path) -> list[dict[str, str]]:

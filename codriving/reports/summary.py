@@ -1,131 +1,242 @@
-"""``summary.csv``: one row a cell, with Wilson intervals; PET and velocity over successful episodes only."""
+"""``summary.*``: one row a cell, with Wilson intervals; PET and velocity over successful episodes only."""
 
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+import math
+import statistics
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Any
 
 from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
-from codriving.metrics.wilson import wilson_interval
-from codriving.reports.episodes_table import LABELS, MEMORY, memory_column
-from codriving.reports.model_columns import FALLBACK_RATE, counted, counter_columns, fallback_rate, reasoned
-from codriving.reports.rows import Row, Value
-from codriving.reports.statistics import mean, median, share
+from codriving.reports.columns import Column, Row, Table, Value, mean, share, swept_columns, table
+from codriving.reports.episodes import counter_columns
+from codriving.reports.paper import WHOLE, Paper, PaperRow
+from codriving.reports.printed import PrintedTable, printed
+from codriving.reports.results import ASKED, COST, CellResults, success_interval
+from codriving.reports.wording import interval_text, percent, stand_in_notes, three, title, two_digits
 
 SEVERE_PET = 1.5
 """Below this a PET counts as severe in the paper [s]."""
 
-LEADING = (
-    *LABELS,
-    "episodes",
-    "completed",
-    "success_rate",
-    "success_low",
-    "success_high",
-    "collision_rate",
-    "timeout_rate",
-    "error_rate",
-    "pet_mean",
-    "pet_max",
-    "pet_min",
-    "pet_below_1_5",
-    "velocity_mean",
-    "velocity_max",
-    "velocity_min",
-)
-"""The columns that users rely on, in their fixed order."""
+NOTE = "Rates are over completed episodes, intervals are Wilson 95 %; PET and velocity are over successful episodes."
 
-FURTHER = (
-    "off_road_rate",
-    "success_planned",
-    "success_planned_low",
-    "success_planned_high",
-    "pet_median",
-    "pet_count",
-    "travel_time_mean",
-    "delay_mean",
-    "duration_mean",
-    "collision_cav_cav",
-    "collision_cav_hdv",
-    "collision_cav_block",
-    "bystander_collisions",
-    "decisions",
+FALLBACK_RATE = "fallback_rate"
+"""Share of the questions that the model gave no usable answer to, so that rules answered."""
+
+FALLBACK_NOTE = "Fallbacks: share of questions to which the model gave no usable answer, so that rules answered."
+STEP_NOTE = "Step: wall-clock time of one decision step, all CAVs and all questions together; see timing.csv."
+
+CLAIM = "the paper says"
+"""Head of the column of the paper's statements."""
+
+LABELS: tuple[Column[CellResults], ...] = (
+    Column("scenario", lambda c: c.first.scenario, words=True),
+    Column("method", lambda c: c.first.method, words=True),
+    Column("variant", lambda c: c.first.variant, words=True),
+    Column("reasoner", lambda c: c.first.reasoner, words=True),
 )
 
+NAME: Column[CellResults] = Column("name", lambda c: c.name, "method", words=True, csv=False)
 
-def summary_columns(records: Iterable[EpisodeRecord], swept: Sequence[str] = ()) -> tuple[str, ...]:
-    """Give the columns of ``summary.csv``: fixed ones, swept keys, and the counters of methods."""
-    records = list(records)
-    known = (*LEADING, *swept, *FURTHER, *memory_column(records))
-    return (*known, *counter_columns(records, known, rate=True))
+MEASURED: tuple[Column[CellResults], ...] = (
+    Column("episodes", lambda c: len(c.records)),
+    Column("completed", lambda c: len(c.completed)),
+    Column("count", lambda c: _count(len(c.completed), len(c.records)), "episodes", csv=False),
+    Column("success_rate", lambda c: share(len(c.successes), len(c.completed)), "success", percent),
+    Column("success_low", lambda c: c.interval[0]),
+    Column("success_high", lambda c: c.interval[1]),
+    Column("interval", lambda c: interval_text(c.interval), "95 % interval", csv=False),
+    Column("collision_rate", lambda c: c.rate(Ending.COLLISION), "collision", percent),
+    Column("timeout_rate", lambda c: c.rate(Ending.TIMEOUT), "timeout", percent),
+    Column("off_road", lambda c: c.rate(Ending.OFF_ROAD), "off road", percent, csv=False, sparse=True),
+    Column(
+        "error_rate", lambda c: share(len(c.records) - len(c.completed), len(c.records)), "error", percent, sparse=True
+    ),
+    Column("pet_mean", lambda c: mean(c.pets)),
+    Column("pet_max", lambda c: max(c.pets, default=None)),
+    Column("pet_min", lambda c: min(c.pets, default=None)),
+    Column("pet", lambda c: _three(c.pets), "PET mean / max / min [s]", csv=False),
+    Column("pet_below_1_5", lambda c: share(sum(p < SEVERE_PET for p in c.pets), len(c.pets)), "PET < 1.5 s", percent),
+    Column("velocity_mean", lambda c: mean(c.velocities)),
+    Column("velocity_max", lambda c: max(c.velocities, default=None)),
+    Column("velocity_min", lambda c: min(c.velocities, default=None)),
+    Column("velocity", lambda c: _three(c.velocities), "velocity mean / max / min [m/s]", csv=False),
+)
+"""With the labels, the columns that users rely on, in their fixed order."""
+
+FURTHER: tuple[Column[CellResults], ...] = (
+    Column("off_road_rate", lambda c: c.rate(Ending.OFF_ROAD)),
+    Column("success_planned", lambda c: share(len(c.successes), len(c.records))),
+    Column("success_planned_low", lambda c: success_interval(len(c.successes), len(c.records))[0]),
+    Column("success_planned_high", lambda c: success_interval(len(c.successes), len(c.records))[1]),
+    Column("pet_median", lambda c: statistics.median(c.pets) if c.pets else None),
+    Column("pet_count", lambda c: len(c.pets)),
+    Column("travel_time_mean", lambda c: mean([time for e in c.successes for time in e.times])),
+    Column("delay_mean", lambda c: mean([delay for e in c.successes for delay in e.delays])),
+    Column("duration_mean", lambda c: mean([e.record.outcome.time for e in c.successes])),
+    Column("collision_cav_cav", lambda c: c.collisions["CAV-CAV"]),
+    Column("collision_cav_hdv", lambda c: c.collisions["CAV-HDV"]),
+    Column("collision_cav_block", lambda c: c.collisions["CAV-block"]),
+    Column("bystander_collisions", lambda c: sum(len(e.record.outcome.bystander_collisions) for e in c.completed)),
+    Column("decisions", lambda c: sum(record.decisions for record in c.records)),
+)
+
+MEMORY: Column[CellResults] = Column(
+    "memory",
+    lambda c: c.first.memory or None,
+    "memory",
+    lambda value: "off" if value is None else str(value),
+    words=True,
+    sparse=True,
+)
+
+FALLBACKS: Column[CellResults] = Column(FALLBACK_RATE, lambda c: c.fallback_rate, "fallbacks", percent)
+
+BY_KEY = {column.key: column for column in (*LABELS, *MEASURED, *FURTHER, MEMORY, FALLBACKS)}
+
+_ON_SCREEN: tuple[Column[CellResults], ...] = (
+    Column("calls", lambda c: _if_asked(c, _thousands(c.counters.get("model_calls"))), "calls", csv=False),
+    Column("tokens", lambda c: _if_asked(c, _tokens(c.counters)), "tokens prompt + completion", csv=False),
+    Column("cost", lambda c: _if_asked(c, _money(c.counters.get(COST))), "cost [USD]", csv=False),
+    Column("fallbacks_text", lambda c: _if_asked(c, percent(c.fallback_rate) or "-"), "fallbacks", csv=False),
+    Column("step", lambda c: _if_asked(c, two_digits(c.seconds) or "-"), "step [s]", csv=False, page=False),
+)
+"""What a language model was asked, as people read it; nothing where none reasons."""
 
 
-def summary_row(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | None = None) -> Row:
-    """Sum up one cell.
+def summary_columns(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> list[Column[Any]]:
+    """Give the columns of the summary: fixed ones, swept keys, and the counters of methods."""
+    records = [record for cell in cells for record in cell.records]
+    memory = [MEMORY] if any(record.memory for record in records) else []
+    model = any(cell.asked for cell in cells)
+    numeric = {key for key in swept if all(_is_number(cell.swept.get(key)) for cell in cells)}
+    values = [replace(column, words=column.key not in numeric) for column in swept_columns(swept)]
+    known: list[Column[Any]] = [
+        *labels(cells),
+        # The CSV has them after the columns that users rely on.
+        *(replace(column, csv=False) for column in values),
+        *MEASURED,
+        *(replace(column, head="") for column in values),
+        *FURTHER,
+        *memory,
+    ]
+    counters = counter_columns(records, known)
+    rate = len([column for column in counters if column.key in ASKED]) if model else 0
+    rest = [*counters[:rate], *([replace(FALLBACKS, head="")] if model else []), *counters[rate:]]
+    return [*known, *rest, *(_ON_SCREEN if model else ())]
 
-    Returns:
-        Its row. Rates are over completed episodes, ``success_planned`` is over all; what nothing defines is None.
+
+def labels(cells: Sequence[CellResults], always: bool = False) -> list[Column[Any]]:
+    """Give the columns that tell rows apart; one of scenarios is shown where there are several, or always."""
+    many = always or len({cell.first.scenario for cell in cells}) > 1
+    return [replace(LABELS[0], head="scenario" if many else ""), *LABELS[1:], NAME]
+
+
+def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Table:
+    """Make the summary."""
+    return table(summary_columns(cells, swept), cells)
+
+
+def print_summary(
+    cells: Sequence[CellResults],
+    paper: Paper,
+    metrics: str = "standard",
+    swept: Sequence[str] = (),
+    notes: Iterable[str] = (),
+    screen: bool = False,
+) -> PrintedTable:
+    """Prepare the summary for people: rounded, in percent, the paper's row beside ours.
+
+    Args:
+        screen: Whether it is for the screen, which shows times, too.
     """
-    first = records[0]
-    planned = len(records)
-    completed = [record for record in records if record.outcome.ending is not Ending.ERROR]
-    endings = Counter(record.outcome.ending for record in records)
-    successes = [record for record in completed if record.score is not None and record.score.success]
-    low, high = _interval(len(successes), len(completed))
-    planned_low, planned_high = _interval(len(successes), planned)
-    pairs = Counter(record.outcome.collision.pair for record in completed if record.outcome.collision is not None)
-    counters = counted(records)
+    made = summary_table(cells, swept)
+    claims = [paper.statement(cell.first.scenario, cell.first.variant) for cell in cells]
+    # Where nothing has been removed there is nothing to compare the claim with.
+    ablation = any(claim and cell.first.variant not in WHOLE for cell, claim in zip(cells, claims, strict=True))
+    claimed: list[Column[Any]] = [Column("claim", lambda _: None, CLAIM, words=True)] if ablation else []
+    theirs = _beside(cells, paper)
+    groups: list[tuple[object, list[Row], list[Row]]] = [
+        (row["scenario"], [{**row, "claim": claim}], [paper_row(theirs[index])] if index in theirs else [])
+        for index, (row, claim) in enumerate(zip(made.rows, claims, strict=True))
+    ]
+    scenarios, reasoners = ([row[key] for row in made.rows] for key in ("scenario", "reasoner"))
+    said = (NOTE, *stand_in_notes(row["method"] for row in made.rows), *_model_notes(cells, screen), *notes)
+    return printed(title("", scenarios, reasoners, metrics), (*made.columns, *claimed), groups, said, screen)
+
+
+def paper_row(paper: PaperRow) -> Row:
+    """Give the paper's numbers as a row to stand below ours."""
+    numbers = paper.numbers
     return {
-        **counters,
-        **({FALLBACK_RATE: fallback_rate(counters)} if any(map(reasoned, records)) else {}),
-        "scenario": first.scenario,
-        "method": first.method,
-        "variant": first.variant,
-        "reasoner": first.reasoner,
-        "episodes": planned,
-        "completed": len(completed),
-        "success_rate": share(len(successes), len(completed)),
-        "success_low": low,
-        "success_high": high,
-        "collision_rate": share(endings[Ending.COLLISION], len(completed)),
-        "timeout_rate": share(endings[Ending.TIMEOUT], len(completed)),
-        "error_rate": share(endings[Ending.ERROR], planned),
-        "off_road_rate": share(endings[Ending.OFF_ROAD], len(completed)),
-        "success_planned": share(len(successes), planned),
-        "success_planned_low": planned_low,
-        "success_planned_high": planned_high,
-        "collision_cav_cav": pairs["CAV-CAV"],
-        "collision_cav_hdv": pairs["CAV-HDV"],
-        "collision_cav_block": pairs["CAV-block"],
-        "bystander_collisions": sum(len(record.outcome.bystander_collisions) for record in completed),
-        "decisions": sum(record.decisions for record in records),
-        **({MEMORY: first.memory} if first.memory else {}),
-        **_quality(successes),
-        **(swept or {}),
+        "scenario": paper.scenario,
+        "name": f"paper: {paper.label}",
+        "count": paper.episodes_text,
+        "success_rate": numbers.get("success_rate"),
+        "memory": "",
+        **{
+            what: three(*(numbers.get(f"{what}_{which}") for which in ("mean", "max", "min")))
+            for what in ("pet", "velocity")
+        },
     }
 
 
-def _quality(successes: Sequence[EpisodeRecord]) -> dict[str, Value]:
-    """PET, velocity and times of the successful episodes, every pair and every vehicle counting once."""
-    scores = [record.score for record in successes if record.score is not None]
-    pets = [pet.value for score in scores for pet in score.pets]
-    travels = [travel for score in scores for travel in score.travels]
-    velocities = [travel.velocity for travel in travels]
-    return {
-        "pet_mean": mean(pets),
-        "pet_max": max(pets, default=None),
-        "pet_min": min(pets, default=None),
-        "pet_median": median(pets),
-        "pet_below_1_5": share(sum(pet < SEVERE_PET for pet in pets), len(pets)),
-        "pet_count": len(pets),
-        "velocity_mean": mean(velocities),
-        "velocity_max": max(velocities, default=None),
-        "velocity_min": min(velocities, default=None),
-        "travel_time_mean": mean([travel.time for travel in travels]),
-        "delay_mean": mean([travel.delay for travel in travels if travel.delay is not None]),
-        "duration_mean": mean([record.outcome.time for record in successes]),
-    }
+def _beside(cells: Sequence[CellResults], paper: Paper) -> dict[int, PaperRow]:
+    """Find the paper's rows, each below the last of ours that it belongs to, so that a sweep quotes it once."""
+    last: dict[tuple[str, str], tuple[int, PaperRow]] = {}
+    for index, cell in enumerate(cells):
+        found = paper.row(cell.first.scenario, cell.first.method, cell.first.variant)
+        if found is not None:
+            last[found.scenario, found.method] = index, found
+    return dict(last.values())
 
 
-def _interval(successes: int, n: int) -> tuple[float | None, float | None]:
-    """The Wilson 95 % interval; of no episodes there is none."""
-    return wilson_interval(successes, n) if n else (None, None)
+def _model_notes(cells: Sequence[CellResults], screen: bool) -> list[str]:
+    """Sum up what the models of all rows were asked."""
+    found = [cell.counters for cell in cells if cell.asked]
+    if not found:
+        return []
+    total = {name: sum(int(counters[name] or 0) for counters in found) for name in ASKED if name != COST}
+    priced = [float(counters[COST] or 0.0) for counters in found if counters[COST] is not None]
+    price = f"{_money(math.fsum(priced))} USD" if priced else "cost not known"
+    if priced and len(priced) < len(found):
+        price += " and what is not known"
+    return [
+        f"In all: {total['model_calls']:,} calls, {total['prompt_tokens']:,} + {total['completion_tokens']:,} tokens, "
+        f"{price}; {total['re_asks']:,} asked again, {total['fallbacks']:,} fallbacks, {total['repaired_orders']:,} "
+        "repaired orders.",
+        f"{FALLBACK_NOTE} Failed episodes count in all sums.",
+        *([STEP_NOTE] if screen else []),
+    ]
+
+
+def _count(completed: int, episodes: int) -> str:
+    """How many episodes there are, and how many of them were driven to an end where some were not."""
+    return str(episodes) if completed == episodes else f"{completed}/{episodes}"
+
+
+def _three(values: Sequence[float]) -> str:
+    return three(mean(values), max(values, default=None), min(values, default=None))
+
+
+def _if_asked(cell: CellResults, text: str) -> str:
+    return text if cell.asked else ""
+
+
+def _tokens(counters: dict[str, Value]) -> str:
+    return f"{_thousands(counters.get('prompt_tokens'))} + {_thousands(counters.get('completion_tokens'))}"
+
+
+def _thousands(value: Value) -> str:
+    return f"{value:,}" if isinstance(value, int | float) else "-"
+
+
+def _money(value: Value) -> str:
+    return f"{value:.4f}" if isinstance(value, int | float) else "-"
+
+
+def _is_number(value: object) -> bool:
+    try:
+        float(str(value))
+    except ValueError:
+        return False
+    return True

@@ -1,6 +1,11 @@
-"""Numbers of a row as people read them; what is not defined is empty or a dash."""
+"""Numbers, reasoners and methods as people read them; what is not defined is empty or a dash."""
 
-from codriving.reports.rows import Row, Value
+from collections.abc import Iterable, Sequence
+
+from codriving.reports.columns import Value
+
+STANDS_IN = {"dilu-rule": "dilu"}
+"""What a method calls itself if built-in rules stand in for its language model, and what it would be with one."""
 
 
 def percent(value: Value) -> str:
@@ -13,6 +18,11 @@ def fixed(value: Value, digits: int = 1) -> str:
     return f"{value + 0.0:.{digits}f}" if isinstance(value, int | float) else ""
 
 
+def two_digits(value: Value) -> str:
+    """Write a number with two decimals."""
+    return fixed(value, 2)
+
+
 def signed(value: Value, digits: int = 2) -> str:
     """Write a difference with its sign; one that is rounded to zero has none."""
     if not isinstance(value, int | float):
@@ -21,31 +31,42 @@ def signed(value: Value, digits: int = 2) -> str:
     return f"{rounded:+.{digits}f}" if rounded else f"{0.0:.{digits}f}"
 
 
-def three(numbers: Row, what: str) -> str:
-    """Write mean, maximum and minimum; a dash where one is not defined.
-
-    Args:
-        what: Beginning of its columns, for instance ``pet``.
-    """
-    return " / ".join(fixed(numbers.get(f"{what}_{which}")) or "-" for which in ("mean", "max", "min"))
+def three(*numbers: Value) -> str:
+    """Write mean, maximum and minimum; a dash where one is not defined."""
+    return " / ".join(fixed(number) or "-" for number in numbers)
 
 
-def interval_text(row: Row) -> str:
-    """Write the interval of a success rate."""
-    low, high = percent(row["success_low"]), percent(row["success_high"])
+def interval_text(limits: Sequence[Value]) -> str:
+    """Write the interval of a rate."""
+    low, high = map(percent, limits)
     return f"{low} to {high}" if low else ""
 
 
-def episodes_text(row: Row) -> str:
-    """Write how many episodes there are, and how many of them were driven to an end where some were not."""
-    return str(row["episodes"]) if row["completed"] == row["episodes"] else f"{row['completed']}/{row['episodes']}"
+def milliseconds(seconds: float | None) -> str:
+    """Write a time; a dash where it is lost."""
+    return "-" if seconds is None else fixed(seconds * 1000)
 
 
-def reasoner_text(reasoner: str) -> str:
-    """Name who reasons, so that nobody takes rules for a model."""
-    return f"{reasoner} (llm=offline)" if reasoner == "rules" else reasoner
+def reasoner_text(reasoner: Value) -> str:
+    """Name what reasons, so that rules are not taken for a model."""
+    return f"{reasoner} (llm=offline)" if reasoner == "rules" else str(reasoner)
+
+
+def title(what: str, scenarios: Iterable[Value], reasoners: Iterable[Value], metrics: str) -> str:
+    """Say what a table or figure shows, and by which definitions where they are not ours."""
+    names = [what, ", ".join(dict.fromkeys(map(str, scenarios)))]
+    reasoner = ", ".join(dict.fromkeys(map(reasoner_text, reasoners)))
+    return " - ".join(filter(None, names)) + f" - reasoner: {reasoner}{metrics_text(metrics)}"
 
 
 def metrics_text(metrics: str) -> str:
     """Name the definitions by which was measured, where they are not ours."""
     return "" if metrics == "standard" else f" - metrics: {metrics}"
+
+
+def stand_in_notes(methods: Iterable[Value]) -> list[str]:
+    """Say of every method whose language model rules stand in for that it is not that method."""
+    names = dict.fromkeys(name for name in map(str, methods) if name in STANDS_IN)
+    return [
+        f"{n}: built-in rules in the place of {STANDS_IN[n]}'s language model; it is not that method." for n in names
+    ]

@@ -10,22 +10,16 @@ from codriving.config.locate import experiments_dir
 from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.datatypes.record import EpisodeRecord, Participant
 from codriving.datatypes.score import Pet, Score, TravelScore
-from codriving.reports.comparison import Entry, comparison_columns, comparison_rows
-from codriving.reports.comparison_display import measured_display
-from codriving.reports.console import print_table
-from codriving.reports.display import Display
-from codriving.reports.learning import LearningCell, learning_columns, learning_rows
-from codriving.reports.learning_display import learning_display
-from codriving.reports.load import load_columns, load_rows
-from codriving.reports.load_display import load_display
-from codriving.reports.markdown import markdown_text
-from codriving.reports.memory_display import Built, built_display
-from codriving.reports.pairs_display import paired_display
-from codriving.reports.paper import read_paper
-from codriving.reports.paper_learning import read_learning
-from codriving.reports.rows import csv_text
+from codriving.reports.built_memory import BuiltMemory, print_built
+from codriving.reports.columns import table
+from codriving.reports.comparison import comparison_rows, comparison_table, print_comparison, print_pairs
+from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
+from codriving.reports.load import load_rows, load_table, print_loads
+from codriving.reports.paper import read_learning, read_paper
+from codriving.reports.printed import PrintedTable, markdown_text, print_table
+from codriving.reports.results import CellResults
 from codriving.reports.run_tables import run_tables
-from codriving.reports.timing_table import timing_columns, timing_rows
+from codriving.reports.timing import TimedEpisode, timing_columns
 from codriving.runs.timing import timing_of
 
 ASKED = {"model_calls": 1200, "prompt_tokens": 400_000, "completion_tokens": 20_000, "cost_usd": 0.1, "re_asks": 190,
@@ -93,15 +87,15 @@ MODEL = [
     for seed in range(3)
 ]
 PRICED = episodes({1: Ending.ERROR}, 3, reasoner="gpt-4o-mini", counts=ASKED, method="tell", variant="")
-DILU = episodes({seed: Ending.COLLISION for seed in range(8)}, method="dilu-rule", variant="")
+DILU = episodes(dict.fromkeys(range(8), Ending.COLLISION), method="dilu-rule", variant="")
 MERGE = episodes({7: Ending.TIMEOUT}, scenario="merge", memory="frozen abc, 2 interactions", counts={"recalled": 5})
 
 
-def printed(*tables: Display | None) -> str:
+def printed(*tables: PrintedTable | None) -> str:
     """What a pipe gets."""
     stream = io.StringIO()
-    for table in filter(None, tables):
-        print_table(table, stream)
+    for shown in filter(None, tables):
+        print_table(shown, stream)
     return stream.getvalue()
 
 
@@ -109,40 +103,38 @@ def tables() -> dict[str, str]:
     """All tables by the names of their files."""
     found: dict[str, str] = {}
     paper = read_paper(experiments_dir())
-    runs: dict[str, tuple[list[list[EpisodeRecord]], dict[str, Any]]] = {
-        "run": ([FULL], {}),
-        "ablation": ([FULL, DEGRADED, MERGE, [replace(r, variant="no_negotiation") for r in MERGE]], {}),
+    full, degraded, fcfs, merge, dilu = map(CellResults, (FULL, DEGRADED, FCFS, MERGE, DILU))
+    without = CellResults([replace(r, variant="no_negotiation") for r in MERGE])
+    values = [{"scenario.cavs": c, "cda.own_order": o} for c, o in (("4", "1"), ("8", "1"), ("8", "own"))]
+    runs: dict[str, tuple[list[CellResults], dict[str, Any]]] = {
+        "run": ([full], {}),
+        "ablation": ([full, degraded, merge, without], {}),
         "sweep": (
-            [FULL, DEGRADED, FCFS],
-            {
-                "metrics": "authors",
-                "swept": [{"scenario.cavs": c, "cda.own_order": o} for c, o in (("4", "1"), ("8", "1"), ("8", "own"))],
-                "notes": ["A note."],
-            },
+            [replace(cell, swept=swept) for cell, swept in zip((full, degraded, fcfs), values, strict=True)],
+            {"metrics": "authors", "notes": ["A note."]},
         ),
-        "model": ([MODEL, PRICED, FULL, DILU], {"seconds": [1.234, None, None, 0.5]}),
+        "model": ([CellResults(MODEL, seconds=1.234), CellResults(PRICED), full, dilu], {}),
     }
     for name, (cells, more) in runs.items():
         made = run_tables(cells, paper, **more)
         found[f"{name}-episodes.csv"], found[f"{name}-summary.csv"] = made.episodes.csv(), made.summary.csv()
-        found[f"{name}-summary.md"], found[f"{name}-printed.txt"] = markdown_text(made.display), printed(made.printed)
+        found[f"{name}-summary.md"], found[f"{name}-printed.txt"] = markdown_text(made.page), printed(made.printed)
     found |= _comparisons()
     loads = [
-        (cavs, Entry([replace(r, scenario=s) for r in cell[: cavs + 3]], {"environment.x": x}, cavs / 1000))
+        (cavs, CellResults([replace(r, scenario=s) for r in cell[: cavs + 3]], {"environment.x": x}, cpu=cavs / 1000))
         for s, x in (("intersection", "1"), ("intersection", "2"), ("merge", "1"))
         for cavs in (4, 8)
         for cell in (FCFS, FULL, MODEL, *([DILU] if s == "merge" else []))
     ]
     rows = load_rows(loads, ("fcfs", "mcts", "dilu", "codriving"))
-    table = load_display(rows, (4, 8), "standard", ["environment.x"])
-    screen = load_display(rows, (4, 8), "standard", ["environment.x"], cpu=True)
-    columns = load_columns((4, 8), ["environment.x"], any(row.model for row in rows))
-    found["load.csv"] = csv_text(columns, [row.row() for row in rows])
-    found["load.md"], found["load-printed.txt"] = markdown_text(table), printed(screen)
+    swept = ["environment.x"]
+    found["load.csv"] = load_table(rows, (4, 8), swept).csv()
+    found["load.md"] = markdown_text(print_loads(rows, (4, 8), "standard", swept))
+    found["load-printed.txt"] = printed(print_loads(rows, (4, 8), "standard", swept, screen=True))
     found |= _learning()
     timings = [timing_of(2.0, [0.25, 0.75], [0.125, 0.375]), None, timing_of(1.0, [], [])]
-    timed = timing_rows(zip(FULL, timings, strict=False), {"scenario.cavs": "8"})
-    found["timing.csv"] = csv_text(timing_columns(["scenario.cavs"]), timed)
+    timed = [TimedEpisode(r, timing, {"scenario.cavs": "8"}) for r, timing in zip(FULL, timings, strict=False)]
+    found["timing.csv"] = table(timing_columns(["scenario.cavs"]), timed).csv()
     kept = [SimpleNamespace(count=count) for count in (2, 1, 1)]
     reading = SimpleNamespace(
         recollection=SimpleNamespace(kept=kept, digest="0123456789abcdef"),
@@ -150,22 +142,24 @@ def tables() -> dict[str, str]:
         interactions=(1, 2),
         path=Path("outputs/memory/a.sqlite"),
     )
-    built = [Built("merge", "codriving full", "rules", {"cda.x": x}, cast(Any, reading)) for x in ("1", "2")]
-    found["memory.md"] = markdown_text(built_display(built))
+    built = [BuiltMemory("merge", "codriving full", "rules", {"cda.x": x}, cast(Any, reading)) for x in ("1", "2")]
+    found["memory.md"] = markdown_text(print_built(built))
     return found
 
 
 def _comparisons() -> dict[str, str]:
     paper = read_paper(experiments_dir())
     found = {}
+    full = CellResults(FULL, cpu=0.0205)
     blocks = {
-        "comparison": [[Entry(FCFS, cpu=0.0042), Entry(FULL, cpu=0.0205), Entry(DILU)]],
+        "comparison": [[CellResults(FCFS, cpu=0.0042), full, CellResults(DILU)]],
         "comparison-model": [
-            [Entry(MODEL, {"scenario.cavs": c}), Entry(PRICED, {"scenario.cavs": c}, 0.1)] for c in ("4", "8")
+            [CellResults(MODEL, {"scenario.cavs": c}), CellResults(PRICED, {"scenario.cavs": c}, cpu=0.1)]
+            for c in ("4", "8")
         ],
         "comparison-scenarios": [
-            [Entry(MERGE)],
-            [Entry(FULL), Entry(DEGRADED), Entry([replace(r, method="a") for r in FULL])],
+            [CellResults(MERGE)],
+            [CellResults(FULL), CellResults(DEGRADED), CellResults([replace(r, method="a") for r in FULL])],
         ],
     }
     for name, entries in blocks.items():
@@ -173,10 +167,9 @@ def _comparisons() -> dict[str, str]:
         rows = [
             row for block in entries for row in comparison_rows(block, ("fcfs", "madqn", "dilu", "codriving"), paper)
         ]
-        model = any("fallback_rate" in row.row for row in rows)
-        found[f"{name}.csv"] = csv_text(comparison_columns(swept, model), [row.row for row in rows])
-        kept, screen = (measured_display(rows, paper, "standard", swept, cpu) for cpu in (False, True))
-        against = paired_display(rows, "standard", swept)
+        found[f"{name}.csv"] = comparison_table(rows, swept).csv()
+        kept, screen = (print_comparison(rows, "standard", swept, screen) for screen in (False, True))
+        against = print_pairs(rows, "standard", swept)
         found[f"{name}.md"] = markdown_text(kept) + (markdown_text(against, level=2) if against else "")
         found[f"{name}-printed.txt"] = printed(screen, against)
     return found
@@ -184,24 +177,16 @@ def _comparisons() -> dict[str, str]:
 
 def _learning() -> dict[str, str]:
     paper = read_learning(experiments_dir())
-    cells = [
-        LearningCell(
-            [replace(r, scenario=scenario, memory=f"frozen {n}", counts={"recalled": n}) for r in records],
-            n,
-            setting,
-            {"cda.x": "1"},
-            5,
-        )
-        for setting, (scenario, few, many) in enumerate((("merge", DILU, FULL), ("highway", FULL, FULL)))
-        for n, records in ((0, few), (10, many))
-    ]
-    cells = [
-        replace(cell, records=[replace(r, method="codriving", variant="full") for r in cell.records]) for cell in cells
-    ]
+    cells = []
+    for setting, (scenario, few, many) in enumerate((("merge", DILU, FULL), ("highway", FULL, FULL))):
+        for n, records in ((0, few), (10, many)):
+            labels = {"scenario": scenario, "method": "codriving", "variant": "full", "memory": f"frozen {n}"}
+            told = [replace(r, counts={"recalled": n}, **labels) for r in records]
+            cells.append(LearningRow(CellResults(told, {"cda.x": "1"}), n, setting, 5))
     rows = learning_rows(cells, paper)
-    table = learning_display(rows, "standard", ["cda.x"])
+    table = print_learning(rows, "standard", ["cda.x"])
     return {
-        "learn.csv": csv_text(learning_columns(["cda.x"]), rows),
+        "learn.csv": learning_table(rows, ["cda.x"]).csv(),
         "learn.md": markdown_text(table),
         "learn-printed.txt": printed(table),
     }

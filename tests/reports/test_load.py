@@ -6,11 +6,10 @@ import pytest
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
-from codriving.reports.comparison import Entry
-from codriving.reports.load import Loaded, load_columns, load_rows
-from codriving.reports.load_display import load_display
-from codriving.reports.load_figure import STYLES, load_figure
-from codriving.reports.rows import csv_text
+from codriving.reports.figures import METHODS, load_figure
+from codriving.reports.load import LoadRow, load_rows, load_table, print_loads
+from codriving.reports.results import CellResults
+from tests.reports.making import column_of
 
 Make = Callable[..., EpisodeRecord]
 
@@ -18,12 +17,12 @@ LOADS = (4, 8)
 
 
 @pytest.fixture
-def rows(make: Make) -> list[Loaded]:
+def rows(make: Make) -> list[LoadRow]:
     """Two methods at two scenarios; with more CAVs both are slower, and fcfs fails once."""
     cells = [
         (
             cavs,
-            Entry(
+            CellResults(
                 [
                     make(
                         seed,
@@ -46,42 +45,48 @@ def rows(make: Make) -> list[Loaded]:
     return load_rows(cells, ("fcfs", "mcts", "codriving"))
 
 
-def test_a_row_is_a_method_at_a_scenario_missing_ones_included(rows: list[Loaded]) -> None:
-    names = [(row.labels["scenario"], row.labels["method"], row.labels["status"]) for row in rows]
+def test_a_row_is_a_method_at_a_scenario_missing_ones_included(rows: list[LoadRow]) -> None:
+    names = [(row.scenario, row.method, row.status) for row in rows]
     assert names == [
         (scenario, method, "not there yet" if method == "mcts" else "driven")
         for scenario in ("intersection", "roundabout")
         for method in ("fcfs", "mcts", "codriving")
     ]
-    first = rows[0].row()
+    table = load_table(rows, LOADS)
+    first = table.rows[0]
     assert (first["episodes"], first["success_rate_4"], first["success_rate_8"]) == (4, 1.0, 0.75)
     assert (first["velocity_mean_4"], first["velocity_mean_8"]) == (8.0, 7.0)
-    assert set().union(*(row.row() for row in rows)) <= set(load_columns(LOADS))
-    assert not any("cpu" in column for column in load_columns(LOADS))
-    assert (
-        csv_text(load_columns(LOADS), [rows[1].row()]).splitlines()[1].startswith("intersection,mcts,,,not there yet")
-    )
+    assert not any("cpu" in key for key in table.keys)
+    assert table.csv().splitlines()[2].startswith("intersection,mcts,,,not there yet")
 
 
-def test_the_table_has_a_column_for_each_load(rows: list[Loaded]) -> None:
-    table = load_display(rows, LOADS, "standard", cpu=True)
+def test_the_table_has_a_column_for_each_load(rows: list[LoadRow]) -> None:
+    table = print_loads(rows, LOADS, "standard", screen=True)
     assert table.title == "load - intersection, roundabout - reasoner: none, rules (llm=offline)"
-    shown = dict(zip(table.columns, table.lines[0].cells, strict=True))
+    shown = dict(zip(table.columns, table.rows[0].cells, strict=True))
     assert shown["success (95 %), 8 CAVs"] == "75 % (30.1 to 95.4)"
     assert shown["velocity [m/s], 4 CAVs"] == "8.00"
     assert shown["CPU [ms], 8 CAVs"] == "8.0"
-    assert [line.last for line in table.lines] == [False, False, True, False, False, False]
-    assert "not there yet" in table.lines[1].cells
-    assert not any("CPU" in text for text in (*load_display(rows, LOADS, "standard").columns, *table.notes[:1]))
+    assert [row.last for row in table.rows] == [False, False, True, False, False, False]
+    assert "not there yet" in table.rows[1].cells
+    assert not any("CPU" in text for text in (*print_loads(rows, LOADS, "standard").columns, *table.notes[:1]))
 
 
 def test_a_load_that_was_not_driven_is_empty(make: Make) -> None:
-    (row,) = load_rows([(4, Entry([make(0, velocities=(7.0,))]))], ())
-    table = load_display([row], (4, 12), "standard")
-    assert dict(zip(table.columns, table.lines[0].cells, strict=True))["velocity [m/s], 12 CAVs"] == ""
+    (row,) = load_rows([(4, CellResults([make(0, velocities=(7.0,))]))], ())
+    table = print_loads([row], (4, 12), "standard")
+    assert column_of(table, "velocity [m/s], 12 CAVs") == [""]
 
 
-def test_the_figure_repeats_to_the_byte_whatever_its_user_has_set(rows: list[Loaded]) -> None:
+def test_rules_in_the_place_of_a_language_model_take_the_methods_place(make: Make) -> None:
+    cells = [(4, CellResults([make(0, method=name, variant="")])) for name in ("codriving", "dilu-rule")]
+    rows = load_rows(cells, ("dilu", "codriving"))
+    assert [row.method for row in rows] == ["dilu-rule", "codriving"]
+    notes = print_loads(rows, [4], "standard").notes
+    assert "dilu-rule: built-in rules in the place of dilu's language model; it is not that method." in notes
+
+
+def test_the_figure_repeats_to_the_byte_whatever_its_user_has_set(rows: list[LoadRow]) -> None:
     import matplotlib
 
     first = load_figure(rows, LOADS, "standard")
@@ -93,22 +98,14 @@ def test_the_figure_repeats_to_the_byte_whatever_its_user_has_set(rows: list[Loa
     assert b"<svg" in first["load.svg"]
     assert b"dc:date" not in first["load.svg"]
     # One line a method and panel, and each method once in the legend.
-    assert first["load.svg"].count(STYLES["fcfs"][0].encode()) > len(LOADS)
+    assert first["load.svg"].count(METHODS["fcfs"][0].encode()) > len(LOADS)
 
 
 def test_a_figure_of_failures_and_of_one_load_can_be_drawn(make: Make) -> None:
-    failed = load_rows([(4, Entry([make(0, Ending.ERROR)]))], ())
+    failed = load_rows([(4, CellResults([make(0, Ending.ERROR)]))], ())
     assert set(load_figure(failed, (4,), "standard")) == {"load.png", "load.svg"}
 
 
 def test_every_method_looks_different_without_colour() -> None:
-    looks = {(marker, stroke) for _, marker, stroke in STYLES.values()}
-    assert len(looks) == len({colour for colour, _, _ in STYLES.values()}) == len(STYLES)
-
-
-def test_rules_in_the_place_of_a_language_model_take_the_methods_place(make: Make) -> None:
-    cells = [(4, Entry([make(0, method=name, variant="")])) for name in ("codriving", "dilu-rule")]
-    rows = load_rows(cells, ("dilu", "codriving"))
-    assert [row.labels["method"] for row in rows] == ["dilu-rule", "codriving"]
-    notes = load_display(rows, [4], "standard").notes
-    assert "dilu-rule: built-in rules in the place of dilu's language model; it is not that method." in notes
+    looks = {(marker, stroke) for _, marker, stroke in METHODS.values()}
+    assert len(looks) == len({colour for colour, _, _ in METHODS.values()}) == len(METHODS)

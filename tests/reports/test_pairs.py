@@ -2,23 +2,25 @@
 
 from collections.abc import Callable
 
-import pytest
-
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
-from codriving.reports.pairs import PAIRED, better_in, paired, worse_in
-from codriving.reports.rows import Row
+from codriving.reports.columns import Row, table
+from codriving.reports.pairs import PAIRED, Difference, PairedCells
+from codriving.reports.results import CellResults
 
 Make = Callable[..., EpisodeRecord]
 
 LOST = Ending.COLLISION
 
 
+def paired(records: list[EpisodeRecord], reference: list[EpisodeRecord]) -> Row:
+    return table(PAIRED, [PairedCells(CellResults(records), CellResults(reference))]).rows[0]
+
+
 def test_success_is_counted_seed_by_seed(make: Make) -> None:
     theirs = [make(0), make(1), make(2, LOST), make(3, LOST), make(9)]
     ours = [make(0), make(1, LOST), make(2), make(3, Ending.TIMEOUT), make(8)]
     row = paired(theirs, ours)
-    assert tuple(row) == PAIRED
     assert (row["pairs"], row["only_method_succeeds"], row["only_codriving_succeeds"]) == (4, 1, 1)
     assert (row["success_difference"], row["mcnemar_p"]) == (0.0, 1.0)
 
@@ -55,28 +57,24 @@ def test_the_interval_is_of_the_pairs_and_not_of_the_methods(make: Make) -> None
     assert isinstance(low, float)
     assert isinstance(high, float)
     assert 0.1 <= low < high <= 0.12
-    assert better_in(row) == ("velocity",)
-    assert worse_in(paired(ours, theirs)) == ("velocity",)
+    assert (row["better_in"], row["worse_in"]) == ("velocity", "")
+    assert paired(ours, theirs)["worse_in"] == "velocity"
 
 
-def limits(**given: float) -> Row:
-    return {"mcnemar_p": 1.0, "success_difference": 0.0, **given}
+def shown(p: float = 1.0, success: float = 0.0, **limits: tuple[float, float]) -> tuple[tuple[str, ...], ...]:
+    """In what a method is better and worse."""
+    pairs = PairedCells(CellResults([]), CellResults([]))
+    cached = {what: Difference(20, 0.0, *limits.get(what, (None, None))) for what in ("pet", "velocity")}
+    pairs.__dict__.update(cached, p=p, gained=round(100 * success), lost=0, driven=[None] * 100)
+    return pairs.better, pairs.worse
 
 
-@pytest.mark.parametrize(
-    ("row", "better", "worse"),
-    [
-        (limits(), (), ()),
-        (limits(mcnemar_p=0.049, success_difference=0.1), ("success",), ()),
-        (limits(mcnemar_p=0.05, success_difference=0.1), (), ()),
-        (limits(mcnemar_p=0.01, success_difference=-0.1), (), ("success",)),
-        (limits(velocity_difference_low=0.1, velocity_difference_high=0.2), ("velocity",), ()),
-        (limits(velocity_difference_low=-0.1, velocity_difference_high=0.2), (), ()),
-        (limits(pet_difference_low=-0.2, pet_difference_high=-0.1), (), ("PET",)),
-        (limits(pet_difference_low=0.0, pet_difference_high=0.0), (), ()),
-    ],
-)
-def test_better_and_worse_need_a_p_below_005_or_an_interval_without_0(
-    row: Row, better: tuple[str, ...], worse: tuple[str, ...]
-) -> None:
-    assert (better_in(row), worse_in(row)) == (better, worse)
+def test_better_and_worse_need_a_p_below_005_or_an_interval_without_0() -> None:
+    assert shown() == ((), ())
+    assert shown(p=0.049, success=0.1) == (("success",), ())
+    assert shown(p=0.05, success=0.1) == ((), ())
+    assert shown(p=0.01, success=-0.1) == ((), ("success",))
+    assert shown(velocity=(0.1, 0.2)) == (("velocity",), ())
+    assert shown(velocity=(-0.1, 0.2)) == ((), ())
+    assert shown(pet=(-0.2, -0.1)) == ((), ("PET",))
+    assert shown(pet=(0.0, 0.0)) == ((), ())

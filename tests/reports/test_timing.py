@@ -5,14 +5,16 @@ from collections.abc import Callable
 import pytest
 
 from codriving.datatypes.record import EpisodeRecord
-from codriving.reports.timing_table import cpu_per_decision, timing_columns, timing_rows
+from codriving.reports.columns import table
+from codriving.reports.timing import TimedEpisode, cpu_per_decision, timing_columns
 from codriving.runs.timing import timing_of
 
 
 def test_a_row_says_what_it_is_of_and_what_it_cost(make: Callable[..., EpisodeRecord]) -> None:
     timed = [(make(3), timing_of(2.0, [0.25, 0.75], [0.125, 0.375])), (make(4), None)]
-    known, lost = timing_rows(timed, {"scenario.cavs": "8"})
-    columns = timing_columns(["scenario.cavs"])
+    episodes = [TimedEpisode(record, timing, {"scenario.cavs": "8"}) for record, timing in timed]
+    made = table(timing_columns(["scenario.cavs"]), episodes)
+    (known, lost), columns = made.rows, made.keys
     assert columns[:7] == ("scenario", "method", "variant", "reasoner", "seed", "scenario.cavs", "seconds")
     assert [known[column] for column in columns[4:]] == [3, "8", 2.0, 12, 0.5, 0.75, 0.25, 0.375]
     assert (lost["scenario.cavs"], lost["seconds"], lost["decision_seconds_max"]) == ("8", None, None)

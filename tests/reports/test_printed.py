@@ -9,11 +9,11 @@ import pytest
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
-from codriving.reports.console import print_table
-from codriving.reports.display import CLAIM, Display, display
-from codriving.reports.markdown import markdown_text
 from codriving.reports.paper import ABLATION, COMPARISON, Paper, read_paper
-from codriving.reports.summary import summary_row
+from codriving.reports.printed import markdown_text, print_table
+from codriving.reports.results import CellResults
+from codriving.reports.summary import print_summary
+from tests.reports.making import print_cells, printed_text
 
 COMPARED = "scenario,method,label,success_rate,pet_mean,pet_max,pet_min,velocity_mean,velocity_max,velocity_min\n"
 
@@ -29,17 +29,11 @@ def paper(tmp_path: Path) -> Paper:
     return read_paper(tmp_path)
 
 
-def printed(table: Display) -> str:
-    stream = io.StringIO()
-    print_table(table, stream)
-    return stream.getvalue()
-
-
 def test_a_pipe_gets_plain_text_with_the_papers_row_beside_ours(
     make: Callable[..., EpisodeRecord], paper: Paper
 ) -> None:
-    rows = [summary_row([make(seed, pets=(2.0, 4.0), velocities=(7.0,)) for seed in range(20)])]
-    text = printed(display(rows, paper))
+    rows = [CellResults([make(seed, pets=(2.0, 4.0), velocities=(7.0,)) for seed in range(20)])]
+    text = printed_text(print_summary(rows, paper))
     assert text.isascii()
     assert "\x1b" not in text
     title, head, ours, theirs, note = (" ".join(line.split()) for line in text.splitlines())
@@ -54,28 +48,28 @@ def test_a_pipe_gets_plain_text_with_the_papers_row_beside_ours(
 
 
 def test_the_title_names_definitions_that_are_not_ours(make: Callable[..., EpisodeRecord], paper: Paper) -> None:
-    rows = [summary_row([make(0)])]
-    assert display(rows, paper, "authors").title.endswith("metrics: authors")
-    assert "metrics" not in display(rows, paper, "standard").title
+    rows = [CellResults([make(0)])]
+    assert print_summary(rows, paper, "authors").title.endswith("metrics: authors")
+    assert "metrics" not in print_summary(rows, paper, "standard").title
 
 
 def test_the_ablation_has_the_papers_words_beside_each_reading(
     make: Callable[..., EpisodeRecord], paper: Paper
 ) -> None:
-    rows = [summary_row([make(0, variant=v)]) for v in ("full", "no_negotiation/own_view", "no_safety_check")]
-    table = display(rows, paper)
+    rows = [CellResults([make(0, variant=v)]) for v in ("full", "no_negotiation/own_view", "no_safety_check")]
+    table = print_summary(rows, paper)
     assert table.columns[-1] == "the paper says"
-    assert [line.cells[-1] for line in table.lines if line.ours] == ["90 %", "below 15 %", ""]
-    assert sum(not line.ours for line in table.lines) == 1
+    assert [line.cells[-1] for line in table.rows if line.ours] == ["90 %", "below 15 %", ""]
+    assert sum(not line.ours for line in table.rows) == 1
 
 
 def test_each_scenario_has_its_own_statements_and_its_rows_end_with_a_line(
     make: Callable[..., EpisodeRecord], paper: Paper
 ) -> None:
     variants = ("full", "no_state_sharing", "no_negotiation/same_rule")
-    rows = [summary_row([make(0, variant=v, scenario=s)]) for s in ("intersection", "merge") for v in variants]
-    table = display(rows, paper)
-    said = [(line.cells[0], line.cells[-1]) for line in table.lines if line.ours]
+    rows = [CellResults([make(0, variant=v, scenario=s)]) for s in ("intersection", "merge") for v in variants]
+    table = print_summary(rows, paper)
+    said = [(line.cells[0], line.cells[-1]) for line in table.rows if line.ours]
     assert said == [
         ("intersection", "90 %"),
         ("intersection", ""),
@@ -84,32 +78,32 @@ def test_each_scenario_has_its_own_statements_and_its_rows_end_with_a_line(
         ("merge", "close to the full method"),
         ("merge", ""),
     ]
-    assert [line.last for line in table.lines] == [False, False, False, True, False, False, False]
+    assert [line.last for line in table.rows] == [False, False, False, True, False, False, False]
 
 
 def test_the_paper_says_nothing_of_a_sweep_in_which_nothing_is_removed(
     make: Callable[..., EpisodeRecord], paper: Paper
 ) -> None:
-    whole = [summary_row([make(0, variant=v, scenario=s)]) for s in ("intersection", "merge") for v in ("full", "")]
-    assert CLAIM not in display(whole, paper).columns
-    binding = [summary_row([make(0, variant=v)]) for v in ("full/binding", "no_negotiation")]
-    assert [line.cells[-1] for line in display(binding, paper).lines] == ["", "below 15 %"]
+    whole = [CellResults([make(0, variant=v, scenario=s)]) for s in ("intersection", "merge") for v in ("full", "")]
+    assert "the paper says" not in print_summary(whole, paper).columns
+    binding = [CellResults([make(0, variant=v)]) for v in ("full/binding", "no_negotiation")]
+    assert [line.cells[-1] for line in print_summary(binding, paper).rows] == ["", "below 15 %"]
 
 
 def test_swept_keys_stand_beside_the_method_and_the_papers_row_below_the_last_of_ours(
     make: Callable[..., EpisodeRecord], paper: Paper
 ) -> None:
     cells = [{"scenario.cavs": str(cavs), "cda.own_order": order} for cavs in (4, 8) for order in ("own_view", "[x]")]
-    rows = [summary_row([make(0)], swept) for swept in cells]
-    table = display(rows, paper, swept=("scenario.cavs", "cda.own_order"), notes=("a note",))
+    rows = [CellResults([make(0)], swept) for swept in cells]
+    table = print_summary(rows, paper, swept=("scenario.cavs", "cda.own_order"), notes=("a note",))
     assert table.columns[:4] == ("method", "scenario.cavs", "cda.own_order", "episodes")
-    assert [line.cells[1:3] for line in table.lines if line.ours] == [tuple(cell.values()) for cell in cells]
-    assert [line.ours for line in table.lines] == [True] * 4 + [False]
-    assert table.lines[-1].cells[:3] == ("paper: CoDrivingLLM", "", "")
+    assert [line.cells[1:3] for line in table.rows if line.ours] == [tuple(cell.values()) for cell in cells]
+    assert [line.ours for line in table.rows] == [True] * 4 + [False]
+    assert table.rows[-1].cells[:3] == ("paper: CoDrivingLLM", "", "")
     assert "cda.own_order" in table.words
     assert "scenario.cavs" not in table.words
     assert table.notes[-1] == "a note"
-    assert printed(table).splitlines()[-1] == "a note"
+    assert printed_text(table).splitlines()[-1] == "a note"
     lines = markdown_text(table).splitlines()
     assert lines[2].startswith("| method | scenario.cavs | cda.own_order | episodes |")
     assert lines[3].startswith("| --- | ---: | --- | ---: |")
@@ -118,8 +112,8 @@ def test_swept_keys_stand_beside_the_method_and_the_papers_row_below_the_last_of
 
 def test_a_pipe_never_wraps_a_wide_table(make: Callable[..., EpisodeRecord]) -> None:
     swept = {f"environment.drivers.key_{index}": "1.5" for index in range(8)}
-    table = display([summary_row([make(0)], swept)], Paper(), swept=tuple(swept))
-    assert len(printed(table).splitlines()) == 4
+    table = print_summary([CellResults([make(0)], swept)], Paper(), swept=tuple(swept))
+    assert len(printed_text(table).splitlines()) == 4
 
 
 @pytest.mark.parametrize("width", [60, 120, 200])
@@ -132,9 +126,9 @@ def test_on_a_terminal_no_word_is_cut_and_a_line_parts_the_scenarios(
 
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("COLUMNS", str(width))
-    rows = [summary_row([make(0, scenario=s)], {"scenario.cavs": "4"}) for s in ("intersection", "merge")]
+    rows = [CellResults([make(0, scenario=s)], {"scenario.cavs": "4"}) for s in ("intersection", "merge")]
     stream = Terminal()
-    print_table(display(rows, paper, swept=("scenario.cavs",)), stream)
+    print_table(print_summary(rows, paper, swept=("scenario.cavs",)), stream)
     lines = [" ".join(re.sub(r"\x1b\[[0-9;]*m", "", line).split()) for line in stream.getvalue().splitlines()]
     assert not any("…" in line for line in lines)
     assert any(line.startswith("intersection codriving full 4 1 100 %") for line in lines)
@@ -146,29 +140,27 @@ def test_on_a_terminal_no_word_is_cut_and_a_line_parts_the_scenarios(
 
 
 def test_scenarios_and_errors_have_columns_only_where_there_are_some(make: Callable[..., EpisodeRecord]) -> None:
-    one = display([summary_row([make(0)])], Paper())
+    one = print_summary([CellResults([make(0)])], Paper())
     assert not {"scenario", "error", "off road", "the paper says"} & set(one.columns)
-    two = display([summary_row([make(0)]), summary_row([make(0, Ending.ERROR, scenario="merge")])], Paper())
+    two = print_summary([CellResults([make(0)]), CellResults([make(0, Ending.ERROR, scenario="merge")])], Paper())
     assert two.columns[0] == "scenario"
     assert "error" in two.columns
-    assert two.lines[1].cells[2] == "0/1"
+    assert two.rows[1].cells[2] == "0/1"
     assert two.title.startswith("intersection, merge - ")
 
 
 def test_a_model_is_named_without_the_word_offline(make: Callable[..., EpisodeRecord]) -> None:
-    row = {**summary_row([make(0)]), "reasoner": "gpt-4o-mini"}
-    assert display([row], Paper()).title == "intersection - reasoner: gpt-4o-mini"
+    assert print_cells([make(0, reasoner="gpt-4o-mini")]).title == "intersection - reasoner: gpt-4o-mini"
 
 
 def test_text_is_never_taken_for_markup(make: Callable[..., EpisodeRecord]) -> None:
-    row = {**summary_row([make(0)]), "variant": "[bold]|x"}
-    table = display([row], Paper())
-    assert "codriving [bold]|x" in printed(table)
+    table = print_cells([make(0, variant="[bold]|x")])
+    assert "codriving [bold]|x" in printed_text(table)
     assert "codriving [bold]\\|x" in markdown_text(table)
 
 
 def test_markdown_has_the_same_rows(make: Callable[..., EpisodeRecord], paper: Paper) -> None:
-    lines = markdown_text(display([summary_row([make(0)])], paper)).splitlines()
+    lines = markdown_text(print_summary([CellResults([make(0)])], paper)).splitlines()
     assert lines[0] == "# intersection - reasoner: rules (llm=offline)"
     assert lines[3].startswith("| --- | ---: |")
     assert lines[4].startswith("| codriving full | 1 | 100 % |")
@@ -182,5 +174,5 @@ def test_a_missing_paper_is_no_paper(tmp_path: Path) -> None:
 
 def test_rules_in_the_place_of_a_model_are_not_that_method(make: Callable[..., EpisodeRecord], paper: Paper) -> None:
     said = "dilu-rule: built-in rules in the place of dilu's language model; it is not that method."
-    assert said in display([summary_row([make(0, method="dilu-rule")])], paper).notes
-    assert said not in display([summary_row([make(0, method="dilu")])], paper).notes
+    assert said in print_summary([CellResults([make(0, method="dilu-rule")])], paper).notes
+    assert said not in print_summary([CellResults([make(0, method="dilu")])], paper).notes

@@ -6,23 +6,22 @@ from collections.abc import Callable
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
-from codriving.reports.episodes_table import episode_columns, episode_rows
-from codriving.reports.rows import csv_text
+from tests.reports.making import episodes_of
 
 
 def rows_of(records: list[EpisodeRecord]) -> list[dict[str, str]]:
-    return list(csv.DictReader(io.StringIO(csv_text(episode_columns(records), episode_rows(records)))))
+    return list(csv.DictReader(io.StringIO(episodes_of(records).csv())))
 
 
 def test_the_columns_that_users_rely_on_come_first(make: Callable[..., EpisodeRecord]) -> None:
     expected = "scenario, method, variant, reasoner, seed, outcome, pet_mean, pet_min, velocity_mean, duration"
-    assert list(episode_columns([make(0)]))[:10] == expected.split(", ")
+    assert list(episodes_of([make(0)]).keys)[:10] == expected.split(", ")
 
 
 def test_swept_keys_follow_them(make: Callable[..., EpisodeRecord]) -> None:
-    columns = episode_columns([make(0)], ["scenario.cavs"])
-    assert columns[10:12] == ("scenario.cavs", "pet_count")
-    (row,) = episode_rows([make(0)], {"scenario.cavs": "8"})
+    table = episodes_of([make(0)], {"scenario.cavs": "8"})
+    assert table.keys[10:12] == ("scenario.cavs", "pet_count")
+    (row,) = table.rows
     assert (row["scenario.cavs"], row["cavs"]) == ("8", 1)
 
 
@@ -47,5 +46,5 @@ def test_a_counter_that_only_some_report_is_empty_for_the_others(make: Callable[
 
 def test_a_counter_never_takes_the_place_of_a_column(make: Callable[..., EpisodeRecord]) -> None:
     records = [make(0, counts={"seed": 99, "decisions": 99})]
-    assert len(set(episode_columns(records))) == len(episode_columns(records))
+    assert len(set(episodes_of(records).keys)) == len(episodes_of(records).keys)
     assert rows_of(records)[0]["seed"] == "0"

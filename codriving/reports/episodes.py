@@ -1,0 +1,64 @@
+"""``episodes.csv``: one row an episode."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import EpisodeRecord
+from codriving.reports.columns import Column, mean, swept_columns
+from codriving.reports.results import ScoredEpisode, counter_names
+
+LABELS: tuple[Column[ScoredEpisode], ...] = (
+    Column("scenario", lambda e: e.record.scenario, words=True),
+    Column("method", lambda e: e.record.method, words=True),
+    Column("variant", lambda e: e.record.variant, words=True),
+    Column("reasoner", lambda e: e.record.reasoner, words=True),
+)
+
+LEADING: tuple[Column[ScoredEpisode], ...] = (
+    *LABELS,
+    Column("seed", lambda e: e.record.seed),
+    Column("outcome", lambda e: e.record.outcome.ending.value, words=True),
+    Column("pet_mean", lambda e: mean(e.pets)),
+    Column("pet_min", lambda e: min(e.pets, default=None)),
+    Column("velocity_mean", lambda e: mean(e.velocities)),
+    # How long something lasted that broke off says nothing.
+    Column("duration", lambda e: None if e.record.outcome.ending is Ending.ERROR else e.record.outcome.time),
+)
+"""The columns that users rely on, in their fixed order."""
+
+FURTHER: tuple[Column[ScoredEpisode], ...] = (
+    Column("pet_count", lambda e: len(e.pets) if e.score else None),
+    Column("travel_time_mean", lambda e: mean(e.times)),
+    Column("delay_mean", lambda e: mean(e.delays)),
+    Column("cavs", lambda e: sum(p.kind == "CAV" for p in e.record.participants)),
+    Column("hdvs", lambda e: sum(p.kind == "HDV" for p in e.record.participants)),
+    Column("arrived", lambda e: len(e.record.outcome.arrivals)),
+    Column("decisions", lambda e: e.record.decisions),
+    Column("collision_pair", lambda e: c.pair if (c := e.record.outcome.collision) else None, words=True),
+    Column("striker", lambda e: c.striker if (c := e.record.outcome.collision) else None, words=True),
+    Column("struck", lambda e: c.struck if (c := e.record.outcome.collision) else None, words=True),
+    Column("bystander_collisions", lambda e: len(e.record.outcome.bystander_collisions)),
+    Column("off_road", lambda e: " ".join(e.record.outcome.off_road) or None, words=True),
+    Column("message", lambda e: e.record.outcome.message or None, words=True),
+)
+
+MEMORY: Column[ScoredEpisode] = Column("memory", lambda e: e.record.memory or None, words=True)
+"""What was recalled from; only where something was."""
+
+
+def episode_columns(records: Sequence[EpisodeRecord], swept: Iterable[str] = ()) -> list[Column[Any]]:
+    """Give the columns of ``episodes.csv``: fixed ones, swept keys, and the counters of methods."""
+    memory = [MEMORY] if any(record.memory for record in records) else []
+    known: list[Column[Any]] = [*LEADING, *swept_columns(swept), *FURTHER, *memory]
+    return [*known, *counter_columns(records, known)]
+
+
+def counter_columns(records: Sequence[EpisodeRecord], known: Iterable[Column[Any]]) -> list[Column[Any]]:
+    """Give the columns of counters, of what has a mapping `counters`; one never takes the place of another column."""
+
+    def column(name: str) -> Column[Any]:
+        return Column(name, lambda item: item.counters.get(name))
+
+    taken = {column.key for column in known}
+    return [column(name) for name in counter_names(records) if name not in taken]

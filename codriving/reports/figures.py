@@ -1,0 +1,212 @@
+"""``figures/*``: success against the number of CAVs or of past interactions; the same rows give the same bytes."""
+
+import io
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import pairwise
+from typing import TYPE_CHECKING, TypeAlias
+
+from codriving.reports.columns import mean
+from codriving.reports.comparison import setting_of
+from codriving.reports.learning import LearningRow
+from codriving.reports.load import LoadRow, load_title
+from codriving.reports.paper import LearningStatement
+from codriving.reports.results import CellResults
+from codriving.reports.wording import title
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_SETTINGS = {
+    "font.family": "DejaVu Sans",
+    "font.size": 10.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#d9dbdf",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    # Without it the names inside an SVG are drawn by lot.
+    "svg.hashsalt": "codriving",
+}
+
+Style: TypeAlias = tuple[str, str, str]
+"""Colour, marker and stroke, in the palette of Okabe and Ito (2008); colour is never the only cue."""
+
+METHODS: Mapping[str, Style] = {
+    "fcfs": ("#0072b2", "o", "-"),
+    "idfst": ("#e69f00", "s", "--"),
+    "mcts": ("#009e73", "^", "-."),
+    "coop_game": ("#d55e00", "D", ":"),
+    "madqn": ("#56b4e9", "v", "--"),
+    "dilu": ("#cc79a7", "P", "-."),
+    "codriving": ("#000000", "*", "-"),
+}
+
+OTHERS: Sequence[Style] = (
+    ("#7a7a7a", "X", "-"),
+    ("#7a1f5c", "<", "--"),
+    ("#5c4a00", ">", "-."),
+    ("#3b5b92", "h", ":"),
+)
+"""For methods of the user's, in turn."""
+
+LEVELS: Sequence[Style] = (
+    ("#000000", "*", "-"),
+    ("#0072b2", "o", "--"),
+    ("#d55e00", "s", "-."),
+    ("#009e73", "^", ":"),
+    ("#cc79a7", "D", "-"),
+    ("#e69f00", "v", "--"),
+)
+"""For the settings that are learnt in."""
+
+_SPREAD = 0.06
+"""Shift of one line against the next, as a share of the smallest step between loads or of 2, to part the intervals."""
+
+
+def load_figure(rows: Sequence[LoadRow], loads: Sequence[int], metrics: str) -> Mapping[str, bytes]:
+    """Draw success and velocity against the number of CAVs, a column of panels for each scenario.
+
+    Returns:
+        The content of ``load.png`` and ``load.svg``.
+    """
+    with _plain_settings():
+        return _saved(_draw_loads([row for row in rows if row.at], sorted(loads), load_title(rows, metrics)), "load")
+
+
+def learning_figure(
+    rows: Sequence[LearningRow], paper: Sequence[LearningStatement], metrics: str
+) -> Mapping[str, bytes]:
+    """Draw success against the number of past interactions, a panel a scenario (paper, learning figure).
+
+    Returns:
+        The content of ``learn.png`` and ``learn.svg``.
+    """
+    with _plain_settings():
+        return _saved(_draw_learning(rows, paper, metrics), "learn")
+
+
+@contextmanager
+def _plain_settings() -> Iterator[None]:
+    """Matplotlib as it is shipped but for the look of our figures, whatever its user has set."""
+    import matplotlib
+
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_SETTINGS)  # type: ignore[arg-type]
+        yield
+
+
+def _saved(figure: "Figure", name: str) -> Mapping[str, bytes]:
+    kinds: dict[str, dict[str, str | None]] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
+    found = {}
+    for kind, metadata in kinds.items():
+        stream = io.BytesIO()
+        figure.savefig(stream, format=kind, dpi=160, metadata=metadata)
+        found[f"{name}.{kind}"] = stream.getvalue()
+    return found
+
+
+def _draw_loads(rows: Sequence[LoadRow], loads: Sequence[int], heading: str) -> "Figure":
+    from matplotlib.figure import Figure
+
+    panels: dict[str, list[LoadRow]] = {}
+    for row in rows:
+        setting = [f"{key}={value}" for key, value in setting_of(row.swept).items()]
+        panels.setdefault(", ".join([row.scenario, *setting]), []).append(row)
+    names = list(dict.fromkeys(row.name for row in rows))
+    styles = _styles(rows)
+    step = min((b - a for a, b in pairwise(loads)), default=1)
+    figure = Figure(figsize=(max(6.4, 4.4 * len(panels)), 6.6), layout="constrained")
+    axes = figure.subplots(2, len(panels), sharex=True, sharey="row", squeeze=False)
+    for column, (panel, members) in enumerate(panels.items()):
+        success, velocity = axes[0][column], axes[1][column]
+        success.set_title(panel)
+        for row in members:
+            shift = min(step, 2) * _SPREAD * (names.index(row.name) - (len(names) - 1) / 2)
+            cells = [(cavs + shift, row.at[cavs]) for cavs in loads if cavs in row.at]
+            speeds = [(place, speed) for place, cell in cells if (speed := mean(cell.velocities)) is not None]
+            _draw_rates(success, cells, styles[row.name], row.name)
+            velocity.plot(*_unzipped(speeds), **_look(styles[row.name], row.name))
+        success.set_ylim(-3, 103)
+        success.set_xticks(list(loads))
+        velocity.set_xlabel("CAVs")
+    axes[0][0].set_ylabel("success [%], 95 % interval")
+    axes[1][0].set_ylabel("mean velocity [m/s]")
+    handles = {line.get_label(): line for axis in axes[0] for line in axis.get_lines() if line.get_label() in names}
+    shown = [name for name in names if name in handles]
+    figure.legend([handles[name] for name in shown], shown, loc="outside lower center", ncols=min(4, len(shown) or 1))
+    figure.suptitle(heading, fontsize=11)
+    return figure
+
+
+def _draw_learning(rows: Sequence[LearningRow], paper: Sequence[LearningStatement], metrics: str) -> "Figure":
+    from matplotlib.figure import Figure
+
+    firsts = [row.cell.first for row in rows]
+    scenarios = list(dict.fromkeys(first.scenario for first in firsts))
+    levels = list(dict.fromkeys(map(_level, rows)))
+    sizes = sorted({row.interactions for row in rows})
+    figure = Figure(figsize=(max(5.0, 3.4 * len(scenarios)), 4.4), layout="constrained")
+    axes = figure.subplots(1, len(scenarios), sharey=True, squeeze=False)[0]
+    for axis, scenario in zip(axes, scenarios, strict=True):
+        for index, level in enumerate(levels):
+            shift = 0.08 * (index - (len(levels) - 1) / 2)
+            members = [row for row in rows if row.cell.first.scenario == scenario and _level(row) == level]
+            cells = [(sizes.index(row.interactions) + shift, row.cell) for row in members]
+            _draw_rates(axis, cells, LEVELS[index % len(LEVELS)], level)
+        for s in paper:
+            if s.scenario == scenario and s.success is not None and s.interactions in sizes:
+                place, label = sizes.index(s.interactions), "the paper (GPT-4o mini)"
+                axis.plot([place], [100 * s.success], "x", color="#7a7a7a", markersize=9, label=label)
+        axis.set_title(scenario)
+        axis.set_xticks(range(len(sizes)), [str(size) for size in sizes])
+        axis.set_xlabel("past interactions")
+        axis.set_ylim(-3, 105)
+    axes[0].set_ylabel("success [%], 95 % interval")
+    handles = {str(h.get_label()): h for axis in axes for h in axis.get_legend_handles_labels()[0]}
+    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=min(4, len(handles)))
+    figure.suptitle(title("learning", (), [first.reasoner for first in firsts], metrics), fontsize=11)
+    return figure
+
+
+def _draw_rates(axis: "Axes", cells: Sequence[tuple[float, CellResults]], style: Style, label: str) -> None:
+    """Draw a line of success rates [%] with an interval at each."""
+    points = []
+    for place, cell in cells:
+        low, high = cell.interval
+        if low is not None and high is not None:
+            points.append((place, 100 * (len(cell.successes) / len(cell.completed)), 100 * low, 100 * high))
+    axis.plot(*_unzipped([point[:2] for point in points]), **_look(style, label))  # type: ignore[arg-type]
+    for x, _, low, high in points:
+        axis.plot([x, x], [low, high], color=style[0], linewidth=1.1, alpha=0.75)
+
+
+def _unzipped(points: Sequence[tuple[float, float]]) -> tuple[list[float], list[float]]:
+    return [x for x, _ in points], [y for _, y in points]
+
+
+def _look(style: Style, label: str) -> dict[str, str | float]:
+    colour, marker, stroke = style
+    return {"color": colour, "marker": marker, "linestyle": stroke, "linewidth": 1.6, "markersize": 6.5, "label": label}
+
+
+def _level(row: LearningRow) -> str:
+    return " ".join([row.cell.name, *(f"{key}={value}" for key, value in row.cell.swept.items() if "." in key)])
+
+
+def _styles(rows: Sequence[LoadRow]) -> dict[str, Style]:
+    styles: dict[str, Style] = {}
+    others = 0
+    for row in rows:
+        usual = METHODS.get(row.method)
+        if row.name in styles:
+            continue
+        if usual is None or usual in styles.values():
+            styles[row.name] = OTHERS[others % len(OTHERS)]
+            others += 1
+        else:
+            styles[row.name] = usual
+    return styles

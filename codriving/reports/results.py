@@ -1,0 +1,202 @@
+"""What the tables are made of: the episodes of a cell, what was measured of them, and what methods counted."""
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.score import Score
+from codriving.metrics.wilson import wilson_interval
+from codriving.reports.columns import Value, share
+
+COST = "cost_usd"
+
+SECONDS = "step_seconds"
+"""Time that a decision step waited for the model, on average [s]; of a cached answer, the time that it took then."""
+
+WAITED = "model_seconds"
+"""Counter of the time that was waited for the model [s]; it has no column but the mean of a step."""
+
+ASKED = (
+    "model_calls",
+    "prompt_tokens",
+    "completion_tokens",
+    COST,
+    SECONDS,
+    "re_asks",
+    "fallbacks",
+    "shortened",
+    "repaired_orders",
+    "plain_decisions",
+    "kept_orders",
+)
+"""The columns of every table of a run in which a language model reasons, in their fixed order."""
+
+UNPRICED = "unpriced_calls"
+"""Counter of calls whose price is not known; it has no column, it empties that of the cost."""
+
+
+@dataclass(frozen=True)
+class CellResults:
+    """The episodes of one cell, which is one row of a table.
+
+    Attributes:
+        seconds: Wall-clock time of a decision step [s], or None where that is lost.
+        cpu: CPU time of a decision [s], or None where that is lost; it goes into no file that has to repeat.
+    """
+
+    records: Sequence[EpisodeRecord]
+    swept: Mapping[str, str] = field(default_factory=dict)
+    seconds: float | None = None
+    cpu: float | None = None
+
+    @property
+    def first(self) -> EpisodeRecord:
+        """A record that says of what scenario and method they are."""
+        return self.records[0]
+
+    @property
+    def name(self) -> str:
+        """The method, with its variant."""
+        return f"{self.first.method} {self.first.variant}".strip()
+
+    @cached_property
+    def episodes(self) -> "list[ScoredEpisode]":
+        """Each episode with its score."""
+        return [ScoredEpisode(record, record.score, self.swept) for record in self.records]
+
+    @cached_property
+    def completed(self) -> "list[ScoredEpisode]":
+        """The episodes that did not end in an error."""
+        return [episode for episode in self.episodes if episode.record.outcome.ending is not Ending.ERROR]
+
+    @cached_property
+    def successes(self) -> "list[ScoredEpisode]":
+        """The successful episodes."""
+        return [episode for episode in self.completed if episode.success]
+
+    @cached_property
+    def interval(self) -> tuple[float | None, float | None]:
+        """Wilson 95 % interval of the success rate over completed episodes."""
+        return success_interval(len(self.successes), len(self.completed))
+
+    @cached_property
+    def pets(self) -> list[float]:
+        """All PETs of successful episodes [s]."""
+        return [pet for episode in self.successes for pet in episode.pets]
+
+    @cached_property
+    def velocities(self) -> list[float]:
+        """Mean velocity of every vehicle of successful episodes [m/s]."""
+        return [velocity for episode in self.successes for velocity in episode.velocities]
+
+    def rate(self, ending: Ending) -> float | None:
+        """Give the rate of an ending over completed episodes."""
+        return share(sum(episode.record.outcome.ending is ending for episode in self.completed), len(self.completed))
+
+    @cached_property
+    def collisions(self) -> Counter[str]:
+        """How many collisions there were, by kinds of the two."""
+        return Counter(c.pair for episode in self.completed if (c := episode.record.outcome.collision) is not None)
+
+    @cached_property
+    def counters(self) -> dict[str, Value]:
+        """What the method counted in all episodes, failed ones included: they have been paid for."""
+        return counted(self.records)
+
+    @cached_property
+    def asked(self) -> bool:
+        """Whether a language model was there to be asked."""
+        return any(map(asked, self.records))
+
+    @property
+    def fallback_rate(self) -> float | None:
+        """Share of questions without a usable answer; each question counts once, however often it was asked."""
+        counts = (int(self.counters.get(name) or 0) for name in ("model_calls", "re_asks", "shortened", "fallbacks"))
+        calls, again, shortened, fallbacks = counts
+        return share(fallbacks, max(calls - again - shortened, fallbacks)) if self.asked else None
+
+
+@dataclass(frozen=True)
+class ScoredEpisode:
+    """One episode by one metric.
+
+    Attributes:
+        score: None for an episode that ended in an error.
+    """
+
+    record: EpisodeRecord
+    score: Score | None
+    swept: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def success(self) -> bool:
+        """Whether it succeeded."""
+        return self.score is not None and self.score.success
+
+    @property
+    def pets(self) -> list[float]:
+        """All PETs [s]."""
+        return [pet.value for pet in self.score.pets] if self.score else []
+
+    @property
+    def velocities(self) -> list[float]:
+        """Mean velocity of every vehicle [m/s]."""
+        return [travel.velocity for travel in self.score.travels] if self.score else []
+
+    @property
+    def times(self) -> list[float]:
+        """Travel time of every vehicle [s]."""
+        return [travel.time for travel in self.score.travels] if self.score else []
+
+    @property
+    def delays(self) -> list[float]:
+        """Delay of every vehicle of which it is defined [s]."""
+        return [travel.delay for travel in self.score.travels if travel.delay is not None] if self.score else []
+
+    @cached_property
+    def counters(self) -> dict[str, Value]:
+        """What the method counted."""
+        return counted([self.record])
+
+
+def success_interval(successes: int, episodes: int) -> tuple[float | None, float | None]:
+    """Give the Wilson 95 % interval of a success rate; of no episodes there is none."""
+    return wilson_interval(successes, episodes) if episodes else (None, None)
+
+
+def asked(record: EpisodeRecord) -> bool:
+    """Tell whether a language model was there to be asked."""
+    return not {"model_calls", COST}.isdisjoint(record.counts)
+
+
+def counted(records: Sequence[EpisodeRecord]) -> dict[str, Value]:
+    """Add up what was counted."""
+    values: dict[str, list[int | float]] = {}
+    for record in records:
+        for name, number in record.counts.items():
+            values.setdefault(name, []).append(number)
+    sums: dict[str, Value] = {name: _sum(numbers) for name, numbers in values.items()}
+    if any(map(asked, records)):
+        sums = {**dict.fromkeys(ASKED, 0), COST: 0.0, **sums}
+        if sums.pop(UNPRICED, 0):
+            sums[COST] = None
+        steps, waited = sum(record.decisions for record in records), sums.pop(WAITED, 0)
+        sums[SECONDS] = float(waited or 0) / steps if steps else None
+    return sums
+
+
+def _sum(numbers: Sequence[int | float]) -> int | float:
+    # Exact summation makes the sum of amounts the same in any order.
+    return math.fsum(numbers) if any(isinstance(number, float) for number in numbers) else sum(numbers)
+
+
+def counter_names(records: Sequence[EpisodeRecord]) -> list[str]:
+    """List the counters that have a column: those of a language model first, all others by name."""
+    names = {name for record in records for name in record.counts} - {UNPRICED, WAITED}
+    model = any(map(asked, records))
+    first = [name for name in ASKED if model or name in names]
+    return [*first, *sorted(names.difference(first))]
