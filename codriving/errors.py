@@ -66,3 +66,33 @@ class SpendingLimitError(ModelError):
 
 class ModelUnavailableError(EpisodeError):
     """Raised when a language model does not answer, retries included; the episode ends, the batch goes on."""
+
+
+def require(condition: bool, message: str) -> None:
+    """Refuse a setting.
+
+    Raises:
+        ConfigError: If the condition does not hold.
+    """
+    if not condition:
+        raise ConfigError(message)
+
+
+def require_range(name: str, value: float, low: float, high: float, unit: str = "") -> None:
+    """Refuse a number outside [low, high], or one that is not a number.
+
+    Raises:
+        ConfigError: With the setting, its range and the value.
+    """
+    require(low <= value <= high, f"{name} must be {low:g} to {high:g}{unit}, got {value:g}")
+
+
+def require_interval(name: str, value: tuple[float, float], low: float, high: float, unit: str = "") -> None:
+    """Refuse an interval that is reversed or leaves [low, high].
+
+    Raises:
+        ConfigError: With the setting, its range and the value.
+    """
+    shown = f"[{', '.join(f'{v:g}' for v in value)}]"
+    holds = len(value) == 2 and low <= value[0] <= value[1] <= high
+    require(holds, f"{name} must be [smallest, largest] within {low:g} to {high:g}{unit}, got {shown}")

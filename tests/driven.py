@@ -19,9 +19,9 @@ from codriving.methods.deliberation import Deliberation
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.ordered import Ordered
 from codriving.methods.protocol import Method
+from codriving.reasoning.execution.executor import Executor
 from codriving.reasoning.execution.layered import Layered
 from codriving.reasoning.execution.planned import Planned
-from codriving.reasoning.execution.protocol import Executor
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.ordering.protocol import Ordering, OrderRule
 from codriving.reasoning.prediction.rollout import rollout

@@ -1,12 +1,10 @@
-"""The best order of all, by branch and bound: the reference that no search can beat."""
+"""The best passing order of all, by branch and bound: the reference that no search can beat."""
 
 from collections.abc import Mapping, Sequence
 
 from codriving.datatypes.ordering_problem import Instance
 from codriving.errors import EpisodeError
-from codriving.methods.order_search.coded import Coded, Prefix
-from codriving.methods.order_search.searched import SearchedOrder
-from codriving.methods.order_search.tree_search import Found
+from codriving.methods.order_search import Coded, Found, Prefix, SearchedOrder
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
 
 MOST = 10
@@ -50,9 +48,8 @@ class BruteForce(SearchedOrder):
         return super().order(instance, planner)
 
     def search(self, problem: Coded, seeds: Sequence[Sequence[str]]) -> Found:
-        """Go through the tree of orders, whoever can pass first before the others."""
-        runs = [problem.run(seed) for seed in seeds]
-        best = min(runs, key=problem.cost)
+        """Go through the tree of orders, the vehicle that can pass first before the others."""
+        best = min([problem.run(seed) for seed in seeds], key=problem.cost)
         least, tried = problem.cost(best), 0
 
         def descend(prefix: Prefix) -> None:

@@ -1,13 +1,13 @@
-"""The auction: whoever has waited longest, is nearest and would be there soonest bids most and goes first."""
+"""The auction: the vehicle that has waited longest, is nearest and would be there soonest bids most and goes first."""
 
 from collections.abc import Mapping, Sequence
 
 from codriving.datatypes.ordering_problem import Entrant, Instance
-from codriving.errors import ConfigError
+from codriving.errors import require_range
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
-from codriving.reasoning.ordering.reasons import reasons
 from codriving.reasoning.ordering.request import Request, best_subset
 from codriving.reasoning.ordering.schedule import repaired, timed
+from codriving.reasoning.ordering.tickets import reasons
 
 STANDING = 0.5
 """Speed below which a vehicle waits; no time to the conflict zone is worked out with a smaller one either [m/s]."""
@@ -16,7 +16,7 @@ WAITED, NEAR, SOON = 0.1, 3.0, 1.0
 """What a bid counts: each second of waiting [1/s], nearness [m], and soonness [s]."""
 
 NEAR_OFFSET, SOON_OFFSET = 2.0, 0.5
-"""What is added to the distance [m] and to the time [s], so that nobody bids without end."""
+"""What is added to the distance [m] and to the time [s], so that no bid is infinite."""
 
 
 def bid(entrant: Entrant, waited: float) -> float:
@@ -40,8 +40,7 @@ class Auction:
     variant = "auction"
 
     def __init__(self, hysteresis: float) -> None:
-        if not 0 <= hysteresis <= 10:
-            raise ConfigError(f"hysteresis must be 0 to 10, got {hysteresis:g}")
+        require_range("hysteresis", hysteresis, 0, 10)
         self.hysteresis = hysteresis
         self.reset(0)
 
@@ -51,7 +50,7 @@ class Auction:
         self._agreed: tuple[str, ...] = ()
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-        """Return everybody by decreasing bid, as far as what is physically fixed allows."""
+        """Return the vehicles by decreasing bid, as far as what is physically fixed allows."""
         waited = self._wait(instance)
         bids = {name: bid(entrant, waited[name]) for name, entrant in instance.entrants.items()}
         fresh = repaired(instance, sorted(bids, key=lambda name: (-bids[name], name)))
@@ -64,25 +63,21 @@ class Auction:
             stands = "went first before and " if kept and bids[one] < bids[other] else ""
             return f"{one} {stands}bids {bids[one]:.2f} against {bids[other]:.2f}"
 
-        return Ordering(
-            self._agreed,
-            timed(instance, self._agreed),
-            reasons(instance, self._agreed, reason),
-            {"kept": int(kept)},
-        )
+        why = reasons(instance, self._agreed, reason)
+        return Ordering(self._agreed, timed(instance, self._agreed), why, {"kept": int(kept)})
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
         """Grant the requests that do not overlap and gain most together."""
         return best_subset(requests)
 
     def _wait(self, instance: Instance) -> dict[str, float]:
-        """Return how long everybody has been waiting [s]."""
+        """Return how long each vehicle has been waiting [s]."""
         slow = {name for name, entrant in instance.entrants.items() if entrant.speed < STANDING}
         self._stopped = {name: self._stopped.get(name, instance.time) for name in sorted(slow)}
         return {name: instance.time - self._stopped.get(name, instance.time) for name in instance.entrants}
 
     def _as_before(self, fresh: Sequence[str]) -> list[str]:
-        """Rank everybody as in the step before; each newcomer right behind the one that it follows by its bid."""
+        """Rank all as in the step before; each newcomer right behind the one that it follows by its bid."""
         ranking = [name for name in self._agreed if name in fresh]
         known = set(ranking)
         for k, name in enumerate(fresh):
@@ -92,7 +87,7 @@ class Auction:
 
 
 def overtaken(ranking: Sequence[str], bids: Mapping[str, float], by: float) -> list[str]:
-    """Let whoever bids enough more than the one right before it go first, until nobody does."""
+    """Let a vehicle that bids enough more than the one right before it go first, until none does."""
     order = list(ranking)
     moved = True
     while moved:

@@ -8,8 +8,8 @@ from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.deliberation import Deliberation
 from codriving.methods.perception import Perception
+from codriving.reasoning.execution.executor import Drive, Executor
 from codriving.reasoning.execution.lane_requests import LaneRequests
-from codriving.reasoning.execution.protocol import Drive, Executor
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.ordering.agreement import agreement
 from codriving.reasoning.ordering.problem import ProblemMaker
@@ -38,7 +38,7 @@ class Ordered:
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
-        forecast = Forecast(model, (*CONTINUATIONS, *PLANS, *getattr(self.executor, "library", ())))
+        forecast = Forecast(model, (*CONTINUATIONS, *PLANS, *self.executor.library))
         self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SharedIntents())
         self._problems = ProblemMaker(road_map, forecast, self.executor.gap)
         self._requests = LaneRequests()
@@ -77,7 +77,7 @@ class Ordered:
         self, stage: Stage, ordering: Ordering, agreed: PassingOrder, drive: Drive
     ) -> dict[str, Decision]:
         """Return the lane changes that are wanted, pass the gap test and have been granted."""
-        requests = self._requests.ask(stage, ordering, agreed, drive.expected, self._lag)
+        requests = self._requests.gather(stage, ordering, agreed, drive.expected, self._lag)
         if not requests:
             return {}
         granted = self.rule.grant(requests)

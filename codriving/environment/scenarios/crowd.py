@@ -7,8 +7,7 @@ import numpy as np
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.scenarios.gaps import room_on_lane
-from codriving.environment.scenarios.pace import require_interval, require_range
-from codriving.errors import ScenarioError
+from codriving.errors import ScenarioError, require_interval, require_range
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,9 @@ from codriving.datatypes.road import Lane, Line, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.scenarios.crowd import Crowd
-from codriving.environment.scenarios.pace import Pace, require_range
+from codriving.environment.scenarios.pace import Pace
 from codriving.environment.scenarios.placement import place
+from codriving.errors import require_range
 
 LANE_WIDTH = 4.0
 SPEED_LIMIT = 30.0

@@ -8,9 +8,10 @@ from codriving.datatypes.road import Arc, Lane, LaneId, Line, Point, Road, Route
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.scenarios.crowd import Crowd
-from codriving.environment.scenarios.pace import Pace, require_range
+from codriving.environment.scenarios.pace import Pace
 from codriving.environment.scenarios.placement import place
 from codriving.environment.scenarios.shapes import turned
+from codriving.errors import require_range
 from codriving.geometry.lane_path import lane_starts
 
 LEGS = ("south", "west", "north", "east")

@@ -3,42 +3,10 @@
 from dataclasses import dataclass
 from itertools import pairwise
 
-from codriving.errors import ConfigError
+from codriving.errors import require, require_range
 
 TOP_SPEED = 40.0
 """No vehicle of highway-env drives faster [m/s]."""
-
-
-def require(condition: bool, message: str) -> None:
-    """Refuse a setting.
-
-    Raises:
-        ConfigError: If the condition does not hold.
-    """
-    if not condition:
-        raise ConfigError(message)
-
-
-def require_range(name: str, value: float, low: float, high: float, unit: str = "") -> None:
-    """Refuse a number outside its range.
-
-    Raises:
-        ConfigError: If the value is outside [low, high] or not a number.
-    """
-    require(low <= value <= high, f"{name} must be {low:g} to {high:g}{unit}, got {value:g}")
-
-
-def require_interval(name: str, value: tuple[float, float], low: float, high: float, unit: str = "") -> None:
-    """Refuse an interval that is reversed or leaves its range.
-
-    Raises:
-        ConfigError: If the rule is broken.
-    """
-    shown = f"[{', '.join(f'{v:g}' for v in value)}]"
-    require(
-        len(value) == 2 and low <= value[0] <= value[1] <= high,
-        f"{name} must be [smallest, largest] within {low:g} to {high:g}{unit}, got {shown}",
-    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,10 +9,10 @@ from codriving.datatypes.road import Arc, Lane, LaneId, LaneShape, Line, Point, 
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.scenarios.crowd import Crowd
-from codriving.environment.scenarios.pace import Pace, require_range
+from codriving.environment.scenarios.pace import Pace
 from codriving.environment.scenarios.placement import place
 from codriving.environment.scenarios.shapes import turned
-from codriving.errors import ConfigError
+from codriving.errors import ConfigError, require_range
 from codriving.geometry.box import PLANNING
 
 LEGS = ("south", "east", "north", "west")

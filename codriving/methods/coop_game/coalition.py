@@ -1,16 +1,14 @@
-"""The orders of one moment on which all vehicles may agree, each judged by what everybody would do in it."""
+"""The orders of one moment on which all vehicles may agree, each valued by what all would do in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from codriving.datatypes.ordering_problem import Instance
-from codriving.methods.coop_game.levels import Allocation, Levels
+from codriving.methods.coop_game.levels import Allocation, Levels, Streams, is_free
 from codriving.methods.coop_game.payoff import Payoff
-from codriving.methods.coop_game.streams import Streams, is_free
-from codriving.reasoning.ordering.objective import Objective
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
-from codriving.reasoning.ordering.schedule import repaired, timed
+from codriving.reasoning.ordering.schedule import Objective, repaired, timed
 
 TOLERANCE = 1e-9
 """Values that differ by less are equal."""
@@ -28,18 +26,18 @@ class Agreement:
 
     @cached_property
     def value(self) -> float:
-        """What it is worth to all together; -inf if somebody has no plan that touches nobody."""
+        """What it is worth to all together; -inf if a vehicle has no plan that keeps clear of the others."""
         return sum(self.payoffs.values()) if self.plan.feasible else float("-inf")
 
     @cached_property
     def delay(self) -> float:
-        """Time that everybody loses together, as scheduled [s]."""
+        """Time that all lose together, as scheduled [s]."""
         return Objective().value(self.instance, timed(self.instance, self.order))
 
     def better_than(self, other: "Agreement") -> bool:
         """Whether it is worth more; if both are worth the same, whether less time is lost, or the levels are lower.
 
-        What everybody can keep is better than anything else; of two that somebody cannot keep, the one with fewer such.
+        What all can keep is better than anything else; of two that some cannot keep, the one with fewer of these.
         """
         if not self.plan.feasible or not other.plan.feasible:
             return self.plan.feasible or (not other.plan.feasible and self.plan.stuck < other.plan.stuck)
@@ -50,12 +48,12 @@ class Agreement:
         return self.delay < other.delay
 
     def worse_off(self, other: "Agreement") -> list[str]:
-        """Return those who would rather have another agreement, by id."""
+        """Return the vehicles that would rather have another agreement, by id."""
         return [n for n, was in sorted(other.payoffs.items()) if self.payoffs.get(n, was) < was - TOLERANCE]
 
 
 class Coalition:
-    """Judges orders, each of them once."""
+    """Evaluates orders, each of them once."""
 
     def __init__(
         self,
@@ -72,17 +70,17 @@ class Coalition:
         self._known: dict[tuple[bool, ...], Agreement] = {}
 
     @property
-    def judged(self) -> tuple[Agreement, ...]:
-        """Everything that has been judged, in that order."""
+    def evaluated(self) -> tuple[Agreement, ...]:
+        """All agreements that have been evaluated, in that order."""
         return tuple(self._known.values())
 
-    def judge(self, ranking: Sequence[str], levels: Allocation = ()) -> Agreement | None:
-        """Judge a ranking of everybody.
+    def evaluate(self, ranking: Sequence[str], levels: Allocation = ()) -> Agreement | None:
+        """Evaluate a ranking of all vehicles.
 
         Orders in which the same vehicle of each pair goes first, wherever that is open, are one order.
 
         Returns:
-            The agreement; None if it is a new one and no more may be judged.
+            The agreement; None if it is a new one and the limit is reached.
         """
         order = tuple(repaired(self.instance, ranking))
         place = {name: k for k, name in enumerate(order)}
@@ -96,12 +94,8 @@ class Coalition:
         return self._known[key]
 
     def allocate(self, levels: Allocation) -> Agreement | None:
-        """Judge an allocation of levels.
-
-        Returns:
-            The agreement; None if it is a new one and no more may be judged.
-        """
-        return self.judge(self.streams.ranked(levels, self.arrived), levels)
+        """Evaluate an allocation of levels; None if it is a new one and the limit is reached."""
+        return self.evaluate(self.streams.ranked(levels, self.arrived), levels)
 
     def ascend(self, starts: Sequence[Allocation], levels: Levels) -> None:
         """Give each stream in turn the level that is best for all, until nothing improves or the limit is reached."""

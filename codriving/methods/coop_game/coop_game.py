@@ -4,26 +4,24 @@ from collections.abc import Sequence
 from itertools import islice
 
 from codriving.datatypes.ordering_problem import Instance
-from codriving.errors import ConfigError
+from codriving.errors import require, require_range
 from codriving.methods.coop_game.coalition import Agreement, Coalition
-from codriving.methods.coop_game.levels import Levels, levels_of
+from codriving.methods.coop_game.levels import Levels, Streams, find_streams, levels_of
 from codriving.methods.coop_game.payoff import Goal, Payoff, Scale
-from codriving.methods.coop_game.streams import Streams, find_streams
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
-from codriving.reasoning.ordering.reasons import by_ticket, reasons
 from codriving.reasoning.ordering.request import Request, best_subset
 from codriving.reasoning.ordering.schedule import timed
-from codriving.reasoning.ordering.tickets import TicketBook
+from codriving.reasoning.ordering.tickets import TicketBook, by_ticket, reasons
 
 
 class CoopGame:
     """All CAVs form a coalition, and their streams take the levels that are worth most to all together.
 
-    Without an agreement everybody would go first come, first served; that order is always among those judged.
+    Without an agreement all would go first come, first served; that order is always among those evaluated.
 
     Args:
         objective: What is summed up: ``inverse_distance`` or ``utility``.
-        scale: Whose distance is put on the scale of the others: ``turning``, ``straight`` or ``none``.
+        scale: Which distances are put on the scale of the others: ``turning``, ``straight`` or ``none``.
         levels: The highest level, 1 to 20; None for as many as there are streams.
         hysteresis: The order of the step before stays unless another one is worth more than being this much ahead
             is worth to one vehicle, 0 to 10 [s].
@@ -52,24 +50,18 @@ class CoopGame:
         risk_time: float,
         control_radius: float,
     ) -> None:
-        if objective not in list(Goal):
-            raise ConfigError(f"objective must be {' or '.join(Goal)}, got {objective}")
-        if scale not in list(Scale):
-            raise ConfigError(f"scale must be {' or '.join(Scale)}, got {scale}")
-        for key, value, least, most, unit in (
-            ("levels", 1 if levels is None else levels, 1, 20, ""),
-            ("evaluations", evaluations, 2, 10000, ""),
-            ("hysteresis", hysteresis, 0, 10, " s"),
-            ("efficiency", efficiency, 0, 100, ""),
-            ("comfort", comfort, 0, 100, ""),
-            ("safety", safety, 0, 100, ""),
-            ("reference_acceleration", reference_acceleration, 0.1, 20, " m/s2"),
-            ("risk_time", risk_time, 0.1, 10, " s"),
-        ):
-            if not least <= value <= most:
-                raise ConfigError(f"{key} must be {least:g} to {most:g}{unit}, got {value:g}")
-        if efficiency + comfort + safety == 0:
-            raise ConfigError("efficiency, comfort and safety must not all be 0, got 0, 0 and 0")
+        require(objective in list(Goal), f"objective must be {' or '.join(Goal)}, got {objective}")
+        require(scale in list(Scale), f"scale must be {' or '.join(Scale)}, got {scale}")
+        require_range("levels", 1 if levels is None else levels, 1, 20)
+        require_range("evaluations", evaluations, 2, 10000)
+        require_range("hysteresis", hysteresis, 0, 10, " s")
+        require_range("efficiency", efficiency, 0, 100)
+        require_range("comfort", comfort, 0, 100)
+        require_range("safety", safety, 0, 100)
+        require_range("reference_acceleration", reference_acceleration, 0.1, 20, " m/s2")
+        require_range("risk_time", risk_time, 0.1, 10, " s")
+        some = efficiency + comfort + safety != 0
+        require(some, "efficiency, comfort and safety must not all be 0, got 0, 0 and 0")
         self.payoff = Payoff(
             Goal(objective), Scale(scale), efficiency, comfort, safety, reference_acceleration, risk_time
         )
@@ -91,21 +83,21 @@ class CoopGame:
         arrived = self.tickets.ranking(instance)
         streams = find_streams(instance, arrived)
         if not streams.conflicts:
-            # It is open for nobody who goes first: there is but one order, and nothing to agree on.
+            # No pair is open: there is but one order, and nothing to agree on.
             self._agreed = tuple(arrived)
             return self._ordering(instance, streams, None, {"orders": 0})
         coalition = Coalition(instance, planner, self.payoff, streams, arrived, self.evaluations)
-        alone = coalition.judge(arrived)
-        before = coalition.judge(self._as_before(arrived)) if self._agreed else None
+        alone = coalition.evaluate(arrived)
+        before = coalition.evaluate(self._as_before(arrived)) if self._agreed else None
         enumerated = self._search(coalition, levels_of(len(streams.names), streams.conflicts, self.levels))
         assert alone is not None
-        best = self._best(coalition.judged, alone)
+        best = self._best(coalition.evaluated, alone)
         kept = before is not None and self._keeps(before, best, alone, planner)
         chosen = before if kept and before is not None else best
         self._agreed = chosen.order
         counts = {
-            "orders": len(coalition.judged),
-            "infeasible": sum(not a.plan.feasible for a in coalition.judged),
+            "orders": len(coalition.evaluated),
+            "infeasible": sum(not a.plan.feasible for a in coalition.evaluated),
             "enumerated": int(enumerated),
             "fallback": int(not chosen.plan.feasible),
             "kept": int(kept),
@@ -118,12 +110,12 @@ class CoopGame:
         return best_subset(requests)
 
     def _as_before(self, arrived: Sequence[str]) -> list[str]:
-        """Rank everybody as in the step before, and those who are new behind them as they came."""
+        """Rank all as in the step before, and new ones behind them as they came."""
         there = [name for name in self._agreed if name in arrived]
         return there + [name for name in arrived if name not in there]
 
     def _search(self, coalition: Coalition, levels: Levels) -> bool:
-        """Judge every allocation if they are few enough, else climb; return whether it was every one."""
+        """Evaluate all allocations if they are few enough, else climb; return whether it was all."""
         some = list(islice(levels.allocations(), self.evaluations + 1))
         if len(some) <= self.evaluations:
             return None not in [coalition.allocate(allocation) for allocation in some]
@@ -132,10 +124,10 @@ class CoopGame:
         coalition.ascend([levels.of(range(levels.streams)), levels.of(before)], levels)
         return False
 
-    def _best(self, judged: Sequence[Agreement], alone: Agreement) -> Agreement:
-        """Return the best agreement; if none can be kept, one with the fewest who cannot."""
+    def _best(self, evaluated: Sequence[Agreement], alone: Agreement) -> Agreement:
+        """Return the best agreement; if none can be kept, one that the fewest vehicles cannot keep."""
         best = alone
-        for found in judged:
+        for found in evaluated:
             if found.better_than(best) and not (self.rational and found.worse_off(alone)):
                 best = found
         return best

@@ -1,12 +1,54 @@
-"""Every way of giving streams levels that makes a difference: who plans against whose motion."""
+"""Streams of vehicles, and every way of giving them levels that makes a difference to the passing order."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import product
 
-from codriving.methods.coop_game.streams import Edge
+from codriving.datatypes.ordering_problem import Instance
 
 Allocation = tuple[int, ...]
 """Level of each stream; a lower level goes first."""
+
+Edge = tuple[int, int]
+"""Two streams in conflict, by index, the smaller one first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Streams:
+    """The vehicles of an instance, stream by stream."""
+
+    names: tuple[str, ...]
+    members: Mapping[str, tuple[str, ...]]
+    conflicts: frozenset[Edge]
+
+    def by_vehicle(self, levels: Sequence[int]) -> dict[str, int]:
+        """Return the level of each vehicle, by id."""
+        return {name: k for stream, k in zip(self.names, levels, strict=True) for name in self.members[stream]}
+
+    def ranked(self, levels: Sequence[int], arrived: Sequence[str]) -> list[str]:
+        """Rank the vehicles by the level of their stream, and in a level as they came."""
+        return sorted(arrived, key=self.by_vehicle(levels).__getitem__)
+
+
+def find_streams(instance: Instance, arrived: Sequence[str]) -> Streams:
+    """Group the vehicles of an instance."""
+    members: dict[str, list[str]] = {}
+    for name in arrived:
+        members.setdefault(instance.entrants[name].stream or name, []).append(name)
+    names = tuple(members)
+    conflicts = {
+        (i, j)
+        for j in range(len(names))
+        for i in range(j)
+        if any(is_free(instance, one, other) for one in members[names[i]] for other in members[names[j]])
+    }
+    return Streams(names, {stream: tuple(found) for stream, found in members.items()}, frozenset(conflicts))
+
+
+def is_free(instance: Instance, one: str, other: str) -> bool:
+    """Whether two vehicles conflict and it is open which goes first."""
+    fixed = (one, other) in instance.before or (other, one) in instance.before
+    return instance.conflict(one, other) and not fixed
 
 
 def layered(ranks: Sequence[float], conflicts: Collection[Edge]) -> Allocation:
@@ -34,9 +76,9 @@ class OwnLevels:
         return layered(ranks, self.conflicts)
 
     def allocations(self) -> Iterator[Allocation]:
-        """Yield every allocation that differs in who goes first of two in conflict, beginning with that by index."""
+        """Yield every allocation that differs in which of two in conflict goes first, beginning with that by index."""
         for after in self._orientations(0, (0,) * self.streams):
-            # Whoever comes after more others comes later in at least one way of lining all up.
+            # A stream that comes after more others comes later in at least one way of lining all up.
             yield layered([after[i].bit_count() for i in range(self.streams)], self.conflicts)
 
     def _orientations(self, k: int, after: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
@@ -72,7 +114,7 @@ class FewLevels:
         return tuple(min(level, self.highest) for level in layered(ranks, self.conflicts))
 
     def allocations(self) -> Iterator[Allocation]:
-        """Yield every allocation that differs in who goes first of two in conflict, or whether they share a level."""
+        """Yield every allocation that differs in which of two in conflict goes first, or whether they share a level."""
         meets = {stream for edge in self.conflicts for stream in edge}
         ranges = [range(self.highest + 1) if i in meets else range(1) for i in range(self.streams)]
         seen = set()

@@ -11,8 +11,8 @@ from codriving.datatypes.ordering_problem import Entrant, Instance
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
 
 SLOPE, OFFSET = 1.44, 25.4
-"""Drivers are indifferent about who goes first if the distance of the one who turns is 1.44 times that of the one who
-goes straight, less 25.4 m (fit of the source)."""
+"""Drivers are indifferent about the order if the distance of the one that turns is 1.44 times that of the one that goes
+straight, less 25.4 m (fit of the source)."""
 
 NEAREST = 1.0
 """Distance to the destination below which a vehicle counts as being there [m]."""
@@ -26,7 +26,7 @@ class Goal(StrEnum):
 
 
 class Scale(StrEnum):
-    """Whose distance is put on the scale of the others before they are added."""
+    """Which distances are put on the scale of the others before they are added."""
 
     TURNING = "turning"
     STRAIGHT = "straight"
@@ -67,7 +67,7 @@ class Payoff:
         """Return what a plan is worth to each vehicle, by id.
 
         Args:
-            ahead: Time by which everybody is taken to be farther along its plan [s].
+            ahead: Time by which all are taken to be farther along their plans [s].
         """
         scale = self._scale(instance)
         found = {}

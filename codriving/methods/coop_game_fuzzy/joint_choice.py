@@ -1,8 +1,9 @@
-"""What everybody does together: joint actions, what they cost each vehicle, and the one on which all settle."""
+"""Joint actions, what they cost each vehicle, the one on which all settle, and each vehicle's share (Shapley value)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import combinations, product
+from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ ENUMERATED = 3
 """Vehicles up to which every joint action is looked at."""
 
 SWEEPS = 10
-"""How often everybody is asked again at most, where they are too many for that."""
+"""How often each chooses again at most, where they are too many for that."""
 
 TOLERANCE = 1e-12
 """Costs that differ by less are equal."""
@@ -51,7 +52,7 @@ def blended(costs: Array, participation: float) -> Array:
 
 
 def settle(costs: Costs, options: Sequence[Sequence[int]], participation: float) -> Joint:
-    """Return the joint action on which all settle: nobody would rather change alone, and it costs all least."""
+    """Return the joint action on which all settle: none would rather change alone, and it costs all least."""
     if not options:
         return ()
     if len(options) > ENUMERATED:
@@ -77,13 +78,13 @@ def _is_stable(costs: Costs, options: Sequence[Sequence[int]], participation: fl
 
 
 def _starts(options: Sequence[Sequence[int]]) -> list[Joint]:
-    """Everybody begins with the same option, as far as there is one for all."""
+    """Return joint actions in which all take the same option, as far as there is one for all."""
     most = max(len(mine) for mine in options)
     return list(dict.fromkeys(tuple(mine[min(k, len(mine) - 1)] for mine in options) for k in range(most)))
 
 
 def _arrive(costs: Costs, options: Sequence[Sequence[int]], participation: float, joint: Joint) -> Joint:
-    """Let one vehicle after another take what is best for it, until nobody changes any more."""
+    """Let one vehicle after another take what is best for it, until none changes any more."""
     for _ in range(SWEEPS):
         before = joint
         for i, mine in enumerate(options):
@@ -94,3 +95,30 @@ def _arrive(costs: Costs, options: Sequence[Sequence[int]], participation: float
         if joint == before:
             break
     return joint
+
+
+MOST = 6
+"""Players for whom the value is worked out; it needs the worth of every coalition, 64 of them."""
+
+
+def shapley(players: Sequence[str], worth: Callable[[frozenset[str]], float]) -> dict[str, float]:
+    """Share out what a coalition is worth: what each adds to it, averaged over all orders in which they may join.
+
+    Returns:
+        Share of each player, by id; they add up to the worth of all less that of none.
+    """
+    n = len(players)
+    known = {
+        frozenset(members): worth(frozenset(members))
+        for size in range(n + 1)
+        for members in combinations(players, size)
+    }
+    shares = {}
+    for player in players:
+        others = [p for p in players if p != player]
+        shares[player] = sum(
+            factorial(size) * factorial(n - size - 1) / factorial(n) * (known[joined | {player}] - known[joined])
+            for size in range(n)
+            for joined in map(frozenset, combinations(others, size))
+        )
+    return shares

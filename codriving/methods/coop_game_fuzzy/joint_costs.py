@@ -8,11 +8,26 @@ import numpy as np
 from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.geometry.path import Path
 from codriving.methods.coop_game_fuzzy.joint_choice import Array, Costs
-from codriving.methods.coop_game_fuzzy.risk_field import Body, risk
 from codriving.reasoning.execution.stage import Stage
 
 YIELDS_AFTER = 2.0
 """A driver who has been standing for this long keeps its place [s]."""
+
+ALONG, ACROSS = 8.0, 2.5
+"""Semi-axes at which the risk has fallen to 1/e, along the vehicle at top speed and across it [m]."""
+
+STANDING = 0.5
+"""Share of the length of the field that is left around a standing vehicle."""
+
+
+@dataclass(frozen=True, slots=True)
+class Poses:
+    """Centre [m], heading [rad] and speed [m/s] of a vehicle over time; the shapes of all four can be broadcast."""
+
+    x: Array
+    y: Array
+    heading: Array
+    speed: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,33 +59,25 @@ def joint_costs(
     own = weights.efficiency * ((top - speeds) ** 2).mean(axis=2) / top**2
     own += weights.comfort * (accelerations**2).mean(axis=2) / weights.reference_acceleration**2
     bodies = [
-        body(stage.road_map.paths[v.routes[0][0]], v.routes[0][1] + p, s)
+        poses(stage.road_map.paths[v.routes[0][0]], v.routes[0][1] + p, s)
         for v, p, s in zip(vehicles.values(), places, speeds, strict=True)
     ]
     for i, (name, where) in enumerate(zip(vehicles, bodies, strict=True)):
         own[i] += weights.risk * human_risk(stage, name, where, samples, top)
     x, y, heading, speed = (np.array([getattr(b, key) for b in bodies]) for key in ("x", "y", "heading", "speed"))
-    met = risk(x[:, :, None, None], y[:, :, None, None], Body(x, y, heading, speed), top).max(axis=4)
+    met = risk(x[:, :, None, None], y[:, :, None, None], Poses(x, y, heading, speed), top).max(axis=4)
     met[np.arange(len(bodies)), :, np.arange(len(bodies)), :] = 0.0
     return Costs(own, weights.risk * met)
 
 
-def body(path: Path, places: Array, speeds: Array) -> Body:
-    """Return where a vehicle is.
-
-    Args:
-        places: Its arc length there [m].
-        speeds: Its speed, in the same shape [m/s].
-    """
+def poses(path: Path, places: Array, speeds: Array) -> Poses:
+    """Return where a vehicle is at some arc lengths [m], in their shape."""
     x, y = path.position(places)
-    return Body(x, y, path.heading(places), speeds)
+    return Poses(x, y, path.heading(places), speeds)
 
 
-def human_risk(stage: Stage, ego: str, where: Body, samples: int, top_speed: float) -> Array:
+def human_risk(stage: Stage, ego: str, where: Poses, samples: int, top_speed: float) -> Array:
     """Return the risk from human drivers, each where it is most dangerous of all places at which it is expected.
-
-    Args:
-        top_speed: Speed at which the field has its full length [m/s].
 
     Returns:
         Greatest risk of each option from each of them, added up (options,).
@@ -86,7 +93,18 @@ def human_risk(stage: Stage, ego: str, where: Body, samples: int, top_speed: flo
         reached = np.array([low, (low + high) / 2, high])[:, :samples]
         dangers = []
         for route, place in other.routes:
-            source = body(stage.road_map.paths[route], place + reached, np.full_like(reached, other.speed))
+            source = poses(stage.road_map.paths[route], place + reached, np.full_like(reached, other.speed))
             dangers.append(risk(where.x[:, None, :], where.y[:, None, :], source, top_speed).max(axis=1))
         found += np.max(dangers, axis=0).max(axis=1)
     return found
+
+
+def risk(x: Array, y: Array, source: Poses, top_speed: float) -> Array:
+    """Return the risk of being at a place [m]: 1 at the middle of the vehicle, falling to 0 far from it.
+
+    The field is Gaussian, longer along the vehicle, and has its full length at the top speed [m/s].
+    """
+    dx, dy = x - source.x, y - source.y
+    cos, sin = np.cos(source.heading), np.sin(source.heading)
+    length = ALONG * (STANDING + (1 - STANDING) * np.clip(source.speed / top_speed, 0.0, 1.0))
+    return np.asarray(np.exp(-(((cos * dx + sin * dy) / length) ** 2) - ((cos * dy - sin * dx) / ACROSS) ** 2))

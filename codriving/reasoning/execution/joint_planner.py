@@ -1,4 +1,4 @@
-"""Plans everybody one after another in an order; what two plans mean for one another is worked out once."""
+"""Plans all CAVs one after another in an order; what two plans mean for one another is worked out once."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -6,12 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from codriving.datatypes.action import Action
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.reasoning.conflicts import is_open
-from codriving.reasoning.execution.humans import minds_humans
-from codriving.reasoning.execution.meeting import Meeting
-from codriving.reasoning.execution.planning_order import cavs, drives_ahead, planning_order
 from codriving.reasoning.execution.stage import Stage
-from codriving.reasoning.execution.violations import SIZES, Array, Steps, first_true
+from codriving.reasoning.execution.violations import SIZES, Array, Meeting, Steps, first_true, minds_humans
 from codriving.reasoning.ordering.protocol import JointPlan
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind, worth
 from codriving.reasoning.prediction.plans import PLANS
@@ -21,10 +20,15 @@ from codriving.reasoning.safety.same_lane import LANE_END_GAP
 
 Flags = NDArray[np.bool_]
 
+LANE_CHANGES = frozenset((Action.LANE_LEFT, Action.LANE_RIGHT))
+
+BODY = 5.0
+"""Length of a vehicle [m]."""
+
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """What everybody does in one order."""
+    """What all CAVs do in one order."""
 
     chosen: Mapping[str, int]
     works: Mapping[str, Flags]
@@ -37,7 +41,7 @@ class JointPlans:
     Args:
         margin: Time between one vehicle's leaving a zone and the next one's entering it [s].
         pad: Additional room along the route [m].
-        headway: Time gap to whoever drives ahead [s].
+        headway: Time gap to the vehicle ahead [s].
 
     Attributes:
         travels: Distance of each plan over time, by id (plans, steps + 1) [m].
@@ -46,7 +50,7 @@ class JointPlans:
 
     def __init__(self, stage: Stage, before: Mapping[str, Plan], margin: float, pad: float, headway: float) -> None:
         self.stage, self.pad = stage, pad
-        self.vehicles = cavs(stage)
+        self.vehicles = {name: known[name] for name, known in sorted(stage.known.items())}
         sample = stage.forecast.sample
         self._lag, self._following = round(margin / sample), round(min(margin, headway) / sample)
         self._continued = {name: before[name] for name in self.vehicles if name in before}
@@ -63,7 +67,7 @@ class JointPlans:
         self._joint: dict[tuple[tuple[str, ...], tuple[tuple[str, float], ...]], Joint] = {}
 
     def _continuations(self) -> dict[str, Array]:
-        """Predict what everybody planned a step ago (1, steps + 1)."""
+        """Predict what each CAV planned a step ago (1, steps + 1)."""
         names = list(self._continued)
         if not names:
             return {}
@@ -76,11 +80,7 @@ class JointPlans:
         return PLANS[k] if k < len(PLANS) else self._continued[name]
 
     def joint(self, sequence: Sequence[str], not_before: Mapping[str, float] | None = None) -> Joint:
-        """Plan everybody.
-
-        Args:
-            not_before: Earliest time at which some may reach their first zone, by id [s].
-        """
+        """Plan all CAVs, some of which may reach their first zone at a time at the earliest, by id [s]."""
         order = tuple(planning_order(sequence, self.vehicles, self._ahead))
         held = tuple(sorted((not_before or {}).items()))
         if (order, held) not in self._joint:
@@ -169,7 +169,7 @@ class JointPlans:
         return bool(self._meetings(first, second))
 
     def plan(self, order: Sequence[str]) -> JointPlan:
-        """Return what everybody would do."""
+        """Return what all CAVs would do."""
         joint = self.joint(order)
         travels = {name: self.travels[name][k] for name, k in joint.chosen.items()}
         return JointPlan(not joint.stuck, travels, self.stage.forecast.sample, len(joint.stuck))
@@ -180,18 +180,70 @@ class JointPlans:
         Returns:
             Time [s]; inf if they share no zone or one of them does not come there within the horizon.
         """
-        least = float("inf")
+        least, time = float("inf"), self.stage.forecast.time_to
+        mine, theirs = plan.travels[one], plan.travels[other]
         (route, place), (way, there) = self.vehicles[one].routes[0], self.vehicles[other].routes[0]
         for zone in self.stage.road_map.zones(route, way):
-            if not is_open(zone, place, there):
-                continue
-            time = self.stage.forecast.time_to
-            mine, theirs = plan.travels[one], plan.travels[other]
-            gaps = (
-                time(zone.entry_j - there, theirs) - time(zone.exit_i - place, mine),
-                time(zone.entry_i - place, mine) - time(zone.exit_j - there, theirs),
-            )
-            finite = [gap for gap in gaps if np.isfinite(gap)]
-            if finite:
-                least = min(least, max(finite))
+            if is_open(zone, place, there):
+                gaps = (
+                    time(zone.entry_j - there, theirs) - time(zone.exit_i - place, mine),
+                    time(zone.entry_i - place, mine) - time(zone.exit_j - there, theirs),
+                )
+                finite = [gap for gap in gaps if np.isfinite(gap)]
+                least = min(least, max(finite, default=float("inf")))
         return least
+
+
+def drives_ahead(stage: Stage, vehicles: Mapping[str, TrackedVehicle]) -> set[tuple[str, str]]:
+    """Return the pairs of CAVs (ahead, behind) that follow one another, whatever the order says."""
+    found = set()
+    for behind in vehicles.values():
+        for ahead in vehicles.values():
+            if ahead.id == behind.id:
+                continue
+            for route, place in behind.routes:
+                for other, there in ahead.routes:
+                    zones = stage.road_map.zones(route, other)
+                    if any(is_behind(zone, place, there) for zone in zones):
+                        found.add((ahead.id, behind.id))
+            if _is_alongside(stage, behind, ahead):
+                found.add((ahead.id, behind.id))
+    return found
+
+
+def _is_alongside(stage: Stage, changing: TrackedVehicle, other: TrackedVehicle) -> bool:
+    """Whether a CAV cannot go first since another one drives ahead or alongside on the lane that it must change to."""
+    change = stage.scenes[changing.id].must_change
+    if change is None or not LANE_CHANGES & set(stage.available[changing.id]):
+        return False
+    (route, place), (way, there) = changing.routes[0], other.routes[0]
+    if stage.scenes[other.id].ego.lane != change.lane:
+        return False
+    for zone in stage.road_map.zones(route, way):
+        if zone.merge_i is not None and zone.merge_j is not None and is_open(zone, place, there):
+            return zone.merge_j - there < zone.merge_i - place + BODY
+    return False
+
+
+def planning_order(
+    sequence: Sequence[str], vehicles: Mapping[str, TrackedVehicle], ahead: set[tuple[str, str]]
+) -> list[str]:
+    """Line all CAVs up for planning."""
+    rank = {name: i for i, name in enumerate(sequence)}
+    leaders: dict[str, list[str]] = {}
+    for leader, follower in sorted(ahead):
+        leaders.setdefault(follower, []).append(leader)
+    order: list[str] = []
+    entered: set[str] = set()
+
+    def place(name: str) -> None:
+        # Vehicles ahead are drawn forward; a circle, as only an overlap makes one, is cut where it closes.
+        if name not in entered:
+            entered.add(name)
+            for leader in leaders.get(name, ()):
+                place(leader)
+            order.append(name)
+
+    for name in sorted(vehicles, key=lambda n: (rank.get(n, len(rank)), -vehicles[n].routes[0][1], n)):
+        place(name)
+    return order

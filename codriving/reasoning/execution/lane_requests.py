@@ -1,4 +1,4 @@
-"""Which CAVs ask for a lane change: where the route asks for it, and where MOBIL's incentive says that it pays."""
+"""Which CAVs request a lane change: where the route needs it, and where MOBIL's incentive says that it pays."""
 
 from collections.abc import Mapping
 
@@ -19,7 +19,7 @@ POLITENESS = 0.3
 """Weight of what those behind gain or lose (MOBIL)."""
 
 THRESHOLD = 0.2
-"""Incentive below which nobody asks for a lane change [m/s2]."""
+"""Incentive below which no CAV wants to change lanes [m/s2]."""
 
 COOL_DOWN = 2.0
 """Time between two lane changes of one CAV [s]."""
@@ -34,13 +34,13 @@ DRIVER = IntelligentDriver()
 
 
 class LaneRequests:
-    """Who wants to change lanes, and may by the gap test that all methods share; remembers who asked since when."""
+    """Requests of CAVs that want to change lanes and may by the gap test of all methods; remembers their first time."""
 
     def __init__(self) -> None:
-        self._asked: dict[tuple[str, Action], float] = {}
+        self._since: dict[tuple[str, Action], float] = {}
         self._changed: dict[str, float] = {}
 
-    def ask(
+    def gather(
         self,
         stage: Stage,
         ordering: Ordering,
@@ -48,29 +48,21 @@ class LaneRequests:
         expected: Mapping[str, tuple[Expected, ...]],
         lag: int,
     ) -> list[Request]:
-        """Return the requests of this moment, first come first."""
-        wanted: dict[str, tuple[Action, float]] = {}
-        for name in sorted(stage.scenes):
-            found = self._wanted(stage, name, agreed, expected, lag)
-            if found is not None:
-                wanted[name] = found
-        self._asked = {
-            (name, action): self._asked.get((name, action), stage.time) for name, (action, _) in wanted.items()
+        """Return the requests of this moment, the earliest first."""
+        found = {name: self._wanted(stage, name, agreed, expected, lag) for name in sorted(stage.scenes)}
+        wanted = {name: change for name, change in found.items() if change is not None}
+        self._since = {
+            (name, action): self._since.get((name, action), stage.time) for name, (action, _) in wanted.items()
         }
         requests = [
-            Request(name, action, incentive, self._asked[name, action], _overlaps(stage.scenes, name, wanted))
+            Request(name, action, incentive, self._since[name, action], _overlaps(stage.scenes, name, wanted))
             for name, (action, incentive) in wanted.items()
         ]
         return sorted(requests, key=lambda r: (r.since, r.ego))
 
     def granted(self, names: frozenset[str], time: float) -> None:
-        """Note who changes lanes now.
-
-        Args:
-            time: Simulated time [s].
-        """
-        for name in sorted(names):
-            self._changed[name] = time
+        """Note the CAVs that change lanes at a simulated time [s]."""
+        self._changed |= dict.fromkeys(sorted(names), time)
 
     def _wanted(
         self,
@@ -80,7 +72,7 @@ class LaneRequests:
         expected: Mapping[str, tuple[Expected, ...]],
         lag: int,
     ) -> tuple[Action, float] | None:
-        """The lane change that a CAV wants most among those that pass the gap test, and its incentive."""
+        """Return the lane change that a CAV wants most among those that pass the gap test, and its incentive."""
         scene, actions = stage.scenes[name], stage.available[name]
         sides = [action for action in SIDES if action in actions]
         must = scene.must_change
@@ -102,7 +94,10 @@ class LaneRequests:
             gain = float("inf") if must is not None else incentive(scene, there.scene, stage)
             if gain > THRESHOLD:
                 options.append((gain, -SIDES[action], action))
-        return (max(options)[2], max(options)[0]) if options else None
+        if not options:
+            return None
+        gain, _, action = max(options)
+        return action, gain
 
     def _may_choose(self, scene: SceneDescription, time: float) -> bool:
         rested = time - self._changed.get(scene.ego.id, -COOL_DOWN) >= COOL_DOWN
@@ -143,7 +138,7 @@ def _behind(speed: float, top: float, ahead: TrackedVehicle | None) -> float:
 
 
 def _overlaps(scenes: Scenes, name: str, wanted: Mapping[str, tuple[Action, float]]) -> frozenset[str]:
-    """Those whose lane change needs the same piece of road at the same time."""
+    """Return the CAVs whose lane change needs the same piece of road at the same time."""
     found = set()
     mine = scenes[name]
     lanes = _lanes(mine, wanted[name][0])

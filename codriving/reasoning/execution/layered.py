@@ -1,16 +1,14 @@
-"""The layered executor, a reference: the first group accelerates, everybody else holds back and waits for its turn."""
+"""The layered executor, a reference: the first group accelerates, all others hold back and wait for their turn."""
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import Role
-from codriving.errors import ConfigError
+from codriving.errors import require_range
+from codriving.reasoning.execution.executor import Drive, Executor
 from codriving.reasoning.execution.joint_planner import JointPlans
 from codriving.reasoning.execution.planned import drive_of
-from codriving.reasoning.execution.protocol import Drive
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.ordering.human_windows import window
 from codriving.reasoning.ordering.protocol import Ordering
-from codriving.reasoning.prediction.plans import PLANS
-from codriving.reasoning.prediction.rollout import Plan
 from codriving.reasoning.safety.outlook import then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
 
@@ -21,10 +19,10 @@ LATE = 0.1
 """Difference of times that does not count [s]."""
 
 ROOM = 1.0
-"""Room that is left to whoever is ahead [m]."""
+"""Room that is left to the vehicle ahead [m]."""
 
 
-class Layered:
+class Layered(Executor):
     """Layers follow from the order; a layer goes when the one before it has left.
 
     Kept to show how much of a result is owed to the executor and how little to the order.
@@ -32,31 +30,27 @@ class Layered:
     Args:
         gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
         hold: Distance to the first zone within which a waiting vehicle slows down; farther away it keeps its speed [m].
-        headway: Time gap below which a vehicle slows down behind whoever drives ahead [s].
+        headway: Time gap below which a vehicle slows down behind the one ahead [s].
 
     Raises:
         ConfigError: If a setting is out of range.
     """
 
     name = "layered"
-    library: tuple[Plan, ...] = PLANS
 
     def __init__(self, gap: float, hold: float, brake_anywhere: bool, headway: float) -> None:
-        for key, value, most in (("gap", gap, 5), ("hold", hold, 200), ("headway", headway, 5)):
-            if not 0 <= value <= most:
-                raise ConfigError(f"{key} must be 0 to {most}, got {value:g}")
+        require_range("gap", gap, 0, 5)
+        require_range("hold", hold, 0, 200)
+        require_range("headway", headway, 0, 5)
         self.gap = self.margin = gap
         self.hold, self.brake_anywhere, self.headway = hold, brake_anywhere, headway
 
-    def reset(self) -> None:
-        """Begin an episode; nothing is remembered from the one before."""
-
     def planner(self, stage: Stage) -> JointPlans:
-        """Return what plans for everybody in an order, for rules that look at plans."""
+        """Return what plans all CAVs in an order, for rules that look at plans."""
         return JointPlans(stage, {}, self.gap, 1.0, self.headway)
 
     def drive(self, stage: Stage, ordering: Ordering) -> Drive:
-        """Let the first layer go and hold everybody else back."""
+        """Let the first layer go and hold all others back."""
         layers = layers_of(stage, ordering)
         plans = self.planner(stage)
         planned = drive_of(stage, plans, plans.joint(ordering.sequence), ordering)
@@ -97,7 +91,7 @@ def _distance(stage: Stage, name: str) -> float:
 
 
 def _too_close(stage: Stage, name: str, headway: float, action: Action) -> str:
-    """Whoever is so close ahead that after an action there is too little room to stop."""
+    """Return the vehicle that is so close ahead that after an action there is too little room to stop."""
     scene, forecast = stage.scenes[name], stage.forecast
     speed = scene.ego.speed
     (later,) = forecast.travel(speed, scene.intent.target_speed, [then_stop(action)])[:, -1]
@@ -111,7 +105,7 @@ def _too_close(stage: Stage, name: str, headway: float, action: Action) -> str:
 
 
 def _occupied(stage: Stage, name: str) -> str:
-    """Whoever is inside the first zone that the vehicle comes to."""
+    """Return the vehicle that is inside the first zone that a vehicle comes to."""
     ahead = [c for c in stage.conflicts[name] if c.distances[0] > 0]
     nearest = min((c.distances[0] for c in ahead), default=0.0)
     inside = [c.other for c in ahead if c.distances[0] <= nearest + BODY and c.distances[1] <= 0]
@@ -119,7 +113,7 @@ def _occupied(stage: Stage, name: str) -> str:
 
 
 def _human_first(stage: Stage, name: str, ordering: Ordering) -> str:
-    """A human driver who may be in the zone before the vehicle is through."""
+    """Return a human driver who may be in the zone before the vehicle is through."""
     time = ordering.times.get(name, 0.0)
     reference = stage.scenes[name].place + _distance(stage, name)
     for c in stage.conflicts[name]:
@@ -132,7 +126,7 @@ def _human_first(stage: Stage, name: str, ordering: Ordering) -> str:
 
 
 def _held(stage: Stage, name: str, ordering: Ordering) -> str:
-    """What a vehicle waits for that the method holds back for longer than its conflicts do."""
+    """Return what a vehicle waits for that the rule holds back for longer than its conflicts do."""
     distance = _distance(stage, name)
     if name not in ordering.not_before or distance <= 0:
         return ""

@@ -1,13 +1,13 @@
-"""The planned executor: everybody is planned in passing order with the exact vehicle model, and arrives in time."""
+"""The planned executor: all CAVs are planned in passing order with the exact vehicle model, and arrive in time."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from codriving.datatypes.action import Action
-from codriving.errors import ConfigError
+from codriving.errors import require_range
+from codriving.reasoning.execution.executor import Drive, Executor, humans_expected
 from codriving.reasoning.execution.joint_planner import Joint, JointPlans
-from codriving.reasoning.execution.protocol import Drive
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.ordering.protocol import Ordering
 from codriving.reasoning.prediction.expectation import Expected, progress_by_action
@@ -15,29 +15,27 @@ from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.prediction.rollout import Plan
 
 
-class Planned:
+class Planned(Executor):
     """Prioritised planning over a library of plans, in passing order.
 
-    The motions of those who go first are known exactly, so that the others enter gaps at speed. What everybody planned
-    a step ago is among the plans of the next step, so that CAVs alone never lose a plan that works.
+    The motions of those that go first are known exactly, so that the others enter gaps at speed. What each planned a
+    step ago is among its plans of the next step, so that CAVs alone never lose a plan that works.
 
     Args:
         gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
         margin: The same for plans [s].
         pad: Additional room along the route [m].
-        headway: Time gap to whoever drives ahead [s].
+        headway: Time gap to the vehicle ahead [s].
 
     Raises:
         ConfigError: If a setting is out of range.
     """
 
     name = "planned"
-    library: tuple[Plan, ...] = PLANS
 
     def __init__(self, gap: float, margin: float, pad: float, headway: float) -> None:
-        for key, value, most in (("gap", gap, 5), ("margin", margin, 5), ("pad", pad, 5), ("headway", headway, 5)):
-            if not 0 <= value <= most:
-                raise ConfigError(f"{key} must be 0 to {most}, got {value:g}")
+        for key, value in (("gap", gap), ("margin", margin), ("pad", pad), ("headway", headway)):
+            require_range(key, value, 0, 5)
         self.gap, self.margin, self.pad, self.headway = gap, margin, pad, headway
         self.reset()
 
@@ -47,13 +45,13 @@ class Planned:
         self._plans: JointPlans | None = None
 
     def planner(self, stage: Stage) -> JointPlans:
-        """Return what plans for everybody in an order."""
+        """Return what plans all CAVs in an order."""
         if self._plans is None or self._plans.stage is not stage:
             self._plans = JointPlans(stage, self._before, self.margin, self.pad, self.headway)
         return self._plans
 
     def drive(self, stage: Stage, ordering: Ordering) -> Drive:
-        """Return the first action of everybody's plan."""
+        """Return the first action of each CAV's plan."""
         plans = self.planner(stage)
         joint = plans.joint(ordering.sequence, ordering.not_before)
         self._before = {name: plans.plan_of(name, k)[1:] or plans.plan_of(name, k) for name, k in joint.chosen.items()}
@@ -74,12 +72,7 @@ def drive_of(stage: Stage, plans: JointPlans, joint: Joint, ordering: Ordering) 
             Expected(route, place + travel, k == 0, gains if r == 0 else {})
             for r, (route, place) in enumerate(plans.vehicles[name].routes)
         )
-    for known in stage.known.values():
-        for other in known.values():
-            if not other.is_cav and other.id not in expected:
-                steady = stage.forecast.reach(other.speed, False).steady
-                expected[other.id] = tuple(Expected(route, place + steady, True, {}) for route, place in other.routes)
-    return Drive(actions, reasons, expected, progress, {"plans_infeasible": len(joint.stuck)})
+    return Drive(actions, reasons, expected | humans_expected(stage), progress, {"plans_infeasible": len(joint.stuck)})
 
 
 def _reason(plans: JointPlans, joint: Joint, name: str, sequence: Sequence[str]) -> str:
@@ -87,12 +80,8 @@ def _reason(plans: JointPlans, joint: Joint, name: str, sequence: Sequence[str])
         return "no plan keeps clear of everybody; this one does for longest"
     if joint.chosen[name] == 0:
         return "nobody has to be waited for"
-    earlier = [other for other in sequence if other in joint.chosen and sequence.index(other) < _index(sequence, name)]
-    waits = [other for other in earlier if plans.shares_zone(other, name)]
+    earlier = sequence[: sequence.index(name)] if name in sequence else sequence
+    waits = [other for other in earlier if other in joint.chosen and plans.shares_zone(other, name)]
     action = plans.plan_of(name, joint.chosen[name])[0]
     what = {Action.FASTER: "accelerates", Action.IDLE: "keeps its speed", Action.SLOWER: "slows down"}[action]
     return f"{what} to arrive after {', '.join(waits)}" if waits else f"{what} because of human drivers or those ahead"
-
-
-def _index(sequence: Sequence[str], name: str) -> int:
-    return sequence.index(name) if name in sequence else len(sequence)

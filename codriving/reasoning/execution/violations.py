@@ -1,10 +1,20 @@
-"""When a planned motion first comes too close to somebody: the one test by which plans are judged."""
+"""When a planned motion first comes too close to another vehicle: the one test of all plans.
+
+Functions return the step of the first violation of each plan (plans,), or the number of steps where there is none.
+"""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.geometry.box import PLANNING, TRUE, Footprint
 from codriving.geometry.zone import ConflictZone
+from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.prediction.expectation import CLEARS, is_behind
+from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.conflict_lane import BODY
 
 Array = NDArray[np.float64]
@@ -15,7 +25,7 @@ SIZES: tuple[Footprint, ...] = (PLANNING, BODY, TRUE)
 
 
 def first_true(flags: NDArray[np.bool_]) -> Steps:
-    """Return the first step at which a flag is set in each row (plans,); the number of steps where none is."""
+    """Return the first step at which a flag of each row is set."""
     return np.asarray(np.where(flags.any(axis=1), flags.argmax(axis=1), flags.shape[1]))
 
 
@@ -26,9 +36,6 @@ def passes_too_early(zone: ConflictZone, ego: Array, first: Array, lag: int, pad
         ego: Its arc length over time (plans, n) [m].
         first: Arc length of the one that goes first, over time (at least n,) [m].
         pad: Additional room along the route [m].
-
-    Returns:
-        Step of the first violation (plans,); n where there is none.
     """
     n = ego.shape[1]
     gone = np.concatenate([np.full(lag, first[0]), first])[:n]
@@ -43,12 +50,113 @@ def meets(zone: ConflictZone, ego: Array, low: Array, high: Array, lag: int, pad
         low: Least arc length of the other over time (at least n,) [m].
         high: Greatest arc length of the other over time (at least n,) [m].
         pad: Additional room along the route [m].
-
-    Returns:
-        Step of the first violation (plans,); n where there is none.
     """
     n = ego.shape[1]
     least = np.concatenate([np.full(lag, low[0]), low])[:n]
     most = np.concatenate([high[lag:n], np.full(min(lag, n), high[n - 1])])
     begin, end = zone.over_i.blocked(ego)
     return first_true((begin - pad <= most) & (end + pad >= least))
+
+
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """A stretch that two CAVs share.
+
+    Attributes:
+        place: Its arc length [m].
+        there: Arc length of the one that goes first [m].
+        pad: Additional room along the route [m].
+    """
+
+    zones: tuple[ConflictZone, ...]
+    place: float
+    there: float
+    until: int
+    lag: int
+    pad: float
+    smaller: tuple[tuple[ConflictZone, ...], ...] = ()
+
+    def steps(self, travels: Array, first: Array) -> Steps:
+        """Return when each plan first comes too close.
+
+        Args:
+            travels: Distance of each plan over time (plans, n) [m].
+            first: Distance of the one that goes first over time (n,) [m].
+        """
+        found = self._in(self.zones, travels, first, self.lag, self.pad)
+        for k, zones in enumerate(self.smaller):
+            if found.any():
+                break
+            # As long as the bodies have room the margins stay; a vehicle that is closer than that may only get away.
+            found = self._in(zones, travels, first, *((self.lag, self.pad) if k == 0 else (0, 0.0)))
+        return found
+
+    def _in(self, zones: tuple[ConflictZone, ...], travels: Array, first: Array, lag: int, pad: float) -> Steps:
+        n = travels.shape[1]
+        found: Steps = np.full(len(travels), n)
+        for zone in zones:
+            motion = self.place + travels[:, : self.until]
+            steps = passes_too_early(zone, motion, self.there + first, lag, pad)
+            found = np.minimum(found, np.where(steps < self.until, steps, n))
+        return found
+
+
+ROOM = 0.5
+"""Room that a driver who gives way leaves to the zone [m]."""
+
+
+def minds_humans(stage: Stage, ego: TrackedVehicle, travels: Array, lag: int, following: int, pad: float) -> Steps:
+    """Return when each plan of a CAV first comes too close to a human driver.
+
+    A driver behind on the same way has to mind the CAV, not the other way round; one who gives way, by standing or by
+    the rules of the road, is expected to stay before the zone.
+    """
+    found: Steps = np.full(len(travels), travels.shape[1])
+    people = {m.id: m for m in stage.known[ego.id].values() if not m.is_cav}
+    for other in people.values():
+        found = np.minimum(found, _drives_ahead(stage, ego, other, travels, following))
+    for c in stage.conflicts[ego.id]:
+        if c.other in people:
+            found = np.minimum(found, _in_zone(stage, c, people[c.other], travels, lag, pad))
+    return found
+
+
+def _drives_ahead(stage: Stage, ego: TrackedVehicle, other: TrackedVehicle, travels: Array, following: int) -> Steps:
+    n = travels.shape[1]
+    found: Steps = np.full(len(travels), n)
+    low, _ = stage.forecast.likely(other.speed)
+    for k, (route, place) in enumerate(ego.routes):
+        # A lane that the CAV is leaving is minded until its body is off it.
+        until = n if k == 0 else round(CLEARS / stage.forecast.sample) + 1
+        for way, there in other.routes:
+            for zone in stage.road_map.zones(route, way):
+                if is_behind(zone, place, there):
+                    steps = passes_too_early(zone, place + travels[:, :until], there + low, following, 0.0)
+                    found = np.minimum(found, np.where(steps < until, steps, n))
+    return found
+
+
+def _in_zone(stage: Stage, c: Conflict, other: TrackedVehicle, travels: Array, lag: int, pad: float) -> Steps:
+    place, there = c.places
+    low, high = stage.forecast.likely(other.speed)
+    yields = gives_way(c, other, stage.road_map)
+    steps: Steps = np.zeros(len(travels), dtype=np.int64)
+    # Beside a driver who gives way the bodies have to keep clear, no more.
+    for size in SIZES[1:] if yields else SIZES:
+        whole, apart = size is PLANNING, not yields and size is not TRUE
+        # One zone of the larger footprint may be several of the smaller one.
+        zones = stage.road_map.zones(*c.routes, size)
+        for zone in (zones[c.zone],) if whole else zones:
+            room = max(zone.entry_j - there - ROOM, 0.0) if yields else np.inf
+            touched = meets(
+                zone,
+                place + travels,
+                there + np.minimum(low, room),
+                there + np.minimum(high, room),
+                lag if apart else 0,
+                pad if apart else 0.0,
+            )
+            steps = touched if zone is zones[0] or whole else np.minimum(steps, touched)
+        if steps.any() or not zones:
+            return steps if zones else np.full(len(travels), travels.shape[1])
+    return steps

@@ -1,4 +1,4 @@
-"""What an ordering method is: it is handed an instance and says who passes first."""
+"""What an ordering rule is: it is handed an instance and says in which order vehicles pass."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,12 +13,12 @@ from codriving.reasoning.ordering.request import Request
 
 @dataclass(frozen=True, slots=True)
 class Ordering:
-    """The answer of an ordering method.
+    """The answer of an ordering rule.
 
     Attributes:
         times: When each is to pass its reference point, in the same order [s].
-        not_before: Earliest time at which a vehicle may pass its reference point even if nobody is in its way [s]; only
-            of those whom the method holds back for longer than their conflicts do.
+        not_before: Earliest time at which a vehicle may pass its reference point even if its way is free [s]; only of
+            those that the rule holds back for longer than their conflicts do.
     """
 
     sequence: tuple[str, ...]
@@ -30,7 +30,7 @@ class Ordering:
 
 @dataclass(frozen=True, slots=True)
 class JointPlan:
-    """What everybody would do in one order, planned one after another with the exact vehicle model.
+    """What all CAVs would do in one order, planned one after another with the exact vehicle model.
 
     Attributes:
         travels: Distance of each CAV over time, by id; each (steps + 1,) [m].
@@ -48,10 +48,10 @@ class JointPlan:
 
 
 class JointPlanner(Protocol):
-    """Plans for everybody in a given order; the same planner that drives the cars."""
+    """Plans all CAVs in a given order; the same planner that drives the cars."""
 
     def plan(self, order: Sequence[str]) -> JointPlan:
-        """Return what everybody would do."""
+        """Return what all CAVs would do."""
         ...
 
     def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
@@ -74,9 +74,9 @@ class OrderRule(Protocol):
         ...
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-        """Return who passes first."""
+        """Return the passing order."""
         ...
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Return who may change lanes now."""
+        """Return the CAVs that may change lanes now, by id."""
         ...

@@ -11,16 +11,9 @@ SLACK = 1e-9
 
 
 def earliest_slot(instance: Instance, name: str, scheduled: Times) -> float:
-    """Return the earliest time at which a vehicle disturbs nobody who is scheduled.
+    """Return the earliest time at which a vehicle disturbs none that is scheduled [s].
 
-    Each scheduled vehicle shuts out an interval around its own time, each human driver a window. After being moved out
-    of one of them a time may lie in another one, so all of them are asked again until nothing changes.
-
-    Args:
-        scheduled: When the vehicles already scheduled pass [s].
-
-    Returns:
-        Time at its reference point [s].
+    Each scheduled vehicle shuts out an interval around its own time, each human driver a window.
     """
     entrant, separation = instance.entrants[name], instance.separation
     time, shut = entrant.eta, list(entrant.windows)
@@ -36,14 +29,7 @@ def earliest_slot(instance: Instance, name: str, scheduled: Times) -> float:
 
 
 def inserted(instance: Instance, ranking: Sequence[str], scheduled: Times) -> dict[str, float]:
-    """Give one vehicle after another the earliest slot among those scheduled before it.
-
-    Args:
-        scheduled: Those who have their times already [s].
-
-    Returns:
-        When each vehicle passes, those scheduled included [s].
-    """
+    """Give one vehicle after another the earliest slot among those scheduled before it; return the whole schedule."""
     times = dict(scheduled)
     for name in ranking:
         times[name] = earliest_slot(instance, name, times)
@@ -51,16 +37,16 @@ def inserted(instance: Instance, ranking: Sequence[str], scheduled: Times) -> di
 
 
 def sequence(instance: Instance, times: Times) -> list[str]:
-    """Return who goes before whom in a schedule, as an order.
+    """Return the order in which a schedule lets vehicles through their zones.
 
     Reference points lie at different distances from a shared zone, so the one with the later time may be the one that
-    is in the zone first. Of two in conflict it is therefore the separations that tell who goes first, not the times.
+    is in the zone first. Of two in conflict it is therefore the separations that tell which goes first, not the times.
 
     Args:
         times: A schedule; of equal times the one that stands first here goes first [s].
 
     Returns:
-        Everybody, first to last; it respects what is physically fixed.
+        All vehicles, first to last; it respects what is physically fixed.
     """
     ranking = sorted(times, key=lambda name: times[name])
     behind = {
@@ -92,10 +78,10 @@ def _is_first(instance: Instance, times: Times, one: str, other: str, earlier: b
 
 
 def carried_over(instance: Instance, previous: Sequence[str], ranking: Sequence[str]) -> list[str] | None:
-    """Bring an order up to date: who has gone is left out, who is new gets the earliest slot between the others.
+    """Bring an order up to date: without vehicles that have gone; new ones get the earliest slot between the others.
 
     Returns:
-        Everybody; None if nobody of the order is left, or if it contradicts what is now physically fixed.
+        All vehicles; None if none of the order is left, or if it contradicts what is now physically fixed.
     """
     kept = [name for name in previous if name in instance.entrants]
     known = set(kept)
@@ -103,7 +89,7 @@ def carried_over(instance: Instance, previous: Sequence[str], ranking: Sequence[
         return None
     times = timed(instance, kept)
     new = [name for name in ranking if name not in known]
-    # Of equal times the one that stands first goes first: those who are in the order already.
+    # Of equal times the one that stands first goes first: those that are in the order already.
     order = sequence(instance, inserted(instance, new, times)) if new else repaired(instance, kept)
     place = {name: k for k, name in enumerate(order)}
     turned = (place[one] > place[other] for one, other in combinations(kept, 2) if instance.conflict(one, other))

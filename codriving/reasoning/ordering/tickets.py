@@ -1,11 +1,12 @@
-"""Tickets: who came first, written down once and never changed."""
+"""Tickets: which vehicle came first, written down once and never changed; and why one vehicle goes before another."""
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from itertools import combinations
 from typing import NamedTuple
 
-from codriving.datatypes.ordering_problem import Entrant, Instance
-from codriving.errors import ConfigError
-from codriving.reasoning.ordering.schedule import repaired
+from codriving.datatypes.ordering_problem import Entrant, Instance, Pair
+from codriving.errors import require_range
+from codriving.reasoning.ordering.schedule import Times, repaired
 
 CONTROL_RADIUS = 60.0
 """Distance to the reference point from which on a vehicle holds a ticket [m]."""
@@ -26,38 +27,33 @@ class Ticket(NamedTuple):
     id: str
 
 
-@dataclass(slots=True)
 class TicketBook:
     """Hands out tickets, and remembers them for one episode.
 
-    Attributes:
+    Args:
         radius: Distance to the reference point from which on a vehicle holds a ticket [m].
 
     Raises:
         ConfigError: If the radius is out of range.
     """
 
-    radius: float
-    held: dict[str, Ticket]
-    begun: bool
-
     def __init__(self, radius: float = CONTROL_RADIUS) -> None:
-        if not 1 <= radius <= 1000:
-            raise ConfigError(f"control_radius must be 1 to 1000 m, got {radius:g}")
+        require_range("control_radius", radius, 1, 1000, " m")
         self.radius = radius
         self.reset()
 
     def reset(self) -> None:
-        """Begin an episode: nobody holds a ticket."""
-        self.held, self.begun = {}, False
+        """Begin an episode: no vehicle holds a ticket."""
+        self.held: dict[str, Ticket] = {}
+        self.begun = False
 
     def ranking(self, instance: Instance) -> list[str]:
-        """Hand out the tickets of this moment and rank everybody.
+        """Hand out the tickets of this moment and rank all vehicles.
 
-        At the first step of the episode everybody gets a ticket, later whoever is within the radius for the first time.
+        At the first step of the episode all get a ticket, later those that are within the radius for the first time.
 
         Returns:
-            Ids by ticket, behind them those without one by earliest arrival; nobody before whom it has to let go.
+            Ids by ticket, behind them those without one by earliest arrival; as far as what is physically fixed allows.
         """
         for entrant in instance.entrants.values():
             if entrant.id not in self.held and (not self.begun or entrant.distance <= self.radius):
@@ -74,11 +70,49 @@ def _ticket(entrant: Entrant, now: float) -> Ticket:
 
 def in_turn(tickets: list[Ticket]) -> list[Ticket]:
     """Sort tickets by time, equal ones by priority and then by id."""
-    ordered: list[Ticket] = []
-    equal: list[Ticket] = []
+    groups: list[list[Ticket]] = []
     for ticket in sorted(tickets):
-        if equal and ticket.time - equal[0].time > TIE:
-            ordered += sorted(equal, key=lambda t: t[1:])
-            equal = []
-        equal.append(ticket)
-    return ordered + sorted(equal, key=lambda t: t[1:])
+        if not groups or ticket.time - groups[-1][0].time > TIE:
+            groups.append([])
+        groups[-1].append(ticket)
+    return [ticket for group in groups for ticket in sorted(group, key=lambda t: t[1:])]
+
+
+def reasons(instance: Instance, order: Sequence[str], chosen: Callable[[str, str], str]) -> dict[Pair, str]:
+    """Give a reason for each pair of an order that is in conflict."""
+    return {
+        (one, other): fixed(instance, one, other) if (one, other) in instance.before else chosen(one, other)
+        for one, other in combinations(order, 2)
+        if instance.conflict(one, other)
+    }
+
+
+def fixed(instance: Instance, one: str, other: str) -> str:
+    """Say why it is physically fixed that one vehicle goes before another one."""
+    first, second = instance.entrants[one], instance.entrants[other]
+    if second.leader == one:
+        return f"{one} drives ahead of {other}"
+    if first.committed and not second.committed:
+        return f"{one} can no longer stop, {other} can"
+    return f"{one} has to go before {other} as they drive"
+
+
+def by_ticket(one: str, other: str, held: Mapping[str, Ticket]) -> str:
+    """Say what the tickets of two vehicles have to do with their order."""
+    if one in held and other in held:
+        times = f"({held[one].time:.1f} s against {held[other].time:.1f} s)"
+        if held[one] <= held[other]:
+            return f"{one} holds the earlier ticket {times}"
+        return f"{one} goes in spite of its later ticket {times}: {other} has to wait for somebody behind it"
+    if one in held:
+        return f"{one} holds a ticket, {other} is still too far away"
+    if other in held:
+        return f"{one} goes without a ticket: {other} has to wait for somebody behind it"
+    return f"{one} can arrive before {other}; both are still too far away for a ticket"
+
+
+def by_slot(one: str, other: str, held: Mapping[str, Ticket], times: Times) -> str:
+    """Say why the slot of one vehicle comes before that of another one."""
+    if other in held and (one not in held or held[one] > held[other]):
+        return f"{one} fits in before {other} ({times[one]:.1f} s before {times[other]:.1f} s)"
+    return by_ticket(one, other, held)

@@ -29,7 +29,7 @@ def ask(world: Junction, *cars: Car, requests: LaneRequests | None = None, time:
     stage = stage_of(world.thoughts(*cars), time)
     empty = Ordering((), {})
     driven = planned().drive(stage, empty)
-    return (requests or LaneRequests()).ask(stage, empty, NOBODY, driven.expected, 8)
+    return (requests or LaneRequests()).gather(stage, empty, NOBODY, driven.expected, 8)
 
 
 def gain(world: Junction, *cars: Car, action: Action = LEFT) -> float:

@@ -12,7 +12,7 @@ from worlds import Car, Junction, car
 from codriving.datatypes.action import Action
 from codriving.errors import ConfigError
 from codriving.geometry.box import TRUE, corners, overlap
-from codriving.reasoning.execution.protocol import Drive
+from codriving.reasoning.execution.executor import Drive
 from codriving.reasoning.ordering.protocol import Ordering
 
 ROUTES = tuple(

@@ -12,13 +12,20 @@ from instances import LEGS, TURNS, NoPlanner, both, crossroads, instance, is_val
 from codriving.errors import ConfigError
 from codriving.methods.bruteforce import BruteForce
 from codriving.methods.fcfs import FirstComeFirstServed
-from codriving.methods.idfst.idfst import SpanningTree
+from codriving.methods.idfst import SpanningTree
 from codriving.methods.mcts import MonteCarloTreeSearch
-from codriving.methods.order_search.coded import Coded
-from codriving.reasoning.ordering.objective import LONGEST_WAIT, Objective
+from codriving.methods.order_search import Coded, joined
 from codriving.reasoning.ordering.protocol import OrderRule
-from codriving.reasoning.ordering.schedule import after_windows, evacuation_time, repaired, schedule, timed, total_delay
-from codriving.reasoning.ordering.windows import joined
+from codriving.reasoning.ordering.schedule import (
+    LONGEST_WAIT,
+    Objective,
+    after_windows,
+    evacuation_time,
+    repaired,
+    schedule,
+    timed,
+    total_delay,
+)
 
 RULES: dict[str, Callable[[], OrderRule]] = {
     "fcfs": FirstComeFirstServed,

@@ -1,13 +1,14 @@
 """What an executor is: it is handed an order and says what every CAV does now."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from codriving.datatypes.action import Action
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
 from codriving.reasoning.prediction.expectation import Expected
+from codriving.reasoning.prediction.rollout import Plan
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,26 +27,38 @@ class Drive:
     counts: Mapping[str, int] = field(default_factory=dict)
 
 
-class Executor(Protocol):
+class Executor(ABC):
     """Turns passing orders into actions, step after step of one episode.
 
     Attributes:
         gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
         margin: The same for motions, and for the gap test of lane changes [s].
+        library: Plans that it uses besides those that all methods predict.
     """
 
     name: str
     gap: float
     margin: float
+    library: tuple[Plan, ...] = ()
 
-    def reset(self) -> None:
+    def reset(self) -> None:  # noqa: B027
         """Begin an episode; nothing is remembered from the one before."""
-        ...
 
+    @abstractmethod
     def planner(self, stage: Stage) -> JointPlanner:
-        """Return what plans for everybody in an order; it is asked before the order is chosen."""
-        ...
+        """Return what plans all CAVs in an order; the rule uses it to choose the order."""
 
+    @abstractmethod
     def drive(self, stage: Stage, ordering: Ordering) -> Drive:
         """Return what every CAV does now."""
-        ...
+
+
+def humans_expected(stage: Stage) -> dict[str, tuple[Expected, ...]]:
+    """Expect each human driver that any CAV knows to keep its speed, on every way that it may take."""
+    found: dict[str, tuple[Expected, ...]] = {}
+    for known in stage.known.values():
+        for v in known.values():
+            if not v.is_cav and v.id not in found:
+                steady = stage.forecast.reach(v.speed, False).steady
+                found[v.id] = tuple(Expected(route, place + steady, True, {}) for route, place in v.routes)
+    return found

@@ -2,30 +2,30 @@
 
 from collections.abc import Sequence
 from itertools import combinations
+from math import inf
 
 from codriving.datatypes.ordering_problem import Instance, Pair
-from codriving.errors import ConfigError
-from codriving.methods.idfst.spanning_tree import request_layers
-from codriving.reasoning.ordering.objective import Objective
+from codriving.errors import require_range
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
-from codriving.reasoning.ordering.reasons import by_slot, reasons
 from codriving.reasoning.ordering.request import Request
-from codriving.reasoning.ordering.schedule import timed
+from codriving.reasoning.ordering.schedule import LONGEST_WAIT, Objective, timed
 from codriving.reasoning.ordering.slots import carried_over, inserted, sequence
-from codriving.reasoning.ordering.tickets import CONTROL_RADIUS, TicketBook
-from codriving.reasoning.ordering.windows import clock_windows, moved_windows
+from codriving.reasoning.ordering.tickets import CONTROL_RADIUS, TicketBook, by_slot, reasons
+
+Windows = Sequence[tuple[float, float]]
+"""When human drivers block the reference point, (begin, end) [s]."""
 
 
 class SpanningTree:
     """Improved depth-first spanning tree, with times in place of layers.
 
-    Whoever is scheduled keeps its rank, who is new is inserted. Everybody is scheduled anew if an earliest arrival or a
-    window of a human driver has moved, or if what is physically fixed has changed.
+    A vehicle that is scheduled keeps its rank, a new one is inserted. All are scheduled anew if an earliest arrival
+    or a window of a human driver has moved, or if what is physically fixed has changed.
 
     Args:
         control_radius: Distance to the reference point from which on a vehicle holds a ticket, 1 to 1000 [m].
-        drift: How far an earliest arrival or a window may move before everybody is scheduled anew, 0 to 10 [s].
-        hysteresis: Delay that a new schedule must save everybody together to be taken, 0 to 10 [s].
+        drift: How far an earliest arrival or a window may move before all are scheduled anew, 0 to 10 [s].
+        hysteresis: Delay that a new schedule must save in all to be taken, 0 to 10 [s].
 
     Raises:
         ConfigError: If a value is out of range.
@@ -34,17 +34,15 @@ class SpanningTree:
     name = "idfst"
 
     def __init__(self, control_radius: float = CONTROL_RADIUS, drift: float = 1.0, hysteresis: float = 0.3) -> None:
-        if not 0 <= drift <= 10:
-            raise ConfigError(f"drift must be 0 to 10 s, got {drift:g}")
-        if not 0 <= hysteresis <= 10:
-            raise ConfigError(f"hysteresis must be 0 to 10 s, got {hysteresis:g}")
+        require_range("drift", drift, 0, 10, " s")
+        require_range("hysteresis", hysteresis, 0, 10, " s")
         self.tickets, self.drift, self.hysteresis = TicketBook(control_radius), drift, hysteresis
         self.objective = Objective()
         self.variant: str = ""
         self.reset(0)
 
     def reset(self, seed: int) -> None:
-        """Begin an episode: nobody holds a ticket or a slot."""
+        """Begin an episode: no vehicle holds a ticket or a slot."""
         self.tickets.reset()
         self.scheduled: tuple[str, ...] = ()
         self.arrivals: dict[str, float] = {}
@@ -63,27 +61,32 @@ class SpanningTree:
                 order = fresh
         self._remember(instance, order, anew)
         times = timed(instance, order)
-        return Ordering(
-            tuple(order),
-            times,
-            reasons(instance, order, lambda one, other: by_slot(one, other, self.tickets.held, times)),
-            {"scheduled_anew": int(anew)},
-        )
+        why = reasons(instance, order, lambda one, other: by_slot(one, other, self.tickets.held, times))
+        return Ordering(tuple(order), times, why, {"scheduled_anew": int(anew)})
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Sort the requests into layers, first request first, and grant the largest layer."""
-        return max(request_layers(requests), key=len, default=frozenset())
+        """Put each request into the first layer in which none overlaps with it, and grant the largest layer."""
+        overlaps = {(r.ego, other) for r in requests for other in r.excludes}
+        layers: list[list[str]] = []
+        for r in requests:
+            for layer in layers:
+                if not any((r.ego, other) in overlaps or (other, r.ego) in overlaps for other in layer):
+                    layer.append(r.ego)
+                    break
+            else:
+                layers.append([r.ego])
+        largest: list[str] = max(layers, key=len, default=[])
+        return frozenset(largest)
 
     def _delay(self, instance: Instance, order: Sequence[str]) -> float:
         return self.objective.value(instance, timed(instance, order))
 
     def _has_moved(self, instance: Instance) -> bool:
-        """Whether something has changed too much for those who are scheduled, since they were."""
+        """Whether something has changed too much since the vehicles that are scheduled were."""
         kept = [name for name in self.scheduled if name in instance.entrants]
-        for one, other in combinations(kept, 2):
-            for pair in ((one, other), (other, one)):
-                if (pair in self.before) != (pair in instance.before):
-                    return True
+        pairs = [pair for one, other in combinations(kept, 2) for pair in ((one, other), (other, one))]
+        if any((pair in self.before) != (pair in instance.before) for pair in pairs):
+            return True
         for name in kept:
             entrant = instance.entrants[name]
             arrival = instance.time + entrant.eta
@@ -95,7 +98,7 @@ class SpanningTree:
         return False
 
     def _remember(self, instance: Instance, order: Sequence[str], anew: bool) -> None:
-        """Note what holds for those who have a slot; a vehicle without a ticket is inserted again at the next step."""
+        """Note what the slots rest on; a vehicle without a ticket is inserted again at the next step."""
         known = set() if anew else set(self.scheduled)
         self.scheduled = tuple(name for name in order if name in self.tickets.held)
         self.before = frozenset(instance.before)
@@ -104,3 +107,27 @@ class SpanningTree:
                 entrant = instance.entrants[name]
                 self.arrivals[name] = instance.time + entrant.eta
                 self.windows[name] = clock_windows(entrant.windows, instance.time)
+
+
+def moved_windows(one: Windows, other: Windows, most: float) -> bool:
+    """Whether windows on one clock differ by more than a given time [s]."""
+    if len(one) != len(other):
+        return True
+    bounds = zip(sorted(one), sorted(other), strict=True)
+    return any(a != b and not abs(a - b) <= most for pair in bounds for a, b in zip(*pair, strict=True))
+
+
+def clock_windows(windows: Windows, now: float) -> list[tuple[float, float]]:
+    """Put windows that are counted from now on the clock of the simulation, overlapping ones as one.
+
+    Returns:
+        Those that are not over, by begin; none begins before now, and an end that is out of sight is inf [s].
+    """
+    joined: list[tuple[float, float]] = []
+    seen = [(max(b, 0.0), e if e < LONGEST_WAIT else inf) for b, e in windows]
+    for begin, end in sorted((b + now, e + now) for b, e in seen if e > b):
+        if joined and begin <= joined[-1][1]:
+            joined[-1] = joined[-1][0], max(joined[-1][1], end)
+        else:
+            joined.append((begin, end))
+    return joined

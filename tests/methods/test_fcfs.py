@@ -11,7 +11,7 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.ordering_problem import Instance
 from codriving.errors import ConfigError
 from codriving.methods.fcfs import FirstComeFirstServed
-from codriving.methods.idfst.idfst import SpanningTree
+from codriving.methods.idfst import SpanningTree
 from codriving.reasoning.ordering.request import Request
 from codriving.reasoning.ordering.schedule import total_delay
 from codriving.reasoning.ordering.tickets import Ticket, in_turn

@@ -3,14 +3,18 @@
 from collections.abc import Sequence
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.ordering_problem import Instance
 from codriving.datatypes.scene_description import TrackedVehicle
-from codriving.errors import ConfigError
-from codriving.methods.coop_game_fuzzy.joint_choice import Costs, Joint, settle
+from codriving.errors import require_range
+from codriving.methods.coop_game_fuzzy.joint_choice import MOST, Costs, Joint, settle, shapley
 from codriving.methods.coop_game_fuzzy.joint_costs import Weights, joint_costs
-from codriving.methods.coop_game_fuzzy.shapley import MOST, shapley
-from codriving.reasoning.execution.protocol import Drive
+from codriving.methods.ordered import Ordered
+from codriving.reasoning.execution.executor import Drive, Executor, humans_expected
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering
+from codriving.reasoning.ordering.request import Request, best_subset
+from codriving.reasoning.ordering.schedule import timed
+from codriving.reasoning.ordering.tickets import TicketBook, by_ticket, reasons
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.rollout import Plan
 from codriving.reasoning.safety.outlook import then_stop
@@ -30,25 +34,23 @@ LIBRARY: tuple[Plan, ...] = tuple(
         )
     )
 )
-"""Every plan that is asked for: an action held for a while, and then going; and an action, and then stopping."""
+"""Every plan that is used: an action held for a while, and then going; and an action, and then stopping."""
 
 
-class FuzzyCoalition:
-    """Joint actions instead of orders: whatever costs least, by risk, loss of speed and acceleration.
+class CoopGameFuzzy(Ordered):
+    """Joint actions instead of orders; the order of arrival is shown beside them.
 
     Args:
-        gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules that are only
-            shown, 0 to 5 [s].
+        gap: Time between one vehicle's leaving a zone and the next one's entering it, for the order that is shown, 0 to
+            5 [s].
         reference_acceleration: Acceleration that costs the whole weight of comfort, 0.1 to 20 [m/s2].
-        hold: Time for which an action is held before everybody goes, 0.2 to 4 [s].
+        hold: Time for which an action is held before all go, 0.2 to 4 [s].
         horizon: Time within which risk, loss of speed and acceleration count, 1 to 10 [s].
+        control_radius: Distance to the reference point from which on a vehicle holds a ticket, 1 to 1000 [m].
 
     Raises:
         ConfigError: If a setting is out of range.
     """
-
-    name = "fuzzy_coalition"
-    library = LIBRARY
 
     def __init__(
         self,
@@ -61,29 +63,58 @@ class FuzzyCoalition:
         hold: float,
         horizon: float,
         shares: bool,
+        control_radius: float,
     ) -> None:
-        for key, value, least, most, unit in (
-            ("gap", gap, 0, 5, " s"),
-            ("participation", participation, 0, 1, ""),
-            ("risk", risk, 0, 1, ""),
-            ("efficiency", efficiency, 0, 1, ""),
-            ("comfort", comfort, 0, 1, ""),
-            ("reference_acceleration", reference_acceleration, 0.1, 20, " m/s2"),
-            ("hold", hold, 0.2, 4, " s"),
-            ("horizon", horizon, 1, 10, " s"),
-        ):
-            if not least <= value <= most:
-                raise ConfigError(f"{key} must be {least:g} to {most:g}{unit}, got {value:g}")
+        require_range("gap", gap, 0, 5, " s")
+        require_range("participation", participation, 0, 1)
+        require_range("risk", risk, 0, 1)
+        require_range("efficiency", efficiency, 0, 1)
+        require_range("comfort", comfort, 0, 1)
+        require_range("reference_acceleration", reference_acceleration, 0.1, 20, " m/s2")
+        require_range("hold", hold, 0.2, 4, " s")
+        require_range("horizon", horizon, 1, 10, " s")
+        weights = Weights(risk, efficiency, comfort, reference_acceleration)
+        super().__init__(Arrival(control_radius), JointActions(gap, participation, weights, hold, horizon, shares))
+
+
+class Arrival:
+    """The order of tickets, by which no CAV drives; lane changes are granted by what they gain."""
+
+    name, variant = "coop_game", ""
+
+    def __init__(self, control_radius: float) -> None:
+        self.tickets = TicketBook(control_radius)
+
+    def reset(self, seed: int) -> None:
+        """Begin an episode: no vehicle holds a ticket."""
+        self.tickets.reset()
+
+    def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
+        """Return the order of tickets, as far as what is physically fixed allows."""
+        ranking, held = self.tickets.ranking(instance), self.tickets.held
+        why = reasons(instance, ranking, lambda one, other: by_ticket(one, other, held))
+        return Ordering(tuple(ranking), timed(instance, ranking), why)
+
+    def grant(self, requests: Sequence[Request]) -> frozenset[str]:
+        """Grant the requests that do not overlap and gain most together."""
+        return best_subset(requests)
+
+
+class JointActions(Executor):
+    """The joint action that costs least, by risk, loss of speed and acceleration, whatever the order."""
+
+    name = "fuzzy_coalition"
+    library = LIBRARY
+
+    def __init__(
+        self, gap: float, participation: float, weights: Weights, hold: float, horizon: float, shares: bool
+    ) -> None:
         self.gap = self.margin = gap
-        self.participation, self.shares = participation, shares
-        self.weights = Weights(risk, efficiency, comfort, reference_acceleration)
+        self.participation, self.weights, self.shares = participation, weights, shares
         self.hold, self.horizon = hold, horizon
 
-    def reset(self) -> None:
-        """Begin an episode; nothing is remembered from one step to the next."""
-
     def planner(self, stage: Stage) -> JointPlanner:
-        """Return a planner that has no plan for any order, since nobody asks which one it is."""
+        """Return a planner that has no plan for any order."""
         return NoPlans(stage.forecast.sample)
 
     def drive(self, stage: Stage, ordering: Ordering) -> Drive:
@@ -98,7 +129,7 @@ class FuzzyCoalition:
         allowed = [self._allowed(stage, v) for v in vehicles.values()]
         joint = settle(costs, allowed, self.participation)
         shares = self._shares(costs, allowed, joint, list(vehicles)) if self.shares and len(vehicles) <= MOST else {}
-        actions, reasons, expected, progress = {}, {}, {}, {}
+        actions, reasons, expected, progress = {}, {}, humans_expected(stage), {}
         for (name, v), k, cost in zip(vehicles.items(), joint, costs.of([joint])[0], strict=True):
             actions[name] = OPTIONS[k]
             share = f", its share of what that saves is {shares[name]:.2f}" if name in shares else ""
@@ -108,7 +139,7 @@ class FuzzyCoalition:
                 Expected(route, place + travels[name][k], k == 0, progress[name] if r == 0 else {})
                 for r, (route, place) in enumerate(v.routes)
             )
-        return Drive(actions, reasons, self._humans(stage) | expected, progress)
+        return Drive(actions, reasons, expected, progress)
 
     def _allowed(self, stage: Stage, v: TrackedVehicle) -> list[int]:
         """Return the options that the road allows a CAV: where its lane ends it must still be able to stop."""
@@ -126,7 +157,7 @@ class FuzzyCoalition:
     def _shares(
         self, costs: Costs, allowed: Sequence[Sequence[int]], joint: Joint, names: list[str]
     ) -> dict[str, float]:
-        """Share out what all save against everybody's looking after itself."""
+        """Share out what all save against each looking after itself."""
         alone = settle(costs, allowed, 0.0)
 
         def saved(members: frozenset[str]) -> float:
@@ -136,22 +167,9 @@ class FuzzyCoalition:
 
         return shapley(names, saved)
 
-    def _humans(self, stage: Stage) -> dict[str, tuple[Expected, ...]]:
-        found = {}
-        for known in stage.known.values():
-            for v in known.values():
-                if not v.is_cav:
-                    steady = stage.forecast.reach(v.speed, False).steady
-                    found[v.id] = tuple(Expected(route, place + steady, True, {}) for route, place in v.routes)
-        return dict(sorted(found.items()))
-
 
 class NoPlans:
-    """A planner that has no plan for any order.
-
-    Args:
-        sample: Time between two samples of a plan [s].
-    """
+    """A planner that has no plan for any order."""
 
     def __init__(self, sample: float) -> None:
         self.sample = sample
@@ -161,5 +179,5 @@ class NoPlans:
         return JointPlan(False, {}, self.sample)
 
     def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
-        """Return inf, since nobody is anywhere."""
+        """Return inf, since no plan meets another."""
         return float("inf")

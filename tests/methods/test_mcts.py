@@ -13,13 +13,11 @@ from codriving.datatypes.ordering_problem import Instance
 from codriving.errors import ConfigError
 from codriving.methods.bruteforce import BruteForce
 from codriving.methods.fcfs import FirstComeFirstServed
-from codriving.methods.idfst.idfst import SpanningTree
-from codriving.methods.mcts import MonteCarloTreeSearch
-from codriving.methods.order_search.coded import Coded
-from codriving.methods.order_search.tree_search import TreeSearch
-from codriving.reasoning.ordering.objective import Objective
+from codriving.methods.idfst import SpanningTree
+from codriving.methods.mcts import MonteCarloTreeSearch, TreeSearch
+from codriving.methods.order_search import Coded
 from codriving.reasoning.ordering.request import Request
-from codriving.reasoning.ordering.schedule import schedule, timed, total_delay
+from codriving.reasoning.ordering.schedule import Objective, schedule, timed, total_delay
 
 
 def delay(problem: Instance, rule: MonteCarloTreeSearch | BruteForce | FirstComeFirstServed | SpanningTree) -> float:

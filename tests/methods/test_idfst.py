@@ -10,11 +10,10 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.ordering_problem import Instance
 from codriving.errors import ConfigError
 from codriving.methods.fcfs import FirstComeFirstServed
-from codriving.methods.idfst.idfst import SpanningTree
+from codriving.methods.idfst import SpanningTree, clock_windows, moved_windows
 from codriving.reasoning.ordering.request import Request
 from codriving.reasoning.ordering.schedule import evacuation_time, total_delay
 from codriving.reasoning.ordering.slots import carried_over, earliest_slot, inserted, sequence
-from codriving.reasoning.ordering.windows import clock_windows, moved_windows
 
 
 @pytest.mark.parametrize("windows", [False, True])

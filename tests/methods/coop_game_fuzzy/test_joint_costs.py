@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.methods.coop_game_fuzzy.risk_field import Body, risk
+from codriving.methods.coop_game_fuzzy.joint_costs import Poses, risk
 
 
-def source(heading: float = 0.0, speed: float = 9.0) -> Body:
-    return Body(np.array(10.0), np.array(-5.0), np.array(heading), np.array(speed))
+def source(heading: float = 0.0, speed: float = 9.0) -> Poses:
+    return Poses(np.array(10.0), np.array(-5.0), np.array(heading), np.array(speed))
 
 
 def test_risk_is_one_in_the_middle_and_falls_to_one_over_e_at_the_axes() -> None:
@@ -41,5 +41,5 @@ def test_risk_is_the_same_ahead_and_behind_and_never_above_one(
 
 
 def test_places_and_vehicles_are_broadcast() -> None:
-    many = Body(*(np.broadcast_to(np.arange(4.0), (3, 4)) for _ in range(4)))
+    many = Poses(*(np.broadcast_to(np.arange(4.0), (3, 4)) for _ in range(4)))
     assert risk(np.zeros((5, 1, 1)), np.zeros((5, 1, 1)), many, 9.0).shape == (5, 3, 4)

@@ -1,13 +1,97 @@
-"""An instance in numbers: what a search that tries hundreds of orders needs, without any look-up by name."""
+"""What rules that search for the best order share: the instance in numbers, and when the last order is kept."""
 
-from collections.abc import Callable, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 
 from codriving.datatypes.ordering_problem import Instance
-from codriving.reasoning.ordering.objective import LONGEST_WAIT, Objective, left
-from codriving.reasoning.ordering.schedule import after_windows
-from codriving.reasoning.ordering.windows import joined
+from codriving.errors import require_range
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning.ordering.request import Request, best_subset
+from codriving.reasoning.ordering.schedule import LONGEST_WAIT, Objective, after_windows, left, repaired, timed
+from codriving.reasoning.ordering.slots import carried_over, inserted, sequence
+from codriving.reasoning.ordering.tickets import TicketBook, reasons
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What a search has found.
+
+    Attributes:
+        cost: Its J [s].
+        complete: Whether every order was tried or shown to be no better.
+    """
+
+    order: tuple[str, ...]
+    cost: float
+    tried: int
+    complete: bool
+
+
+class SearchedOrder(ABC):
+    """An order rule that searches at each step.
+
+    The seeds are the order of tickets, that of the earliest free slots, and that of the last step, which stays unless
+    the search finds one that is better by more than the hysteresis, or unless it has become impossible.
+
+    Args:
+        hysteresis: J that another order must save to be taken, 0 to 10 [s].
+
+    Raises:
+        ConfigError: If a value is out of range.
+    """
+
+    name: str
+    variant: str
+
+    def __init__(self, hysteresis: float, evacuation_weight: float, fairness: Mapping[str, float] | None) -> None:
+        require_range("hysteresis", hysteresis, 0, 10, " s")
+        self.hysteresis, self.objective = hysteresis, Objective(evacuation_weight, fairness)
+        self.tickets = TicketBook()
+        self.variant: str = self.objective.variant
+        self.reset(0)
+
+    def reset(self, seed: int) -> None:
+        """Begin an episode: there is no order yet."""
+        self.tickets.reset()
+        self.seed, self.calls = seed, 0
+        self.previous: tuple[str, ...] = ()
+
+    def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
+        """Return the best order that is found."""
+        self.calls += 1
+        arrival = self.tickets.ranking(instance)
+        seeds = [arrival, sequence(instance, inserted(instance, arrival, {}))]
+        kept = carried_over(instance, self.previous, arrival)
+        if self.previous:
+            there = [name for name in self.previous if name in set(arrival)]
+            seeds.append(kept or repaired(instance, there + [name for name in arrival if name not in set(there)]))
+        problem = Coded(instance, self.objective)
+        found = self.search(problem, seeds)
+        order, keeps = found.order, False
+        if kept is not None and problem.cost(problem.run(kept)) <= found.cost + self.hysteresis:
+            order, keeps = tuple(kept), tuple(kept) != found.order
+        self.previous = order
+        times = timed(instance, order)
+
+        def reason(one: str, other: str) -> str:
+            passes = f"{one} passes in {times[one]:.1f} s and {other} in {times[other]:.1f} s"
+            if keeps:
+                return f"{passes} in the order kept from before, since no other one saves enough time"
+            which = "of all orders" if found.complete else f"of {found.tried} orders tried"
+            return f"{passes} in the one that costs everybody together least time {which}"
+
+        counts = {"orders_tried": found.tried, "all_orders_tried": int(found.complete), "order_kept": int(keeps)}
+        return Ordering(order, times, reasons(instance, order, reason), counts)
+
+    @abstractmethod
+    def search(self, problem: "Coded", seeds: Sequence[Sequence[str]]) -> Found:
+        """Return the best order that is found."""
+
+    def grant(self, requests: Sequence[Request]) -> frozenset[str]:
+        """Grant the requests that do not overlap and gain most together."""
+        return best_subset(requests)
 
 
 @dataclass(slots=True)
@@ -28,7 +112,7 @@ class Prefix:
     finish: float
 
     def copy(self) -> "Prefix":
-        """Return the same prefix, to be extended on its own."""
+        """Return a prefix of its own."""
         return Prefix(self.order[:], self.waiting[:], self.mask, self.earliest[:], self.delay, self.finish)
 
 
@@ -58,13 +142,12 @@ class Coded:
                 self._followers[self._number[first]].append((self._number[second], apart))
 
     def root(self) -> Prefix:
-        """Return the prefix of nobody."""
-        everybody = range(len(self.names))
+        """Return the empty prefix."""
         finish = max((left(e, e.eta) for e in self._entrants), default=0.0)
-        return Prefix([], list(everybody), (1 << len(self.names)) - 1, list(self.eta), 0.0, finish)
+        return Prefix([], list(range(len(self.names))), (1 << len(self.names)) - 1, list(self.eta), 0.0, finish)
 
     def candidates(self, prefix: Prefix) -> list[int]:
-        """Return who can be next: those who need not let anybody go who waits, and everybody if there are none."""
+        """Return the vehicles that can be next: those that no waiting one precedes, and all if there are none."""
         held, mask = self._held, prefix.mask
         return [k for k in prefix.waiting if not held[k] & mask] or prefix.waiting[:]
 
@@ -122,7 +205,7 @@ class Coded:
         return Prefix(order, waiting, mask, earliest, delay, finish), chosen
 
     def cost(self, prefix: Prefix) -> float:
-        """Return J of those placed [s]; it only grows as the order does."""
+        """Return J of those placed [s]; it only grows with the order."""
         return prefix.delay + self._share * prefix.finish if self._share else prefix.delay
 
     def bound(self, prefix: Prefix) -> float:
@@ -140,3 +223,14 @@ class Coded:
     def named(self, order: Sequence[int]) -> list[str]:
         """Return the ids of an order."""
         return [self.names[k] for k in order]
+
+
+def joined(windows: Sequence[tuple[float, float]], earliest: float) -> list[tuple[float, float]]:
+    """Return as few windows as give the same times from `earliest` on: apart from one another, by begin [s]."""
+    found: list[tuple[float, float]] = []
+    for begin, end in sorted(window for window in windows if window[0] < window[1] and window[1] > earliest):
+        if found and begin < found[-1][1]:
+            found[-1] = found[-1][0], max(found[-1][1], end)
+        else:
+            found.append((begin, end))
+    return found

@@ -4,13 +4,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coalitions import Scheduled, entrant, instance
 from worlds import Car, Junction, car
 
 from codriving.datatypes.action import Action
 from codriving.errors import ConfigError
-from codriving.methods.coop_game_fuzzy.fuzzy_coalition import LIBRARY, OPTIONS, FuzzyCoalition
+from codriving.methods.coop_game_fuzzy.coop_game_fuzzy import LIBRARY, OPTIONS, Arrival, CoopGameFuzzy
+from codriving.reasoning.execution.executor import Executor
 from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.ordering.protocol import Ordering
+from codriving.reasoning.ordering.request import Request
 from codriving.reasoning.prediction.forecast import Forecast
 
 ORDER = Ordering((), {})
@@ -25,11 +28,12 @@ SETTINGS: dict[str, Any] = {
     "hold": 2.0,
     "horizon": 5.0,
     "shares": False,
+    "control_radius": 60.0,
 }
 
 
-def coalition(**change: Any) -> FuzzyCoalition:
-    return FuzzyCoalition(**{**SETTINGS, **change})
+def coalition(**change: Any) -> Executor:
+    return CoopGameFuzzy(**{**SETTINGS, **change}).executor
 
 
 def stage(junction: Junction, *cars: Car) -> Stage:
@@ -182,3 +186,19 @@ def test_whoever_has_to_change_lanes_stops_before_its_lane_ends(merge: Junction)
             rooms[change.room] = coalition().drive(here, ORDER).actions["CAV1"]
     assert rooms[min(rooms)] is Action.SLOWER
     assert rooms[max(rooms)] is Action.FASTER
+
+
+def test_whoever_came_first_is_shown_first() -> None:
+    problem = instance(entrant("a", 4), entrant("b", 2), conflicts=[("a", "b")])
+    rule = Arrival(60.0)
+    rule.reset(0)
+    assert (rule.name, rule.variant) == ("coop_game", "")
+    assert rule.order(problem, Scheduled(problem)).sequence == ("b", "a")
+
+
+def test_lane_changes_that_gain_most_together_are_granted() -> None:
+    requests = [
+        Request("a", Action.LANE_LEFT, 1.0, 0.0, frozenset("b")),
+        Request("b", Action.LANE_LEFT, 2.0, 1.0, frozenset("a")),
+    ]
+    assert Arrival(60.0).grant(requests) == {"b"}

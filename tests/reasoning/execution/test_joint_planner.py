@@ -7,7 +7,7 @@ from worlds import Junction, car
 
 from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.datatypes.vehicle import Kind
-from codriving.reasoning.execution.planning_order import cavs, drives_ahead, planning_order
+from codriving.reasoning.execution.joint_planner import drives_ahead, planning_order
 
 NAMES = [f"CAV{k}" for k in range(1, 8)]
 
@@ -80,7 +80,7 @@ def test_the_order_of_those_who_have_gone_is_of_no_interest() -> None:
 def ahead_of(junction: Junction, *routes: tuple[str, float]) -> set[tuple[str, str]]:
     thoughts = junction.thoughts(*[car(f"CAV{k}", route, place, 5.0) for k, (route, place) in enumerate(routes, 1)])
     stage = stage_of(thoughts)
-    return drives_ahead(stage, cavs(stage))
+    return drives_ahead(stage, {name: known[name] for name, known in sorted(stage.known.items())})
 
 
 def test_who_drives_ahead(junction: Junction) -> None:

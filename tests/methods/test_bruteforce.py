@@ -9,8 +9,7 @@ from instances import NoPlanner, both, crossroads, instance
 
 from codriving.errors import EpisodeError
 from codriving.methods.bruteforce import BruteForce
-from codriving.reasoning.ordering.objective import Objective
-from codriving.reasoning.ordering.schedule import schedule
+from codriving.reasoning.ordering.schedule import Objective, schedule
 
 
 @settings(max_examples=60, deadline=None)
