@@ -9,7 +9,7 @@ from time import perf_counter, process_time
 
 from benchmarks.served import served
 from codriving.experiment import run_frames
-from codriving.runs.timing import read_timing
+from codriving.runs.episode_folder import read_timing
 
 EPISODES, LATENCY = 20, 1.0
 FIRST_SEED = 10_000

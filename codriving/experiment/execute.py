@@ -31,11 +31,11 @@ from codriving.reports.run_tables import RunTables, run_tables
 from codriving.reports.timing import TimedEpisode, seconds_per_decision, timing_columns
 from codriving.runs.atomic import write_text
 from codriving.runs.continuation import changed_versions
+from codriving.runs.episode_folder import Timing, read_timing
 from codriving.runs.manifest import FORMAT, MANIFEST, CellEntry, Manifest
 from codriving.runs.provenance import commit, machine, versions
 from codriving.runs.redaction import variables_in
 from codriving.runs.run_folder import RunFolder, new_run_path, unwritable
-from codriving.runs.timing import Timing, read_timing
 
 
 @dataclass(frozen=True, slots=True)

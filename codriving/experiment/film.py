@@ -11,8 +11,8 @@ from codriving.errors import UserError
 from codriving.experiment.episodes.unit import Unit
 from codriving.experiment.stored import StoredEpisode, screening
 from codriving.runs.atomic import whole_file, write_text
+from codriving.runs.episode_folder import RECORD, read_record
 from codriving.runs.manifest import CellEntry
-from codriving.runs.records import RECORD, read_record
 from codriving.runs.run_folder import EPISODES
 from codriving.runs.trajectory_file import TRAJECTORY
 

@@ -9,7 +9,7 @@ from codriving.experiment.cells import Cell
 from codriving.reports.columns import Table
 from codriving.reports.printed import PrintedTable
 from codriving.runs.atomic import whole_file
-from codriving.runs.timing import Timing
+from codriving.runs.episode_folder import Timing
 
 
 @dataclass(frozen=True, slots=True)

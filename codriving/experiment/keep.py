@@ -5,10 +5,9 @@ from pathlib import Path
 
 from codriving.experiment.episodes.episode import EpisodeResult
 from codriving.experiment.episodes.unit import Unit
-from codriving.runs.episode_folder import write_episode
+from codriving.runs.episode_folder import timing_of, write_episode
 from codriving.runs.redaction import secrets_of
 from codriving.runs.run_folder import EPISODES
-from codriving.runs.timing import timing_of
 
 
 @dataclass(frozen=True)

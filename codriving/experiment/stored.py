@@ -11,9 +11,8 @@ from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.road import Road
 from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import RunFolderError
-from codriving.runs.decisions_file import read_decisions
+from codriving.runs.episode_folder import read_decisions, read_record
 from codriving.runs.manifest import MANIFEST, CellEntry, Manifest, read_manifest
-from codriving.runs.records import read_record
 from codriving.runs.redaction import nested
 from codriving.runs.run_folder import EPISODES
 from codriving.runs.trajectory_file import TRAJECTORY, read_trajectory

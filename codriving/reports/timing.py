@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from codriving.datatypes.record import EpisodeRecord
 from codriving.reports.columns import Column, swept_columns
-from codriving.runs.timing import Timing
+from codriving.runs.episode_folder import Timing
 
 
 class TimedEpisode(NamedTuple):

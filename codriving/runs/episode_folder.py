@@ -1,21 +1,65 @@
 """The folder of one episode: record, trajectory, decisions, transcript, timing; written whole or not at all."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import whole_folder
-from codriving.runs.decisions_file import DECISIONS, decisions_text
-from codriving.runs.records import RECORD, record_text
+from codriving.runs.json_files import damaged, decode, encode, lines_text, read_episode_text, read_lines
 from codriving.runs.redaction import scrubbed
-from codriving.runs.timing import TIMING, Timing, timing_text
 from codriving.runs.trajectory_file import TRAJECTORY, trajectory_text
-from codriving.runs.transcript_file import TRANSCRIPT, transcript_text
+
+RECORD = "record.json"
+DECISIONS = "decisions.jsonl"
+"""What was shared, negotiated, removed and decided, one line a decision step."""
+
+TRANSCRIPT = "transcript.jsonl"
+"""What a language model was asked and what it answered, one line a question."""
+
+TIMING = "timing.json"
+"""What an episode cost in time, kept apart from all that must repeat to the byte."""
 
 ERROR = "error.txt"
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """Wall-clock time of one episode, and the computing time of its decisions.
+
+    Attributes:
+        seconds: The whole episode [s].
+        decision_mean: Mean time of a decision [s], or None without decisions.
+        decision_max: Longest decision [s], or None without decisions.
+        decision_cpu_mean: Mean CPU time of a decision, of the thread that decides [s]; None where it was not measured.
+        decision_cpu_max: Largest CPU time of a decision [s], or None.
+    """
+
+    seconds: float
+    decisions: int
+    decision_mean: float | None
+    decision_max: float | None
+    decision_cpu_mean: float | None = None
+    decision_cpu_max: float | None = None
+
+
+def timing_of(seconds: float, decision_seconds: Sequence[float], decision_cpu: Sequence[float] = ()) -> Timing:
+    """Sum up what was measured.
+
+    Args:
+        seconds: Wall-clock time of the episode [s].
+        decision_seconds: Wall-clock time of each decision [s].
+        decision_cpu: CPU time of each decision [s]; nothing where it was not measured.
+    """
+    mean, longest = _mean_and_max(decision_seconds)
+    return Timing(seconds, len(decision_seconds), mean, longest, *_mean_and_max(decision_cpu))
+
+
+def _mean_and_max(values: Sequence[float]) -> tuple[float | None, float | None]:
+    return (sum(values) / len(values), max(values)) if values else (None, None)
 
 
 def write_episode(
@@ -43,13 +87,9 @@ def write_episode(
         record = replace(record, outcome=replace(record.outcome, message=message))
         decisions, transcript = _without(secrets, decisions), _without(secrets, transcript)
         traceback = str(scrubbed(traceback, secrets))
-    files = {
-        RECORD: record_text(record),
-        DECISIONS: decisions_text(decisions),
-        TIMING: timing_text(timing),
-    }
+    files = {RECORD: encode(record), DECISIONS: lines_text(DECISIONS, decisions), TIMING: encode(timing)}
     if transcript:
-        files[TRANSCRIPT] = transcript_text(transcript)
+        files[TRANSCRIPT] = lines_text(TRANSCRIPT, transcript)
     if trajectory is not None:
         files[TRAJECTORY] = trajectory_text(trajectory)
     if traceback:
@@ -66,5 +106,49 @@ def write_episode(
 
 
 def _without(secrets: Sequence[str], lines: Sequence[Mapping[str, object]]) -> list[Mapping[str, object]]:
-    """Copies of lines in which no secret occurs."""
     return [{name: scrubbed(value, secrets) for name, value in line.items()} for line in lines]
+
+
+def read_record(folder: Path) -> EpisodeRecord:
+    """Read the record of one episode.
+
+    Raises:
+        RunFolderError: If it is missing or damaged; nothing is changed on disk.
+    """
+    path = folder / RECORD
+    try:
+        return decode(EpisodeRecord, read_episode_text(path))
+    except ValueError as error:
+        raise damaged(path, str(error)) from error
+
+
+def read_decisions(folder: Path) -> tuple[dict[str, Any], ...]:
+    """Read what was decided in one episode.
+
+    Raises:
+        RunFolderError: If it is missing, damaged or cannot be read.
+    """
+    return read_lines(folder / DECISIONS)
+
+
+def read_transcript(folder: Path) -> tuple[dict[str, Any], ...]:
+    """Read what a language model was asked in one episode; nothing where none was.
+
+    Raises:
+        RunFolderError: If it is damaged or cannot be read.
+    """
+    path = folder / TRANSCRIPT
+    return read_lines(path) if path.exists() else ()
+
+
+def read_timing(folder: Path) -> Timing | None:
+    """Read the timing of one episode.
+
+    Returns:
+        The timing, or None where there is none to read: no result depends on it. What an earlier version did not
+        measure is None.
+    """
+    try:
+        return decode(Timing, (folder / TIMING).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None

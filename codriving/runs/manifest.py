@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from codriving.errors import RunFolderError
-from codriving.runs.strict_json import decode, encode
+from codriving.runs.json_files import decode, encode
 
 MANIFEST = "manifest.json"
 FORMAT = 2

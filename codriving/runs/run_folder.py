@@ -1,21 +1,48 @@
 """The folder of one run: opened under a lock, checked against the config, resumed where it was left."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from datetime import datetime
 from pathlib import Path
 from typing import Self
+
+from filelock import FileLock, Timeout
 
 from codriving.datatypes.record import EpisodeRecord
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import PARTIAL, sweep, write_text
 from codriving.runs.continuation import continued
-from codriving.runs.lock import FolderLock
+from codriving.runs.episode_folder import RECORD, read_record
+from codriving.runs.json_files import damaged
 from codriving.runs.manifest import MANIFEST, CellEntry, Manifest, manifest_text, read_manifest
-from codriving.runs.records import RECORD, damaged, read_record
 
 CONFIG = "config.yaml"
 CONFIGS = "configs"
 EPISODES = "episodes"
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Keep other processes from writing a folder, with a file ``.lock`` in it; the system frees it when we die.
+
+    Raises:
+        RunFolderError: If another process holds it.
+        OSError: If the folder cannot be written.
+    """
+    lock = FileLock(folder / ".lock", timeout=0, mode=0o666)
+    try:
+        lock.acquire()
+    except Timeout:
+        raise RunFolderError(
+            f"{folder} is being written by another run; wait for it or choose another run=<name>"
+        ) from None
+    except NotImplementedError:
+        # Some network file systems know no locks; working without one beats not working.
+        pass
+    try:
+        yield
+    finally:
+        lock.release()
 
 
 class RunFolder:
@@ -28,19 +55,14 @@ class RunFolder:
             RunFolderError: If it cannot be written, is in use, holds something else or a run of another config.
         """
         self.path = path
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-            self._lock = FolderLock(path)
-        except OSError as error:
-            raise unwritable(path, error) from error
-        try:
-            self.manifest = self._prepare(manifest, configs)
-        except OSError as error:
-            self._lock.close()
-            raise unwritable(path, error) from error
-        except BaseException:
-            self._lock.close()
-            raise
+        with ExitStack() as opening:
+            try:
+                path.mkdir(parents=True, exist_ok=True)
+                opening.enter_context(locked(path))
+                self.manifest = self._prepare(manifest, configs)
+            except OSError as error:
+                raise unwritable(path, error) from error
+            self._lock = opening.pop_all()
 
     def _prepare(self, asked: Manifest, configs: Mapping[str, str]) -> Manifest:
         there = read_manifest(self.path)

@@ -11,7 +11,7 @@ from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.errors import RunFolderError
-from codriving.runs.records import damaged
+from codriving.runs.json_files import damaged
 
 TRAJECTORY = "trajectory.csv"
 COLUMNS = ("time", "id", "kind", "x", "y", "heading", "speed", "acceleration", "action")

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 from codriving.config.show import show
 from codriving.errors import RunFolderError, TrainingError
 from codriving.runs.atomic import whole_folder, write_text
-from codriving.runs.lock import FolderLock
+from codriving.runs.run_folder import locked
 
 STATE = "state.json"
 
@@ -95,7 +95,7 @@ def open_folder(path: Path, name: str, command: str, config: Mapping[str, Any]) 
     text, file = show(config), path / "config.yaml"
     try:
         (path / "states").mkdir(parents=True, exist_ok=True)
-        with FolderLock(path):
+        with locked(path):
             if not file.exists():
                 write_text(file, text)
             elif file.read_text(encoding="utf-8") != text:

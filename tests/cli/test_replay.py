@@ -11,7 +11,7 @@ from typer.testing import CliRunner, Result
 
 from codriving.cli.app import app
 from codriving.experiment import run_experiment
-from codriving.runs.decisions_file import DECISIONS
+from codriving.runs.episode_folder import DECISIONS
 
 
 @pytest.fixture(scope="module")

@@ -27,7 +27,7 @@ from codriving.experiment.episodes.unit import Unit
 from codriving.experiment.execute import execute
 from codriving.experiment.shares import side_by_side
 from codriving.experiment.stopping import HaltedError
-from codriving.runs.records import read_record
+from codriving.runs.episode_folder import read_record
 
 TOP = Path(__file__).parents[2]
 

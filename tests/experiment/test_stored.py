@@ -9,9 +9,8 @@ from codriving.environment.scenarios.intersection import Intersection
 from codriving.errors import RunFolderError
 from codriving.experiment import run_experiment
 from codriving.experiment.stored import find_episode, find_run, road_of, screening
-from codriving.runs.decisions_file import DECISIONS
+from codriving.runs.episode_folder import DECISIONS, RECORD
 from codriving.runs.manifest import MANIFEST
-from codriving.runs.records import RECORD
 from codriving.runs.trajectory_file import TRAJECTORY
 
 

@@ -15,7 +15,7 @@ from codriving.datatypes.outcome import Ending
 from codriving.datatypes.scene import Start
 from codriving.environment.environment import Environment
 from codriving.methods.single_vehicle.alone import Alone
-from codriving.runs.decisions_file import decisions_text
+from codriving.runs.json_files import lines_text
 
 Make = Callable[..., Environment]
 
@@ -76,7 +76,7 @@ def test_the_same_seed_gives_the_same_bytes_and_every_line_is_strict_json(
     drive(environment, used, 10_008, decisions=4)
     episodes = [drive(environment, method, 10_007, decisions=DECISIONS) for method in (used, new)]
     lines = [[step.as_dict() for step in episode.steps] for episode in episodes]
-    assert decisions_text(lines[0]) == decisions_text(lines[1]), "nothing is left of the episode before"
+    assert lines_text("", lines[0]) == lines_text("", lines[1]), "nothing is left of the episode before"
     for world, step, line in zip(episodes[0].worlds, episodes[0].steps, lines[0], strict=False):
         assert json.loads(json.dumps(line, allow_nan=False)) == line
         for cav, decision in zip(line["cavs"], step.decisions, strict=True):

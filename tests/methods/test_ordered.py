@@ -28,7 +28,7 @@ from codriving.reasoning.execution.planned import Planned
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
 from codriving.reasoning.ordering.request import Request, in_order
 from codriving.reasoning.ordering.schedule import repaired, timed
-from codriving.runs.decisions_file import decisions_text
+from codriving.runs.json_files import lines_text
 
 Make = Callable[..., Environment]
 SCENARIOS = ("intersection", "roundabout", "highway", "merge")
@@ -94,7 +94,7 @@ def test_the_same_seed_gives_the_same_bytes(scenario: str, name: str, executor: 
     environment = configured(f"scenario={scenario}")
     used, new = method(name, f"executor={executor}"), method(name, f"executor={executor}")
     few(environment, used, 10_008)
-    written = [decisions_text(step.as_dict() for step in few(environment, made).steps) for made in (used, new)]
+    written = [lines_text("", [step.as_dict() for step in few(environment, made).steps]) for made in (used, new)]
     assert written[0] == written[1], "nothing is left of the episode before"
     assert written[0].count("\n") == DECISIONS
 
@@ -105,7 +105,7 @@ def test_a_line_is_strict_json_and_has_all_that_a_line_has(scenario: str, config
     for step in few(environment, method("idfst")).steps:
         line = step.as_dict()
         assert json.loads(json.dumps(line, allow_nan=False)) == line
-        assert json.loads(decisions_text([line])) == line
+        assert json.loads(lines_text("", [line])) == line
         for cav, decision in zip(line["cavs"], step.decisions, strict=True):
             assert (cav["id"], cav["action"], cav["reason"]) == (decision.ego, decision.action, decision.reason)
             assert cav["reason"]
@@ -241,7 +241,7 @@ def test_a_slow_driver_is_overtaken_if_the_rule_grants_it(highway: Junction) -> 
 def test_its_episodes_can_be_drawn(scenario: str, name: str, configured: Make) -> None:
     environment = configured(f"scenario={scenario}")
     episode = few(environment, method(name))
-    lines = [json.loads(text) for text in decisions_text(s.as_dict() for s in episode.steps).splitlines()]
+    lines = [json.loads(text) for text in lines_text("", [s.as_dict() for s in episode.steps]).splitlines()]
     read = [deliberated(line, environment.road_map) for line in lines]
     for step, shown in zip(episode.steps, read, strict=True):
         assert {n: t.action for n, t in shown.thoughts.items()} == step.actions

@@ -20,7 +20,7 @@ from codriving.reports.printed import PrintedTable, markdown_text, print_table
 from codriving.reports.results import CellResults
 from codriving.reports.run_tables import run_tables
 from codriving.reports.timing import TimedEpisode, timing_columns
-from codriving.runs.timing import timing_of
+from codriving.runs.episode_folder import timing_of
 
 ASKED = {"model_calls": 1200, "prompt_tokens": 400_000, "completion_tokens": 20_000, "cost_usd": 0.1, "re_asks": 190,
          "fallbacks": 10, "shortened": 10, "model_seconds": 6.5}  # fmt: skip

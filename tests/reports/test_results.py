@@ -13,7 +13,7 @@ from codriving.reports.printed import markdown_text
 from codriving.reports.results import CellResults
 from codriving.reports.run_tables import run_tables
 from codriving.reports.timing import seconds_per_decision
-from codriving.runs.timing import timing_of
+from codriving.runs.episode_folder import timing_of
 from tests.reports.making import column_of, episodes_of, print_cells, summary_of, summary_row
 
 Make = Callable[..., EpisodeRecord]

@@ -7,7 +7,7 @@ import pytest
 from codriving.datatypes.record import EpisodeRecord
 from codriving.reports.columns import table
 from codriving.reports.timing import TimedEpisode, cpu_per_decision, timing_columns
-from codriving.runs.timing import timing_of
+from codriving.runs.episode_folder import timing_of
 
 
 def test_a_row_says_what_it_is_of_and_what_it_cost(make: Callable[..., EpisodeRecord]) -> None:

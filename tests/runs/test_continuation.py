@@ -10,10 +10,9 @@ from manifests import CONFIGS, cell, files, manifest
 from codriving.datatypes.record import EpisodeRecord
 from codriving.errors import RunFolderError
 from codriving.runs.continuation import changed_versions, continued
-from codriving.runs.episode_folder import write_episode
+from codriving.runs.episode_folder import timing_of, write_episode
 from codriving.runs.manifest import CellEntry, Manifest, read_manifest
 from codriving.runs.run_folder import RunFolder
-from codriving.runs.timing import timing_of
 
 
 def named(folder: str, fingerprint: str, **swept: str) -> CellEntry:

@@ -7,11 +7,12 @@ import pytest
 
 from codriving.datatypes.action import Action
 from codriving.errors import RunFolderError
-from codriving.runs.decisions_file import DECISIONS, decisions_text, read_decisions
+from codriving.runs.episode_folder import DECISIONS, read_decisions
+from codriving.runs.json_files import lines_text
 
 
 def test_one_line_a_step() -> None:
-    text = decisions_text([{"step": 0, "action": Action.IDLE, "why": "先行\nline"}, {"step": 1}])
+    text = lines_text("decisions.jsonl", [{"step": 0, "action": Action.IDLE, "why": "先行\nline"}, {"step": 1}])
     assert text.count("\n") == 2
     assert [json.loads(line) for line in text.splitlines()] == [
         {"step": 0, "action": "IDLE", "why": "先行\nline"},
@@ -20,18 +21,20 @@ def test_one_line_a_step() -> None:
 
 
 def test_what_is_not_finite_becomes_null() -> None:
-    (line,) = decisions_text([{"ttcp": float("inf"), "list": [1.0, float("nan")], "deep": {"x": (2.0,)}}]).splitlines()
+    (line,) = lines_text(
+        "decisions.jsonl", [{"ttcp": float("inf"), "list": [1.0, float("nan")], "deep": {"x": (2.0,)}}]
+    ).splitlines()
     assert json.loads(line) == {"ttcp": None, "list": [1.0, None], "deep": {"x": [2.0]}}
 
 
 def test_what_has_no_place_in_json_is_refused() -> None:
     with pytest.raises(ValueError, match=r"decisions\.jsonl cannot be written"):
-        decisions_text([{"set": {1}}])
+        lines_text("decisions.jsonl", [{"set": {1}}])
 
 
 def test_what_was_written_is_read_back(tmp_path: Path) -> None:
     lines = [{"step": 0, "why": "先行\u2028\nline"}, {"step": 1}]
-    (tmp_path / DECISIONS).write_text(decisions_text(lines), encoding="utf-8", newline="")
+    (tmp_path / DECISIONS).write_text(lines_text("decisions.jsonl", lines), encoding="utf-8", newline="")
     assert list(read_decisions(tmp_path)) == lines
 
 

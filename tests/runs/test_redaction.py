@@ -1,7 +1,7 @@
 """Secrets are masked, everything else stays."""
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from codriving.runs.redaction import MASK, flat, nested, redact
@@ -35,6 +35,7 @@ def test_flattening_gives_a_line_a_setting() -> None:
     }
 
 
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(st.dictionaries(names, st.recursive(leaves | st.lists(leaves), lambda inner: st.dictionaries(names, inner))))
 def test_nesting_undoes_flattening(settings: dict[str, object]) -> None:
     assert nested(flat(settings)) == settings

@@ -10,10 +10,9 @@ from manifests import CONFIGS, cell, files, manifest
 from codriving.datatypes.record import EpisodeRecord
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import PARTIAL
-from codriving.runs.episode_folder import write_episode
+from codriving.runs.episode_folder import read_timing, timing_of, write_episode
 from codriving.runs.manifest import read_manifest
 from codriving.runs.run_folder import RunFolder, new_run_path
-from codriving.runs.timing import read_timing, timing_of
 
 
 def test_a_new_folder_holds_config_and_manifest(tmp_path: Path) -> None:

@@ -8,35 +8,31 @@ import pytest
 
 from codriving.datatypes.record import EpisodeRecord
 from codriving.errors import RunFolderError
-from codriving.runs.decisions_file import decisions_text
-from codriving.runs.episode_folder import write_episode
+from codriving.runs.episode_folder import TRANSCRIPT, read_transcript, timing_of, write_episode
+from codriving.runs.json_files import lines_text
 from codriving.runs.redaction import MASK, scrubbed, secrets_of, variables_in
-from codriving.runs.timing import timing_of
-from codriving.runs.transcript_file import TRANSCRIPT, read_transcript, transcript_text
 
 CANARY = 'canary-"7\\f3a'
 LINE = {"time": 0.5, "value": None, "calls": [{"text": "j'accuse \u00e9 \x1b[31m \u202e \ud800 \u2028", "cost": 1.5}]}
 
 
 def test_what_is_read_is_what_was_written(tmp_path: Path) -> None:
-    text = transcript_text([LINE, {"time": 1.0}])
+    text = lines_text("transcript.jsonl", [LINE, {"time": 1.0}])
     (tmp_path / TRANSCRIPT).write_text(text, encoding="utf-8")
     assert read_transcript(tmp_path) == (LINE, {"time": 1.0})
 
 
-@pytest.mark.parametrize("write", [transcript_text, decisions_text])
-def test_nothing_in_it_harms_a_terminal_or_a_reader(write: object) -> None:
-    assert callable(write)
-    text = write([LINE])
+def test_nothing_in_it_harms_a_terminal_or_a_reader() -> None:
+    text = lines_text("transcript.jsonl", [LINE])
     assert "\u00e9" in text
     assert not {"\x1b", "\u202e", "\ud800", "\u2028"} & set(text)
     assert len(text.splitlines()) == 1
 
 
 def test_what_is_not_finite_is_null_and_what_is_no_json_is_refused() -> None:
-    assert json.loads(transcript_text([{"x": float("nan")}])) == {"x": None}
+    assert json.loads(lines_text("transcript.jsonl", [{"x": float("nan")}])) == {"x": None}
     with pytest.raises(ValueError, match=r"transcript\.jsonl cannot be written"):
-        transcript_text([{"x": {1}}])
+        lines_text("transcript.jsonl", [{"x": {1}}])
 
 
 def test_a_run_of_rules_has_no_transcript(tmp_path: Path, record: EpisodeRecord) -> None:

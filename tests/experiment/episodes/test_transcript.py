@@ -11,8 +11,7 @@ from codriving.datatypes.world import WorldState
 from codriving.experiment.episodes.episode import EpisodeResult, run_episode
 from codriving.experiment.episodes.unit import Unit
 from codriving.experiment.keep import KeepEpisode
-from codriving.runs.records import read_record
-from codriving.runs.transcript_file import TRANSCRIPT, read_transcript
+from codriving.runs.episode_folder import TRANSCRIPT, read_record, read_transcript
 
 
 @dataclass(frozen=True)

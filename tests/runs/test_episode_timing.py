@@ -4,13 +4,14 @@ from pathlib import Path
 
 import pytest
 
-from codriving.runs.timing import TIMING, Timing, read_timing, timing_of, timing_text
+from codriving.runs.episode_folder import TIMING, Timing, read_timing, timing_of
+from codriving.runs.json_files import encode
 
 
 def test_what_was_measured_comes_back(tmp_path: Path) -> None:
     timing = timing_of(2.5, [0.5, 1.0], [0.25, 0.5])
     assert timing == Timing(2.5, 2, 0.75, 1.0, 0.375, 0.5)
-    (tmp_path / TIMING).write_text(timing_text(timing))
+    (tmp_path / TIMING).write_text(encode(timing))
     assert read_timing(tmp_path) == timing
 
 
