@@ -7,8 +7,8 @@ from typing import Any
 
 from worlds import FULL, Junction
 
+from codriving.llm.language_model import Offline
 from codriving.llm.ledger import Ledger
-from codriving.llm.offline import Offline
 from codriving.llm.question import Question
 from codriving.llm.scripted import Script, ScriptedChat
 from codriving.methods.codriving import CoDriving

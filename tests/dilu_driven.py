@@ -11,7 +11,7 @@ from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.experience import Experience, Interaction, Memory
 from codriving.datatypes.situation import Situation
-from codriving.llm.offline import Offline
+from codriving.llm.language_model import Offline
 from codriving.llm.question import Question
 from codriving.llm.scripted import Script, ScriptedChat
 from codriving.memory.protocol import CaseMemory

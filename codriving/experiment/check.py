@@ -17,7 +17,7 @@ from codriving.experiment.objects import BuildObjects
 SEED, STEP = 10_001, 4
 """The scene: four CAVs and three human drivers before an intersection, most of them in conflict."""
 
-_RULES = {"_target_": "codriving.llm.offline.Offline"}
+_RULES = {"_target_": "codriving.llm.language_model.Offline"}
 _PROBE = "codriving.methods.probe.Probe"
 
 

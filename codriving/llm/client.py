@@ -1,53 +1,62 @@
-"""A language model that answers questions, all of a step at once."""
+"""A language model that answers questions, all of a step at once: from the cache, or in the best form it takes."""
 
 import asyncio
 import json
+import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any
 from weakref import WeakValueDictionary
 
-from codriving.llm.blame import must_be_mended, unavailable, unusable
+from codriving.llm.attempts import ConcurrencyLimit, Retries, Retry, Sleep
+from codriving.llm.cache import AnswerCache
 from codriving.llm.conversation import converse
-from codriving.llm.faults import CallError
-from codriving.llm.fetch import STOOD_FOR, Fetcher
-from codriving.llm.forms import KNOWN, Forms, schema_of
+from codriving.llm.faults import CallError, Kind, unavailable, unusable
 from codriving.llm.loop import loop
 from codriving.llm.question import Answer, Message, Question
-from codriving.llm.reply import Reply, Request
-from codriving.llm.retrying import Retry, Sleep
-from codriving.llm.send import LiteLLMSender, Sender
-from codriving.llm.settings import Cache, Purse, Settings
+from codriving.llm.request import KNOWN, TOO_LONG, UNREADABLE, ChatRequest, Forms, Reply, schema_of
+from codriving.llm.send import Sender
+from codriving.llm.settings import ModelSettings, read_key
+from codriving.llm.spending import Spending, cost_of
 
 _GREETING = (
     Message("system", "You check that a connection works."),
     Message("user", "Answer with the one word: yes"),
 )
 
+_FINISH_REASONS = {Kind.TOO_LONG: TOO_LONG, Kind.FILTERED: "content_filter", Kind.UNREADABLE: UNREADABLE}
+"""Failures that are replies of a kind, by the finish reason that they are given: the question has to change."""
+
+_FOR_GOOD = (Kind.KEY, Kind.QUOTA, Kind.MODEL, Kind.UNREACHABLE)
+"""Failures that no later episode would escape, if nothing has worked yet."""
+
 
 class ModelChat:
-    """A language model behind one client for the whole process; may be asked from any thread.
+    """A language model behind one client for the whole process; any thread may call it.
 
     Args:
-        price: Cost of so many prompt and completion tokens [USD]; None where no price is known.
         cache: Keeps replies; None keeps none.
+        spending: Adds up what replies cost; None for limits as in the settings.
     """
 
     def __init__(
         self,
-        settings: Settings,
-        price: Callable[[int, int], float | None],
-        spending: Purse,
-        cache: Cache | None = None,
+        settings: ModelSettings,
+        cache: AnswerCache | None = None,
+        spending: Spending | None = None,
         sender: Sender | None = None,
         sleep: Sleep = asyncio.sleep,
         forms: Forms = KNOWN,
     ) -> None:
-        self.name = settings.model
+        self.name, self.settings = settings.model, settings
+        self.spending = spending or Spending(settings.max_cost, settings.max_tokens_total)
         self.on_retry: Callable[[Retry], None] = lambda retry: None
-        self.settings, self.spending = settings, spending
-        self._cache = cache
-        self._fetcher = Fetcher(
-            settings, price, spending, sender or LiteLLMSender(), sleep, forms, lambda retry: self.on_retry(retry)
+        self._cache, self._sender, self._forms = cache, sender or Sender(), forms
+        self._worked = False
+        self._limit = ConcurrencyLimit(settings.max_concurrency)
+        self._retries = Retries(
+            settings.model, settings.attempts, settings.deadline, lambda retry: self.on_retry(retry), sleep
         )
         self._under_way: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 
@@ -71,24 +80,24 @@ class ModelChat:
             ModelError: If the model cannot be used; the message says what to set.
             SpendingLimitError: If the tokens or the money that may be spent are used up.
         """
-        if self.settings.replay or self._fetcher.worked:
+        if self.settings.cache == "replay" or self._worked:
             return
         self.spending.check()
-        self._fetcher.key.read()
+        self._key()
         loop().run(self._greet())
 
     async def _greet(self) -> None:
         try:
-            reply = await self._fetcher.fetch(self._request(_GREETING, None))
+            reply = await self._fetch(self._request(_GREETING, None))
         except CallError as fault:
             failed = fault
         else:
-            if reply.finish_reason not in STOOD_FOR.values():
+            kinds = [kind for kind, reason in _FINISH_REASONS.items() if reason == reply.finish_reason]
+            if not kinds:
                 return
-            kind = next(kind for kind, reason in STOOD_FOR.items() if reason == reply.finish_reason)
-            failed = CallError(kind, reply.refusal)
-        self._fetcher.worked = False
-        raise self._unusable(failed)
+            failed = CallError(kinds[0], reply.refusal)
+        self._worked = False
+        raise unusable(failed, self.settings)
 
     async def _ask_all(self, questions: Sequence[Question]) -> list[Answer]:
         # All are waited for even if one fails: the others are paid for and belong into the cache.
@@ -106,29 +115,76 @@ class ModelChat:
         try:
             if self._cache is not None:
                 return await self._cached(self._cache, request)
-            return await self._fetcher.fetch(request), False
+            return await self._fetch(request), False
         except CallError as fault:
             failed = fault
-        if must_be_mended(failed) and not self._fetcher.worked:
-            raise self._unusable(failed)
-        raise unavailable(failed, self.name, self.settings.api_base)
+        if failed.kind in _FOR_GOOD and not self._worked:
+            raise unusable(failed, self.settings)
+        raise unavailable(failed, self.settings)
 
-    async def _cached(self, cache: Cache, request: Request) -> tuple[Reply, bool]:
+    async def _cached(self, cache: AnswerCache, request: ChatRequest) -> tuple[Reply, bool]:
         """Ask only what is not there, and the same thing only once even if it is asked twice at the same time."""
         wanted = request.as_dict()
-        name = json.dumps(wanted, sort_keys=True)
-        lock = self._under_way.setdefault(name, asyncio.Lock())
+        lock = self._under_way.setdefault(json.dumps(wanted, sort_keys=True), asyncio.Lock())
         async with lock:
             stored = cache.find(wanted)
             if stored is not None:
                 return Reply.from_dict(stored), True
-            reply = await self._fetcher.fetch(request)
+            reply = await self._fetch(request)
             # Another process may have been quicker; a replay will find its reply, so this run goes by it, too.
             return Reply.from_dict(cache.keep(wanted, reply.as_dict())), False
 
-    def _request(self, messages: tuple[Message, ...], schema: dict[str, Any] | None) -> Request:
-        s = self.settings
-        return Request(s.model, s.api_base, messages, s.temperature, s.max_tokens, schema)
+    async def _fetch(self, request: ChatRequest) -> Reply:
+        """Ask the server in the strictest form that it takes, retry where that helps, and pay.
 
-    def _unusable(self, fault: CallError) -> Exception:
-        return unusable(fault, self.name, self.settings.api_base, self.settings.api_key_env)
+        Raises:
+            CallError: If there is no reply, retries included.
+            ModelError: If the key is missing.
+        """
+        await self._sender.load()
+        begun, sent = time.perf_counter(), 0
+        while True:
+            form = self._forms.best(request.model, request.api_base) if request.schema else "text"
+            try:
+                reply, made = await self._retries.run(partial(self._attempt, request, form), self._may_pass)
+                sent += made
+                break
+            except CallError as fault:
+                sent += fault.attempts
+                fault.attempts = sent
+                if fault.kind is Kind.FORM and self._forms.step_down(request.model, request.api_base, form):
+                    continue
+                if fault.kind not in _FINISH_REASONS:
+                    raise
+                reply = Reply("", _FINISH_REASONS[fault.kind], refusal=fault.detail)
+                break
+        self._worked = True
+        prices = self.settings.input_cost_per_token, self.settings.output_cost_per_token
+        cost = cost_of(self.name, reply.prompt_tokens, reply.completion_tokens, *prices)
+        self.spending.add(reply.prompt_tokens, reply.completion_tokens, cost)
+        seconds = round(time.perf_counter() - begun, 3)
+        return replace(reply, form=form, cost=cost, seconds=seconds, attempts=sent)
+
+    async def _attempt(self, request: ChatRequest, form: str) -> Reply:
+        async with self._limit.slot() as ticket:
+            sending = self._sender.send(request, form, self._key(), self.settings.deadline)
+            try:
+                reply = await self._retries.within_deadline(sending)
+            except CallError as fault:
+                if fault.kind is Kind.RATE:
+                    self._limit.shrink(ticket)
+                raise
+            self._limit.grow()
+            return reply
+
+    def _may_pass(self, fault: CallError) -> bool:
+        # Before anything has worked, an address at which no server listens is a wrong address.
+        return fault.kind.passes and (self._worked or fault.kind is not Kind.UNREACHABLE)
+
+    def _request(self, messages: tuple[Message, ...], schema: dict[str, Any] | None) -> ChatRequest:
+        s = self.settings
+        return ChatRequest(s.model, s.api_base, messages, s.temperature, s.max_tokens, schema)
+
+    def _key(self) -> str | None:
+        s = self.settings
+        return read_key(s.api_key_env, s.api_base, "model", "llm.api_base", "llm.api_key_env")

@@ -2,11 +2,9 @@
 
 from collections.abc import Awaitable, Callable
 
-from codriving.llm.extract import one_line
-from codriving.llm.forms import schema_of, worded
+from codriving.llm.parsing import judge, one_line
 from codriving.llm.question import Answer, Call, Message, Question
-from codriving.llm.reply import TOO_LONG, Reply
-from codriving.llm.verdict import judge
+from codriving.llm.request import TOO_LONG, Reply, schema_of, worded
 
 Fetch = Callable[[tuple[Message, ...], Question], Awaitable[tuple[Reply, bool]]]
 """Gives the reply to a conversation, and whether it came from the cache."""

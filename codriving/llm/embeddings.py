@@ -1,17 +1,16 @@
 """Texts to vectors by an embedding model, through LiteLLM; retried and bounded in time like every other request."""
 
 import asyncio
-import os
 from collections.abc import Sequence
 from math import isfinite
 from typing import Any
-from urllib.parse import urlsplit
 
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError
+from codriving.llm.attempts import Retries, Sleep
 from codriving.llm.faults import CallError, Kind, fault_of
 from codriving.llm.loop import loop
-from codriving.llm.retrying import Retries, Sleep
 from codriving.llm.send import NO_KEY, load_litellm, provider_of
+from codriving.llm.settings import check_address, read_key
 
 ATTEMPTS = 5
 """How often a request is sent at most."""
@@ -36,8 +35,7 @@ class EmbeddingModel:
     ) -> None:
         if not model.strip():
             raise ConfigError("embedding_model must be the name of a model, got an empty text")
-        if api_base is not None and urlsplit(api_base).scheme not in ("http", "https"):
-            raise ConfigError("embedding_api_base must be an address such as http://127.0.0.1:8000/v1")
+        check_address("embedding_api_base", api_base)
         if not 0.1 <= deadline <= 3600:
             raise ConfigError(f"embedding_deadline must be 0.1 to 3600 s, got {deadline:g}")
         self.model, self.api_base, self.key_env, self.deadline = model, api_base, key_env, deadline
@@ -62,13 +60,15 @@ class EmbeddingModel:
         raise ModelError(f"the embedding model {self.model} cannot be used: {where} {failed}; {_CURE}")
 
     async def _embed(self, texts: list[str]) -> list[list[float]]:
-        key = self._key()
+        key = read_key(
+            self.key_env, self.api_base, "embedding model", "memory.embedding_api_base", "memory.embedding_key_env"
+        )
         await load_litellm()
 
         async def attempt() -> Any:  # noqa: ANN401 - LiteLLM's response has no narrow type
             return await self._retries.within_deadline(self._send(texts, key))
 
-        response = await self._retries.run(attempt, lambda fault: fault.kind.passes)
+        response, _ = await self._retries.run(attempt, lambda fault: fault.kind.passes)
         return self._vectors(response, len(texts))
 
     async def _send(self, texts: list[str], key: str | None) -> Any:  # noqa: ANN401
@@ -89,22 +89,6 @@ class EmbeddingModel:
             fault = fault_of(error, key)
         # Outside the handler: the library's exception, which may quote the key, is not dragged along as context.
         raise fault
-
-    def _key(self) -> str | None:
-        if self.key_env is None:
-            if self.api_base is None:
-                raise ModelError(
-                    "memory.embedding_api_base must be the address of your server, got null; only with "
-                    "memory.embedding_key_env can it be left out"
-                )
-            return None
-        key = os.environ.get(self.key_env, "").strip()
-        if not key:
-            raise ModelError(
-                f"{self.key_env} is not set; put the key of the embedding model into that environment variable, or set "
-                "memory.embedding_key_env to the name of another one (null if the server wants no key)"
-            )
-        return key
 
     def _vectors(self, response: Any, wanted: int) -> list[list[float]]:  # noqa: ANN401
         """Read the vectors in the order of the texts."""

@@ -1,15 +1,44 @@
-"""What a call failed with, told from what really went over the wire rather than from LiteLLM's choice of class."""
+"""What a call failed with, told from what went over the wire, and the one line that says what to set."""
 
 import re
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from enum import Enum
+from urllib.parse import quote
 
 import httpx
 
-from codriving.llm.extract import one_line
-from codriving.llm.redact import redacted
+from codriving.errors import ModelError, ModelUnavailableError
+from codriving.llm.parsing import one_line
+from codriving.llm.settings import ModelSettings
+
+HIDDEN = "***"
+
+# What is left of a key after a server has masked the middle of it is hidden, too.
+_BEARER = re.compile(r"(?i)\b(bearer|basic)\s+[^\s\"',;}]+")
+_HEADER = re.compile(
+    r"(?i)\b((?:proxy-)?authorization|x-api-key|api[-_]key)(\"?'?\s*[:=]\s*\"?'?)(?!bearer|basic)[^\s\"',;}]+"
+)
+_SECRET = re.compile(r"\bsk-[\w*.\-]{6,}|\bAIza[\w\-]{20,}")
+
+
+def without_key(text: str, key: str | None) -> str:
+    """Take one key out of a text, as it is and as it stands in an address.
+
+    Args:
+        key: The key; None or empty takes nothing out.
+    """
+    for written in {key, quote(key, safe="")} if key else ():
+        text = text.replace(written, HIDDEN)
+    return text
+
+
+def redacted(text: str, key: str | None) -> str:
+    """Take everything out of an error text that is a key or looks like one."""
+    text = _BEARER.sub(rf"\1 {HIDDEN}", without_key(text, key))
+    return _SECRET.sub(HIDDEN, _HEADER.sub(rf"\1\2{HIDDEN}", text))
+
 
 _TOO_LONG = re.compile(
     r"(?i)context[ _-]?(length|window|size)|maximum context|too many tokens|prompt is too long|"
@@ -137,3 +166,38 @@ def _retry_after(headers: httpx.Headers) -> float | None:
     except ValueError:
         return None
     return max(0.0, (when.replace(tzinfo=when.tzinfo or UTC) - datetime.now(UTC)).total_seconds())
+
+
+def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
+    """Say that a model cannot be used, and what to set."""
+    where, said = _server(settings), f" ({fault.detail})" if fault.detail else ""
+    variable = settings.api_key_env
+    key = variable or "the variable that llm.api_key_env names"
+    if fault.kind is Kind.KEY and variable is None:
+        return ModelError(
+            f"{where} refuses requests without a key{said}; set llm.api_key_env to the name of the variable that holds "
+            "the key"
+        )
+    what = {Kind.KEY: f"refuses the key in {variable}", Kind.MODEL: f"does not know the model {settings.model}"}
+    cure = {
+        Kind.KEY: f"set {key} to a valid key",
+        Kind.MODEL: "set llm.model to one that it has, or check llm.api_base",
+        Kind.UNREACHABLE: "start the server, or set llm.api_base to its address",
+        Kind.QUOTA: f"buy some, or set {key} to another key",
+        Kind.UNREADABLE: "set llm.api_base to the address of its API, which often ends in /v1",
+        Kind.TIMEOUT: "raise llm.deadline, or check llm.api_base",
+        Kind.RATE: "try later, or raise llm.attempts",
+        Kind.SERVER: "try later, or check llm.model and llm.api_base",
+        Kind.DROPPED: "try later, or check llm.api_base",
+    }.get(fault.kind, "change the setting of llm that it complains about")
+    return ModelError(f"{where} {what.get(fault.kind, fault.kind.value)}{said}; {cure}")
+
+
+def unavailable(fault: CallError, settings: ModelSettings) -> ModelUnavailableError:
+    """Say that a model did not answer this time."""
+    times = "once" if fault.attempts == 1 else f"{fault.attempts} times"
+    return ModelUnavailableError(f"{settings.model}: {_server(settings)} {fault}, asked {times}")
+
+
+def _server(settings: ModelSettings) -> str:
+    return settings.api_base or f"the provider of {settings.model}"

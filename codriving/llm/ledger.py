@@ -1,9 +1,10 @@
 """What was asked during one decision step: the counters of the tables and the lines of the transcript."""
 
 from collections import Counter
+from dataclasses import asdict
 from typing import Any
 
-from codriving.llm.question import Answer, Question, as_line
+from codriving.llm.question import Answer, Question
 
 
 class Ledger:
@@ -12,11 +13,11 @@ class Ledger:
     def __init__(self) -> None:
         self._counts: Counter[str] = Counter()
         self._cost = 0.0
-        self._asked: list[tuple[Question, Answer]] = []
+        self._noted: list[tuple[Question, Answer]] = []
 
     def note(self, question: Question, answer: Answer) -> None:
         """Note an answer."""
-        self._asked.append((question, answer))
+        self._noted.append((question, answer))
         self._counts["model_calls"] += len(answer.calls)
         self._counts["prompt_tokens"] += sum(call.prompt_tokens for call in answer.calls)
         self._counts["completion_tokens"] += sum(call.completion_tokens for call in answer.calls)
@@ -38,19 +39,31 @@ class Ledger:
             time: Simulated time of the step [s].
 
         Returns:
-            Counters by column, and one line an answer.
+            Counters by column, and one line of ``transcript.jsonl`` an answer.
         """
         counts: dict[str, float] = dict(self._counts)
         counts["cost_usd"] = self._cost
         counts["model_seconds"] = self._waited()
-        lines = [as_line(question.purpose, question.subject, time, answer) for question, answer in self._asked]
-        self._counts, self._cost, self._asked = Counter(), 0.0, []
+        lines = [_line(question, answer, time) for question, answer in self._noted]
+        self._counts, self._cost, self._noted = Counter(), 0.0, []
         return counts, lines
 
     def _waited(self) -> float:
         """How long the step waited [s]: the questions of one purpose are asked at once, the purposes one by one."""
         longest: dict[str, float] = {}
-        for question, answer in self._asked:
+        for question, answer in self._noted:
             seconds = sum(call.seconds for call in answer.calls)
             longest[question.purpose] = max(seconds, longest.get(question.purpose, 0.0))
         return sum(longest.values())
+
+
+def _line(question: Question, answer: Answer, time: float) -> dict[str, Any]:
+    return {
+        "time": time,
+        "purpose": question.purpose,
+        "subject": question.subject,
+        "value": None if answer.value is None else answer.value.model_dump(mode="json"),
+        "problem": answer.problem,
+        "shortened": answer.shortened,
+        "calls": [{key: value for key, value in asdict(call).items() if key != "cached"} for call in answer.calls],
+    }

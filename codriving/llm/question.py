@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -92,33 +92,3 @@ class Chat(Protocol):
             SpendingLimitError: If the tokens or the money that may be spent are used up.
         """
         ...
-
-
-def as_line(purpose: str, subject: str, time: float, answer: Answer) -> dict[str, Any]:
-    """Write an answer down as one JSON-ready line of ``transcript.jsonl``.
-
-    Args:
-        time: Simulated time [s].
-    """
-    return {
-        "time": time,
-        "purpose": purpose,
-        "subject": subject,
-        "value": None if answer.value is None else answer.value.model_dump(mode="json"),
-        "problem": answer.problem,
-        "shortened": answer.shortened,
-        "calls": [
-            {
-                "messages": [{"role": m.role, "content": m.content} for m in call.messages],
-                "text": call.text,
-                "form": call.form,
-                "prompt_tokens": call.prompt_tokens,
-                "completion_tokens": call.completion_tokens,
-                "cost": call.cost,
-                "seconds": call.seconds,
-                "attempts": call.attempts,
-                "problem": call.problem,
-            }
-            for call in answer.calls
-        ],
-    }

@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 from codriving.llm.conversation import converse
 from codriving.llm.question import Answer, Message, Question
-from codriving.llm.reply import Reply
+from codriving.llm.request import Reply
 
 Script = Callable[[Question], "BaseModel | str | Exception"]
 """Gives the answer to a question as an object or in a model's words; an exception is raised."""

@@ -3,15 +3,14 @@
 import asyncio
 import logging
 import os
+from dataclasses import asdict
 from types import ModuleType
-from typing import Any, Protocol, cast
+from typing import Any, cast
 
-from codriving.llm.extract import clean
-from codriving.llm.faults import fault_of
-from codriving.llm.forms import response_format, worded
+from codriving.llm.faults import fault_of, without_key
 from codriving.llm.loop import loop
-from codriving.llm.redact import without_key
-from codriving.llm.reply import Reply, Request
+from codriving.llm.parsing import clean
+from codriving.llm.request import ChatRequest, Reply, response_format, worded
 
 NO_KEY = "none"
 """Sent where no key is named; without it LiteLLM would take one from the environment and give it to a stranger."""
@@ -20,14 +19,14 @@ _COMPATIBLE = "openai"
 """LiteLLM's word for a server that speaks OpenAI's protocol."""
 
 
-class Sender(Protocol):
-    """Sends requests; replaced in tests."""
+class Sender:
+    """Sends through LiteLLM, over connections that the whole process shares."""
 
     async def load(self) -> None:
-        """Do what takes long the first time, so that no deadline runs meanwhile."""
-        ...
+        """Import LiteLLM, which takes seconds the first time, so that no deadline runs meanwhile."""
+        await load_litellm()
 
-    async def send(self, request: Request, form: str, key: str | None, deadline: float) -> Reply:
+    async def send(self, request: ChatRequest, form: str, key: str | None, deadline: float) -> Reply:
         """Send a request once.
 
         Args:
@@ -36,30 +35,17 @@ class Sender(Protocol):
         Raises:
             CallError: If there is no reply.
         """
-        ...
-
-
-class LiteLLMSender:
-    """Sends through LiteLLM, over connections that the whole process shares."""
-
-    async def load(self) -> None:
-        """Import LiteLLM and what it imports in its first call, which takes seconds."""
-        await load_litellm()
-
-    async def send(self, request: Request, form: str, key: str | None, deadline: float) -> Reply:
-        """See ``Sender``."""
         options: dict[str, Any] = {"max_tokens": request.max_tokens}
         if request.temperature is not None:
             options["temperature"] = request.temperature
         wanted = response_format(form, request.schema)
         if wanted is not None:
             options["response_format"] = wanted
-        messages = worded(request.messages, form, request.schema)
         try:
             response = await _loaded[0].acompletion(
                 model=request.model,
                 custom_llm_provider=provider_of(request.model, request.api_base),
-                messages=[{"role": m.role, "content": m.content} for m in messages],
+                messages=[asdict(message) for message in worded(request.messages, form, request.schema)],
                 api_base=request.api_base,
                 api_key=key or NO_KEY,
                 timeout=deadline,

@@ -1,20 +1,45 @@
-"""What a client is told to do, and what it keeps its accounts in."""
+"""The settings of a language model, checked, and its key, which is read when it is used and stored nowhere."""
 
-from collections.abc import Mapping
+import os
+import re
 from dataclasses import dataclass
-from typing import Any, Protocol
+from urllib.parse import urlsplit
+
+from codriving.errors import ConfigError, ModelError
+
+CACHE_MODES = ("off", "use", "replay")
+
+_VARIABLE = re.compile(r"[A-Z][A-Z0-9_]*")
+_ADDRESS = "an address such as http://127.0.0.1:8000/v1"
+_RANGES = {
+    "temperature": (0, 2, ""),
+    "max_tokens": (1, 100_000, ""),
+    "deadline": (0.1, 3600, " s"),
+    "attempts": (1, 20, ""),
+    "max_concurrency": (1, 1000, ""),
+    "failures_in_a_row": (1, 1000, ""),
+}
 
 
 @dataclass(frozen=True)
-class Settings:
-    """What a client does.
+class ModelSettings:
+    """The settings of a model through LiteLLM.
 
     Attributes:
         api_base: Address of the server; None for the provider's own.
-        api_key_env: Name of the environment variable with the key; None if no key is needed.
+        api_key_env: Name of the environment variable that holds the key; None sends none.
         temperature: Sampling temperature; None leaves it to the server.
         max_tokens: Longest answer [tokens].
-        deadline: How long one attempt may take [s].
+        deadline: How long one attempt may take, from sending to the last byte [s].
+        cache: ``off``, ``use`` (asks what is not there) or ``replay`` (asks nothing).
+        max_cost: What the batch may cost [USD]; None sets no limit.
+        max_tokens_total: Tokens that the batch may use; None sets no limit.
+        input_cost_per_token: Price of a token of the prompt [USD]; None takes LiteLLM's.
+        output_cost_per_token: Price of a token of the answer [USD]; None takes LiteLLM's.
+        prompts: Folder with templates that replace ours; None takes ours.
+
+    Raises:
+        ConfigError: If a setting breaks its rule.
     """
 
     model: str
@@ -25,28 +50,92 @@ class Settings:
     deadline: float
     attempts: int
     max_concurrency: int
-    replay: bool = False
+    cache: str
+    cache_file: str
+    max_cost: float | None
+    max_tokens_total: int | None
+    input_cost_per_token: float | None
+    output_cost_per_token: float | None
+    failures_in_a_row: int
+    ask_plain: bool
+    prompts: str | None
+
+    def __post_init__(self) -> None:
+        prices = self.input_cost_per_token, self.output_cost_per_token
+        _require(self.model.strip(), "model must be the name of a model, got an empty text")
+        check_address("api_base", self.api_base)
+        _require(
+            self.api_key_env is None or _VARIABLE.fullmatch(self.api_key_env),
+            "api_key_env must be the name of an environment variable, in capitals, and never the key itself; "
+            "what was given is not shown",
+        )
+        for name, (low, high, unit) in _RANGES.items():
+            value = getattr(self, name)
+            in_range = value is None or low <= value <= high
+            _require(in_range, f"{name} must be {low:g} to {high:g}{unit}, got {value}")
+        _require(self.cache in CACHE_MODES, f"cache must be one of {', '.join(CACHE_MODES)}, got {self.cache}")
+        _require(self.cache_file.strip(), "cache_file must be the name of a file, got an empty text")
+        for name, unit in (("max_cost", " USD"), ("max_tokens_total", "")):
+            limit = getattr(self, name)
+            _require(limit is None or limit > 0, f"{name} must be above 0{unit}, got {limit}")
+        for name, price in zip(("input_cost_per_token", "output_cost_per_token"), prices, strict=True):
+            _require(price is None or price >= 0, f"{name} must be 0 USD or more, got {price}")
+        _require(
+            prices.count(None) != 1,
+            "input_cost_per_token must be given together with output_cost_per_token, got one of them alone",
+        )
 
 
-class Cache(Protocol):
-    """Keeps replies; see ``codriving.llm.cache``."""
+def check_address(name: str, address: str | None) -> None:
+    """Check the address of a server, None being the provider's own.
 
-    def find(self, request: Mapping[str, Any]) -> dict[str, Any] | None:
-        """Return the reply to a request, if there is one."""
-        ...
+    Args:
+        name: The setting that holds it.
 
-    def keep(self, request: Mapping[str, Any], reply: Mapping[str, Any]) -> dict[str, Any]:
-        """Keep a reply, and return the one that is kept: an earlier one, if there is one by now."""
-        ...
+    Raises:
+        ConfigError: If it is none, or holds more than an address.
+    """
+    if address is None:
+        return
+    parts = urlsplit(address)
+    _require(
+        parts.username is None and parts.password is None and not parts.query,
+        f"{name} must be {_ADDRESS} with no name, password or key in it; put the key into the environment",
+    )
+    _require(parts.scheme in ("http", "https") and parts.hostname, f"{name} must be {_ADDRESS}, got {address}")
 
 
-class Purse(Protocol):
-    """Counts what is spent; see ``codriving.llm.spending``."""
+def read_key(variable: str | None, api_base: str | None, model: str, base_setting: str, key_setting: str) -> str | None:
+    """Read the key of a server from the environment.
 
-    def check(self) -> None:
-        """Refuse to go on if a limit is reached."""
-        ...
+    Args:
+        variable: Name of the environment variable; None if no key is sent.
+        api_base: Address of the server; None for the provider's own.
+        model: The kind of model, for messages.
+        base_setting: The setting that holds ``api_base``, for messages.
+        key_setting: The setting that holds ``variable``, for messages.
 
-    def add(self, prompt_tokens: int, completion_tokens: int, cost: float | None) -> None:
-        """Note what a reply cost."""
-        ...
+    Raises:
+        ModelError: If it is missing or cannot be one.
+    """
+    if variable is None:
+        if api_base is None:
+            raise ModelError(
+                f"{base_setting} must be the address of your server, for instance http://127.0.0.1:8000/v1, got null; "
+                f"only with {key_setting} can it be left out"
+            )
+        return None
+    key = os.environ.get(variable, "").strip()
+    if not key:
+        raise ModelError(
+            f"{variable} is not set; put the key of the {model} into that environment variable, or set "
+            f"{key_setting} to the name of another one (null if the server wants no key)"
+        )
+    if not all("!" <= character <= "~" for character in key):
+        raise ModelError(f"{variable} holds characters that no key has; set it to the key alone")
+    return key
+
+
+def _require(condition: object, message: str) -> None:
+    if not condition:
+        raise ConfigError(message)

@@ -1,11 +1,12 @@
-"""What a language model has cost so far, and whether it may cost more."""
+"""What a language model has cost so far, what a call costs, and whether it may cost more."""
 
+import sys
 import threading
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from codriving.errors import ConfigError, SpendingLimitError
-
-_RESUME = "go on"
+from codriving.errors import SpendingLimitError
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,15 +37,9 @@ class Spending:
     Args:
         max_cost: Money that may be spent [USD]; None for any.
         max_tokens_total: Tokens of prompts and answers that may be used; None for any.
-
-    Raises:
-        ConfigError: If a limit is not above 0.
     """
 
     def __init__(self, max_cost: float | None = None, max_tokens_total: int | None = None) -> None:
-        for key, limit in (("max_cost", max_cost), ("max_tokens_total", max_tokens_total)):
-            if limit is not None and not limit > 0:
-                raise ConfigError(f"llm.{key} must be above 0, or null for no limit, got {limit:g}")
         self.max_cost, self.max_tokens_total = max_cost, max_tokens_total
         self._totals = Totals()
         self._lock = threading.Lock()
@@ -59,7 +54,7 @@ class Spending:
         if self.max_tokens_total is not None and spent.tokens >= self.max_tokens_total:
             raise SpendingLimitError(
                 f"llm.max_tokens_total={self.max_tokens_total} is used up ({spent.tokens} tokens in {spent.calls} "
-                f"calls); raise llm.max_tokens_total and {_RESUME}"
+                f"calls); raise llm.max_tokens_total and go on"
             )
         if self.max_cost is None:
             return
@@ -67,12 +62,12 @@ class Spending:
             raise SpendingLimitError(
                 f"llm.max_cost={self.max_cost:g} cannot be kept, because the price of this model is not known; set "
                 "llm.input_cost_per_token and llm.output_cost_per_token, or llm.max_tokens_total instead of "
-                f"llm.max_cost, and {_RESUME}"
+                f"llm.max_cost, and go on"
             )
         if spent.cost >= self.max_cost:
             raise SpendingLimitError(
                 f"llm.max_cost={self.max_cost:g} USD is used up ({spent.cost:.6g} USD, {spent.tokens} tokens in "
-                f"{spent.calls} calls); raise llm.max_cost and {_RESUME}"
+                f"{spent.calls} calls); raise llm.max_cost and go on"
             )
 
     def add(self, prompt_tokens: int, completion_tokens: int, cost: float | None) -> None:
@@ -94,3 +89,40 @@ class Spending:
         """Give what has been used up so far, all of the same moment."""
         with self._lock:
             return self._totals
+
+
+INPUT, OUTPUT = "input_cost_per_token", "output_cost_per_token"
+"""What LiteLLM's price map calls the two prices [USD/token]; the keys of the config are called alike."""
+
+
+def cost_of(
+    model: str,
+    prompt_tokens: int,
+    completion_tokens: int,
+    input_price: float | None = None,
+    output_price: float | None = None,
+) -> float | None:
+    """Work out what a call costs.
+
+    Args:
+        input_price: Price of the prompt by the config [USD/token]; None where it has none.
+        output_price: Price of the answer by the config [USD/token]; None where it has none.
+
+    Returns:
+        The cost [USD]; None where a price is not known.
+    """
+    listed = _listed(model) if input_price is None or output_price is None else {}
+    first = listed.get(INPUT) if input_price is None else input_price
+    second = listed.get(OUTPUT) if output_price is None else output_price
+    return None if first is None or second is None else prompt_tokens * first + completion_tokens * second
+
+
+def _listed(model: str) -> Mapping[str, Any]:
+    """What LiteLLM knows of a model; nothing if LiteLLM is not in use, for its import alone takes seconds."""
+    prices: Mapping[str, Mapping[str, Any]] = getattr(sys.modules.get("litellm"), "model_cost", {})
+    if model in prices:
+        return prices[model]
+    # "openai/gpt-4o-mini" is listed as "gpt-4o-mini"; a model of that name at another provider costs what that asks.
+    provider, _, name = model.partition("/")
+    entry = prices.get(name, {})
+    return entry if entry.get("litellm_provider") == provider else {}

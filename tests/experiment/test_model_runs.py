@@ -107,7 +107,7 @@ def test_a_model_is_found_only_where_the_method_asks_it() -> None:
     assert model_of(asking_cell().resolved) is not None
     assert model_of(asking_cell(asks=False).resolved) is None
     assert model_of({"seed": 0}) is None
-    rules = {"_target_": "codriving.llm.offline.Offline"}
+    rules = {"_target_": "codriving.llm.language_model.Offline"}
     assert model_of({"llm": rules, "method": {"llm": rules}, "plugins": []}) is None
 
 

@@ -2,22 +2,24 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import replace
 from typing import Literal
 
 from pydantic import BaseModel
 
+from codriving.llm.cache import AnswerCache
 from codriving.llm.client import ModelChat
 from codriving.llm.faults import CallError
-from codriving.llm.forms import Forms
 from codriving.llm.question import Message, Question
-from codriving.llm.reply import Reply, Request
-from codriving.llm.settings import Cache, Settings
+from codriving.llm.request import ChatRequest, Forms, Reply
+from codriving.llm.send import Sender
+from codriving.llm.settings import ModelSettings
 from codriving.llm.spending import Spending
 
 GOOD = '{"reason": "free", "action": "IDLE"}'
 
 Said = Reply | Exception | str
-Behaviour = Sequence[Said] | Callable[[Request, str], Said | Awaitable[Said]]
+Behaviour = Sequence[Said] | Callable[[ChatRequest, str], Said | Awaitable[Said]]
 
 
 class Choice(BaseModel):
@@ -32,18 +34,18 @@ def question(text: str = "Choose.", **changes: object) -> Question:
     return Question("decide", "cav_0", messages, Choice, **changes)  # type: ignore[arg-type]
 
 
-class FakeSender:
+class FakeSender(Sender):
     """Replies from a list, then always well; or as a function of request and form says."""
 
     def __init__(self, behaviour: Behaviour = ()) -> None:
-        self.sent: list[tuple[Request, str, str | None]] = []
+        self.sent: list[tuple[ChatRequest, str, str | None]] = []
         self.now = self.most = 0
         self._behaviour = behaviour
 
     async def load(self) -> None:
         """Nothing takes long here."""
 
-    async def send(self, request: Request, form: str, key: str | None, deadline: float) -> Reply:
+    async def send(self, request: ChatRequest, form: str, key: str | None, deadline: float) -> Reply:
         """Note the request and reply to it."""
         self.sent.append((request, form, key))
         self.now += 1
@@ -57,7 +59,7 @@ class FakeSender:
             raise said
         return said if isinstance(said, Reply) else reply(said, form=form)
 
-    async def _say(self, request: Request, form: str) -> Said:
+    async def _say(self, request: ChatRequest, form: str) -> Said:
         if not callable(self._behaviour):
             return self._behaviour[len(self.sent) - 1] if len(self.sent) <= len(self._behaviour) else GOOD
         said = self._behaviour(request, form)
@@ -76,32 +78,37 @@ class Waits(list[float]):
         self.append(seconds)
 
 
+SETTINGS = ModelSettings(
+    model="openai/fake",
+    api_base="http://server/v1",
+    api_key_env=None,
+    temperature=0.0,
+    max_tokens=300,
+    deadline=30.0,
+    attempts=4,
+    max_concurrency=8,
+    cache="off",
+    cache_file="answers.sqlite",
+    max_cost=None,
+    max_tokens_total=None,
+    input_cost_per_token=1e-6,
+    output_cost_per_token=2e-6,
+    failures_in_a_row=5,
+    ask_plain=False,
+    prompts=None,
+)
+
+
 def chat(
     sender: FakeSender,
     waits: Waits | None = None,
-    cache: Cache | None = None,
+    cache: AnswerCache | None = None,
     spending: Spending | None = None,
+    replay: bool = False,
     **changes: object,
 ) -> ModelChat:
-    settings = {
-        "model": "openai/fake",
-        "api_base": "http://server/v1",
-        "api_key_env": None,
-        "temperature": 0.0,
-        "max_tokens": 300,
-        "deadline": 30.0,
-        "attempts": 4,
-        "max_concurrency": 8,
-    }
-    return ModelChat(
-        Settings(**(settings | changes)),  # type: ignore[arg-type]
-        price=lambda prompt, completion: prompt * 1e-6 + completion * 2e-6,
-        spending=spending or Spending(),
-        cache=cache,
-        sender=sender,
-        sleep=Waits() if waits is None else waits,
-        forms=Forms(),
-    )
+    settings = replace(SETTINGS, cache="replay" if replay else "off", **changes)  # type: ignore[arg-type]
+    return ModelChat(settings, cache, spending, sender, Waits() if waits is None else waits, Forms())
 
 
-__all__ = ["GOOD", "CallError", "Choice", "FakeSender", "Waits", "chat", "question", "reply"]
+__all__ = ["GOOD", "SETTINGS", "CallError", "Choice", "FakeSender", "Waits", "chat", "question", "reply"]

@@ -15,7 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.errors import ConfigError, ModelError
+from codriving.errors import ModelError
 from codriving.llm.cache import AnswerCache, key_of
 
 REQUEST = {"model": "m", "messages": [{"role": "user", "content": "who goes first?"}], "temperature": 0.0}
@@ -36,14 +36,6 @@ def test_what_was_kept_is_found_by_everybody(tmp_path: Path) -> None:
     assert cache.find(asked(1)) is None
     assert AnswerCache(path, "use").find(REQUEST) == REPLY
     assert AnswerCache(str(path), "replay").find(REQUEST) == REPLY
-
-
-def test_off_neither_reads_nor_writes(tmp_path: Path) -> None:
-    AnswerCache(tmp_path / "c", "use").keep(REQUEST, REPLY)
-    off = AnswerCache(tmp_path / "c", "off")
-    assert off.find(REQUEST) is None
-    assert AnswerCache(tmp_path / "d", "off").keep(REQUEST, REPLY) == REPLY
-    assert not (tmp_path / "d").exists()
 
 
 def test_the_first_reply_stays_and_everybody_is_given_it(tmp_path: Path) -> None:
@@ -168,11 +160,6 @@ def test_a_cache_of_another_version_or_a_damaged_reply_is_refused(tmp_path: Path
     connection.close()
     with pytest.raises(ModelError, match="another version wrote it"):
         AnswerCache(tmp_path / "c", mode).find(REQUEST)
-
-
-def test_there_are_three_modes(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"llm\.cache must be off, use or replay, got 'on'"):
-        AnswerCache(tmp_path / "c", "on")
 
 
 values = (

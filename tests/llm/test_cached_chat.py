@@ -10,11 +10,11 @@ from codriving.errors import ModelError
 from codriving.llm.cache import AnswerCache
 from codriving.llm.faults import CallError, Kind
 from codriving.llm.question import Answer, Question
-from codriving.llm.reply import Request
+from codriving.llm.request import ChatRequest
 from codriving.llm.spending import Spending
 
 
-def troubled(request: Request, form: str) -> CallError | str:
+def troubled(request: ChatRequest, form: str) -> CallError | str:
     """A server with a short context, no JSON schema, and a bad first answer."""
     words = request.messages[1].content
     if form == "json_schema":
@@ -82,7 +82,7 @@ def test_failure_is_not_kept(tmp_path: Path) -> None:
 def test_quicker_process_wins(tmp_path: Path) -> None:
     path = tmp_path / "answers.sqlite"
 
-    def overtaken(request: Request, form: str) -> str:
+    def overtaken(request: ChatRequest, form: str) -> str:
         AnswerCache(path, "use").keep(request.as_dict(), reply(GOOD.replace("free", "first")).as_dict())
         return GOOD
 

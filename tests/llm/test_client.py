@@ -9,10 +9,10 @@ import pytest
 from fake_sender import GOOD, Choice, FakeSender, Waits, chat, question, reply
 
 from codriving.errors import ModelError, ModelUnavailableError, SpendingLimitError
+from codriving.llm.attempts import Retry
 from codriving.llm.faults import CallError, Kind
 from codriving.llm.question import Answer, Question
-from codriving.llm.reply import Request
-from codriving.llm.retrying import Retry
+from codriving.llm.request import ChatRequest
 from codriving.llm.spending import Spending
 
 BAD = {
@@ -83,7 +83,7 @@ def test_what_the_asker_finds_wrong_is_told_once() -> None:
 
 
 def test_long_question_is_shortened_until_it_fits() -> None:
-    def reply_to(request: Request, form: str) -> CallError | str:
+    def reply_to(request: ChatRequest, form: str) -> CallError | str:
         long = len(request.messages[1].content) > 10
         return CallError(Kind.TOO_LONG, "400: context") if long else GOOD
 
@@ -105,7 +105,7 @@ def test_question_that_cannot_be_shortened_has_no_answer() -> None:
 
 
 def test_form_is_stepped_down_once_for_all_questions() -> None:
-    def reply_to(request: Request, form: str) -> CallError | str:
+    def reply_to(request: ChatRequest, form: str) -> CallError | str:
         return GOOD if form == "text" else CallError(Kind.FORM, f"400: response_format {form}")
 
     sender = FakeSender(reply_to)
@@ -168,17 +168,17 @@ def test_other_refusals_end_the_episode_without_a_retry() -> None:
 
 
 def test_attempt_that_never_ends_is_ended_by_the_deadline() -> None:
-    async def never(request: Request, form: str) -> str:
+    async def never(request: ChatRequest, form: str) -> str:
         await asyncio.Event().wait()
         raise AssertionError
 
     sender = FakeSender(lambda request, form: never(request, form))
-    with pytest.raises(ModelUnavailableError, match=r"did not answer in time \(0.01 s\), asked 2 times"):
-        ask(chat(sender, deadline=0.01, attempts=2))
+    with pytest.raises(ModelUnavailableError, match=r"did not answer in time \(0.1 s\), asked 2 times"):
+        ask(chat(sender, deadline=0.1, attempts=2))
 
 
 def test_all_questions_of_a_step_are_asked_at_once_and_answered_in_order() -> None:
-    def reply_to(request: Request, form: str) -> str:
+    def reply_to(request: ChatRequest, form: str) -> str:
         return GOOD.replace("free", request.messages[1].content)
 
     sender = FakeSender(reply_to)
@@ -188,7 +188,7 @@ def test_all_questions_of_a_step_are_asked_at_once_and_answered_in_order() -> No
 
 
 def test_one_that_fails_does_not_stop_the_others_from_being_paid_for() -> None:
-    def reply_to(request: Request, form: str) -> str | CallError:
+    def reply_to(request: ChatRequest, form: str) -> str | CallError:
         return CallError(Kind.REFUSED, "400") if request.messages[1].content == "0" else GOOD
 
     spending = Spending()
@@ -299,7 +299,7 @@ def test_preflight_without_key_or_address_sends_nothing(monkeypatch: pytest.Monk
 def test_interrupted_waiting_cancels_the_questions(monkeypatch: pytest.MonkeyPatch) -> None:
     begun, cancelled = threading.Event(), threading.Event()
 
-    async def never(request: Request, form: str) -> str:
+    async def never(request: ChatRequest, form: str) -> str:
         begun.set()
         try:
             await asyncio.Event().wait()

@@ -1,4 +1,4 @@
-"""What a call failed with is told from what went over the wire."""
+"""What a call failed with, told from what went over the wire, and that no key is repeated."""
 
 from datetime import UTC, datetime, timedelta
 from email.utils import format_datetime
@@ -6,7 +6,7 @@ from email.utils import format_datetime
 import httpx
 import pytest
 
-from codriving.llm.faults import CallError, Kind, fault_of
+from codriving.llm.faults import CallError, Kind, fault_of, redacted
 
 REQUEST = httpx.Request("POST", "http://server/v1/chat/completions")
 
@@ -90,3 +90,34 @@ def test_wait_is_read_in_seconds_and_as_a_date() -> None:
     assert from_server(429, "x").retry_after is None
     later = format_datetime(datetime.now(UTC) + timedelta(seconds=90), usegmt=True)
     assert from_server(429, "x", {"Retry-After": later}).retry_after == pytest.approx(89, abs=2)
+
+
+KEY = "canary/7f+3a"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"Incorrect API key provided: {KEY}.",
+        f"You sent 'Authorization: Bearer {KEY}'",
+        "GET https://host/v1?key=canary%2F7f%2B3a failed",
+        f"{{'authorization': 'Basic {KEY}', 'x-api-key': '{KEY}'}}",
+    ],
+)
+def test_key_is_taken_out(text: str) -> None:
+    hidden = redacted(text, KEY)
+    assert "canary" not in hidden
+    assert "***" in hidden
+
+
+@pytest.mark.parametrize(
+    "text", ["Bearer abcdef", "x-api-key: abcdef", "api_key=abcdef", "sk-abcdef1234", "sk-ab****cdef", "Basic abcdef=="]
+)
+def test_what_looks_like_a_key_is_taken_out_even_if_it_is_another(text: str) -> None:
+    assert "abcdef" not in redacted(text, None)
+    assert "cdef" not in redacted(text, None)
+
+
+def test_other_text_stays() -> None:
+    text = "400: max_tokens must be at most 16384, got 99999; the key is fine"
+    assert redacted(text, "") == text

@@ -12,17 +12,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from fake_sender import Choice, Waits
+from fake_sender import SETTINGS, Choice, Waits
 from faults import FAULTS, Fault
 from loopback import Loopback
 
 from codriving.errors import CodrivingError, ModelError, ModelUnavailableError
 from codriving.llm.client import ModelChat
-from codriving.llm.forms import Forms
 from codriving.llm.language_model import LanguageModel
 from codriving.llm.question import Message, Question
-from codriving.llm.settings import Settings
-from codriving.llm.spending import Spending
+from codriving.llm.request import Forms
 
 CANARY = "sk-canary-0123456789abcdef"
 PROMPT = "You are cav_0.\nAllowed actions: IDLE, SLOWER\n"
@@ -44,19 +42,17 @@ def connect() -> Connect:
     """Clients of a server, ready to ask; they wait no time between attempts."""
 
     def made(server: Loopback | str, greet: bool = True, **changes: Any) -> ModelChat:
-        settings = Settings(
+        settings = replace(
+            SETTINGS,
             model="openai/loopback",
             api_base=server if isinstance(server, str) else server.url,
             api_key_env="CANARY_KEY",
-            temperature=0.0,
-            max_tokens=300,
             deadline=20.0,
             attempts=3,
-            max_concurrency=8,
+            input_cost_per_token=None,
+            output_cost_per_token=None,
         )
-        client = ModelChat(
-            replace(settings, **changes), lambda prompt, answer: None, Spending(), sleep=Waits(), forms=Forms()
-        )
+        client = ModelChat(replace(settings, **changes), sleep=Waits(), forms=Forms())
         if greet:
             client.preflight()
         if isinstance(server, Loopback):
@@ -207,7 +203,7 @@ def test_address_where_nobody_listens_is_refused_at_once(connect: Connect, addre
 
 def test_provider_that_nobody_knows_is_refused(connect: Connect) -> None:
     with pytest.raises(ModelError, match=r"does not know the model nobody/nothing .*set llm\.model"):
-        connect("", api_base=None, model="nobody/nothing")
+        connect("http://127.0.0.1:1/v1", api_base=None, model="nobody/nothing")
 
 
 @pytest.mark.parametrize("name", ["401", "echo_key_400", "echo_key_401", "404", "quota"])

@@ -10,8 +10,7 @@ import pytest
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.errors import ConfigError
-from codriving.llm.language_model import LanguageModel
-from codriving.llm.offline import Offline
+from codriving.llm.language_model import LanguageModel, Offline
 
 MODELS = ("openai", "anthropic", "gemini", "ollama", "vllm", "custom")
 

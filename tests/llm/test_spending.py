@@ -1,11 +1,13 @@
-"""Spending is added up and stopped in time, with what to do."""
+"""Spending is added up and stopped in time, with what to do; prices come from the config or from LiteLLM."""
 
+import sys
 from concurrent.futures import ThreadPoolExecutor
+from types import ModuleType
 
 import pytest
 
-from codriving.errors import ConfigError, SpendingLimitError
-from codriving.llm.spending import Spending, Totals
+from codriving.errors import SpendingLimitError
+from codriving.llm.spending import Spending, Totals, cost_of
 
 
 def test_without_limits_everything_passes() -> None:
@@ -48,15 +50,45 @@ def test_money_that_cannot_be_told_is_not_spent() -> None:
         spending.check()
 
 
-@pytest.mark.parametrize("key", ["max_cost", "max_tokens_total"])
-@pytest.mark.parametrize("limit", [0, -1, float("nan")])
-def test_a_limit_that_lets_nothing_pass_is_refused(key: str, limit: float) -> None:
-    with pytest.raises(ConfigError, match=rf"llm\.{key} must be above 0"):
-        Spending(**{key: limit})  # type: ignore[arg-type]
-
-
 def test_threads_share_it() -> None:
     spending = Spending()
     with ThreadPoolExecutor(8) as pool:
         list(pool.map(lambda k: spending.add(k, 1, 0.25), range(1000)))
     assert spending.totals() == Totals(1000, 499_500, 1000, 250.0)
+
+
+LISTED = {
+    "gpt-4o-mini": {"litellm_provider": "openai", "input_cost_per_token": 2.0, "output_cost_per_token": 8.0},
+    "ollama/llama3": {"litellm_provider": "ollama", "input_cost_per_token": 0.0, "output_cost_per_token": 0.0},
+    "spoken": {"litellm_provider": "openai", "input_cost_per_second": 1.0},
+}
+
+
+@pytest.fixture
+def listed(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = ModuleType("litellm")
+    module.model_cost = LISTED  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "litellm", module)
+
+
+@pytest.mark.usefixtures("listed")
+def test_listed_prices_are_used_where_the_config_has_none() -> None:
+    assert cost_of("gpt-4o-mini", 10, 1) == 28.0
+    assert cost_of("openai/gpt-4o-mini", 10, 1) == 28.0
+    assert cost_of("ollama/llama3", 10, 1) == 0.0
+    assert cost_of("gpt-4o-mini", 10, 1, input_price=1.0) == 18.0
+    assert cost_of("gpt-4o-mini", 10, 1, output_price=1.0) == 21.0
+
+
+@pytest.mark.usefixtures("listed")
+@pytest.mark.parametrize("model", ["my-own", "openai/my-own", "hosted_vllm/gpt-4o-mini", "spoken", "openai/"])
+def test_what_is_not_listed_is_not_known(model: str) -> None:
+    assert cost_of(model, 10, 1) is None
+    assert cost_of(model, 10, 1, input_price=1.0) is None
+    assert cost_of(model, 10, 1, 1.0, 2.0) == 12.0
+
+
+def test_litellm_is_never_imported_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "litellm", raising=False)
+    assert cost_of("gpt-4o-mini", 10, 1) is None
+    assert "litellm" not in sys.modules

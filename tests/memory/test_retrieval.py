@@ -10,7 +10,7 @@ from worlds import FULL, Junction
 
 from codriving.datatypes.experience import Description
 from codriving.environment.environment import Environment
-from codriving.llm.offline import Offline
+from codriving.llm.language_model import Offline
 from codriving.memory.describe import describe
 from codriving.memory.features import Features
 from codriving.memory.likeness import chance, precision_at, same_kind

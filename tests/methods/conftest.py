@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from worlds import FULL, Junction
 
-from codriving.llm.offline import Offline
+from codriving.llm.language_model import Offline
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.sharing.cda import CdaLevel
 

@@ -12,7 +12,7 @@ from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
-from codriving.llm.offline import Offline
+from codriving.llm.language_model import Offline
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.ordering.negotiation import AgreedOrder
 from codriving.reasoning.ordering.own_order import OwnOrders

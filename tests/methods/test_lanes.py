@@ -13,7 +13,7 @@ from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
-from codriving.llm.offline import Offline
+from codriving.llm.language_model import Offline
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.sharing.cda import CdaLevel
 

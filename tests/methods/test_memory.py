@@ -13,7 +13,7 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Experience, Interaction, Memory, Verdict
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.situation import Situation
-from codriving.llm.offline import Offline
+from codriving.llm.language_model import Offline
 from codriving.memory.features import Features
 from codriving.memory.online import OnlineMemory
 from codriving.memory.protocol import CaseMemory

@@ -7,7 +7,7 @@ from asked import Model, sensible
 from worlds import Junction
 
 from codriving.errors import ConfigError
-from codriving.llm.offline import Offline
+from codriving.llm.language_model import Offline
 from codriving.llm.scripted import ScriptedChat
 from codriving.methods.language_model.model_coordinator import ModelCoordinator
 from codriving.methods.language_model.model_decider import ModelDecider

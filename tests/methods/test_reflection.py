@@ -12,8 +12,8 @@ from worlds import FULL, Junction
 from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Effect, Verdict
 from codriving.errors import ConfigError, ModelUnavailableError
+from codriving.llm.language_model import Offline
 from codriving.llm.ledger import Ledger
-from codriving.llm.offline import Offline
 from codriving.llm.prompts.render import Prompts
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat

@@ -7,7 +7,7 @@ import pytest
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
 from codriving.environment.environment import Environment
-from codriving.llm.offline import Offline
+from codriving.llm.language_model import Offline
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.sharing.cda import CdaLevel
 

@@ -15,10 +15,10 @@ from shown import GOLDEN, WORLDS, WRITE
 from worlds import Car, Junction, car
 
 from codriving.errors import ConfigError
-from codriving.llm.prompts.decision_view import decision_view
 from codriving.llm.prompts.example import example
 from codriving.llm.prompts.free_text import Names, one_line
 from codriving.llm.prompts.render import FILES, OURS, Prompts
+from codriving.llm.prompts.variables import decision_view
 from codriving.llm.question import Question
 
 

@@ -5,8 +5,8 @@ import json
 import pytest
 from pydantic import ValidationError
 
-from codriving.llm.forms import schema_of
 from codriving.llm.prompts.replies import decision_reply, first_of_pairs, order_reply
+from codriving.llm.request import schema_of
 
 PAIRS = {"p1": ("CAV1", "CAV2"), "p2": ("CAV2", "CAV3")}
 

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from codriving.llm.prompts.seen_views import seen_example
 from codriving.llm.prompts.views import (
     ActionView,
     ConflictView,
@@ -10,18 +9,25 @@ from codriving.llm.prompts.views import (
     FixedView,
     IntentView,
     LaneView,
+    MeaningView,
     OrderView,
     OtherView,
     PairView,
+    SeenView,
     VehicleView,
+    WayView,
 )
 
 
 def example(purpose: str) -> dict[str, Any]:
     """Return variables of every kind: every list has an entry and every condition holds at least once."""
-    if purpose.startswith("dilu"):
-        return seen_example(purpose)
-    return {"negotiate": _negotiation, "decide": _decision, "reflect": _reflection}[purpose]()
+    return {
+        "negotiate": _negotiation,
+        "decide": _decision,
+        "reflect": _reflection,
+        "dilu": _dilu,
+        "dilu_reflect": _dilu_reflection,
+    }[purpose]()
 
 
 def _reflection() -> dict[str, Any]:
@@ -90,3 +96,34 @@ def _decision() -> dict[str, Any]:
         "memories": ["Slowing down early let CAV2 pass without a stop."],
         "allowed": ["SLOWER", "IDLE"],
     }
+
+
+def _single_vehicle() -> dict[str, Any]:
+    ahead, behind = VehicleView("V1", "unknown driver", 12.0, 7.0), VehicleView("V3", "unknown driver", 9.0, 8.0)
+    crossing = WayView("crossing", 30.0, 12.0, 3.8, 2.0, 1.8, "serious danger")
+    return {
+        "speed": 8.0,
+        "target_speed": 9.0,
+        "route": "north-south",
+        "lane_rank": 1,
+        "lane_count": 2,
+        "between_lanes": True,
+        "must_change": "LANE_RIGHT",
+        "room": 40.0,
+        "lanes": [LaneView("ego lane", ahead, behind), LaneView("right lane", None, None)],
+        "vehicles": [
+            SeenView("V2", "ahead left", 25.0, 6.0, 0.0, (crossing,), 2),
+            SeenView("V4", "behind", 15.0, 0.0, 3.5, (), 1),
+        ],
+        "actions": [MeaningView("SLOWER", 6.0), MeaningView("IDLE", 9.0), MeaningView("LANE_RIGHT", None)],
+        "allowed": ["SLOWER", "IDLE", "LANE_RIGHT"],
+    }
+
+
+def _dilu() -> dict[str, Any]:
+    return {**_single_vehicle(), "interval": 1.0, "memories": ["At 8.0 m/s, no conflict: FASTER. No mistake."]}
+
+
+def _dilu_reflection() -> dict[str, Any]:
+    mistake = {"action": "IDLE", "reason": "nobody is near", "struck": True, "other": "V2", "later": 1.5}
+    return {**_single_vehicle(), **mistake}

@@ -2,7 +2,9 @@
 
 import re
 from collections.abc import Iterable, Mapping
+from math import hypot
 
+from codriving.datatypes.scene_description import SceneDescription
 from codriving.datatypes.situation import Situation
 
 LONGEST_NAME = 32
@@ -67,3 +69,10 @@ def names_for(situation: Situation) -> Names:
     known = [scene.ego.id, *(name for name, kind in kinds.items() if kind is not None)]
     ordered = [name for p in situation.order.precedences for name in (p.first, p.second)]
     return Names(known, [*(name for name, kind in kinds.items() if kind is None), *ordered])
+
+
+def seen_names(scene: SceneDescription) -> Names:
+    """Return what everybody is called, by distance; ids would tell who is a CAV."""
+    ego = scene.ego
+    near = sorted(scene.neighbours, key=lambda n: (hypot(n.x - ego.x, n.y - ego.y), n.id))
+    return Names([ego.id], [n.id for n in near])

@@ -171,3 +171,56 @@ class FixedView:
 
     first: str
     second: str
+
+
+@dataclass(frozen=True, slots=True)
+class WayView:
+    """One way that a vehicle may take, where it meets that of the CAV.
+
+    Attributes:
+        mine: The CAV's distance to the place where they meet [m].
+        its: The other's distance to it [m].
+        my_ttcp: The CAV's time to it at its present speed [s].
+        its_ttcp: The other's time to it [s].
+        dttcp: Difference of the two [s].
+    """
+
+    relation: str
+    mine: float
+    its: float
+    my_ttcp: float
+    its_ttcp: float
+    dttcp: float
+    severity: str
+
+
+@dataclass(frozen=True, slots=True)
+class SeenView:
+    """A vehicle as the CAV sees it; who drives it and where it goes is not known.
+
+    Attributes:
+        where: Where it is seen from the CAV, for instance ``ahead left``.
+        distance: Distance of the centres [m].
+        speed: Its speed [m/s].
+        standing: How long it has been standing [s].
+    """
+
+    id: str
+    where: str
+    distance: float
+    speed: float
+    standing: float
+    ways: tuple[WayView, ...]
+    elsewhere: int
+
+
+@dataclass(frozen=True, slots=True)
+class MeaningView:
+    """An action that the road allows.
+
+    Attributes:
+        target: Target speed after it [m/s]; None for a lane change.
+    """
+
+    name: str
+    target: float | None

@@ -8,8 +8,7 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Effect, Experience, Verdict
 from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.datatypes.situation import Decision
-from codriving.llm.prompts.free_text import one_line
-from codriving.llm.prompts.seen_names import seen_names
+from codriving.llm.prompts.free_text import one_line, seen_names
 from codriving.memory.describe import describe
 from codriving.methods.dilu.reflection import Correction, Mistake, Reflector
 from codriving.methods.dilu.told import Told

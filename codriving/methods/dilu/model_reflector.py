@@ -8,10 +8,9 @@ from pydantic import BaseModel, BeforeValidator, Field, create_model
 
 from codriving.datatypes.action import Action
 from codriving.llm.ledger import Ledger
-from codriving.llm.prompts.free_text import one_line
+from codriving.llm.prompts.free_text import one_line, seen_names
 from codriving.llm.prompts.render import Prompts
 from codriving.llm.prompts.replies import Reason
-from codriving.llm.prompts.seen_names import seen_names
 from codriving.llm.question import Answer, Chat, Question
 from codriving.methods.dilu.prompt_view import seen_view
 from codriving.methods.dilu.reflection import Correction, Mistake, correct_one

@@ -5,10 +5,9 @@ from typing import Any
 
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
-from codriving.llm.prompts.decision_view import lane_views, side_name
-from codriving.llm.prompts.free_text import Names
-from codriving.llm.prompts.seen_names import seen_names
-from codriving.llm.prompts.seen_views import MeaningView, SeenView, WayView
+from codriving.llm.prompts.free_text import Names, seen_names
+from codriving.llm.prompts.variables import lane_views, side_name
+from codriving.llm.prompts.views import MeaningView, SeenView, WayView
 from codriving.methods.dilu.told import Told
 
 MOST = 6

@@ -10,9 +10,9 @@ from codriving.datatypes.ordering_problem import Pair
 from codriving.geometry.road_map import RoadMap
 from codriving.llm.ledger import Ledger
 from codriving.llm.prompts.free_text import Names
-from codriving.llm.prompts.negotiation_view import negotiation_view
 from codriving.llm.prompts.render import Prompts
 from codriving.llm.prompts.replies import OrderReply, first_of_pairs, order_reply
+from codriving.llm.prompts.variables import negotiation_view
 from codriving.llm.question import Chat, Question
 from codriving.reasoning.ordering.coordinator import RuleCoordinator
 from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise

@@ -6,10 +6,10 @@ from typing import cast
 from codriving.datatypes.action import Action
 from codriving.datatypes.situation import Decision, Situation
 from codriving.llm.ledger import Ledger
-from codriving.llm.prompts.decision_view import decision_view, vehicles_by_distance
 from codriving.llm.prompts.free_text import names_for
 from codriving.llm.prompts.render import Prompts
 from codriving.llm.prompts.replies import DecisionReply, decision_reply
+from codriving.llm.prompts.variables import decision_view, vehicles_by_distance
 from codriving.llm.question import Answer, Chat, Question
 from codriving.reasoning.decision.plain import is_plain
 from codriving.reasoning.decision.rules import decide_one

@@ -6,9 +6,9 @@ from typing import cast
 
 from codriving.datatypes.experience import Experience, Verdict
 from codriving.llm.ledger import Ledger
-from codriving.llm.prompts.reflection_view import reflection_view
 from codriving.llm.prompts.render import Prompts
 from codriving.llm.prompts.replies import LessonReply
+from codriving.llm.prompts.variables import reflection_view
 from codriving.llm.question import Chat, Question
 
 MISTAKES = (Verdict.INTENSIFIED, Verdict.TOO_CAUTIOUS)

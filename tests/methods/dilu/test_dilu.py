@@ -19,7 +19,7 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Memory, Verdict
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
-from codriving.llm.offline import Offline
+from codriving.llm.language_model import Offline
 from codriving.llm.scripted import ScriptedChat
 from codriving.memory.online import OnlineMemory
 from codriving.methods.dilu.dilu import DiLu

@@ -4,16 +4,16 @@ import asyncio
 
 import pytest
 
-from codriving.llm.gate import Gate
+from codriving.llm.attempts import ConcurrencyLimit
 
 
 def test_no_more_than_the_limit_are_inside_and_all_get_through() -> None:
     async def crowd() -> tuple[int, int]:
-        gate, inside, most, done = Gate(3), 0, 0, 0
+        limit, inside, most, done = ConcurrencyLimit(3), 0, 0, 0
 
         async def one() -> None:
             nonlocal inside, most, done
-            async with gate.slot():
+            async with limit.slot():
                 inside += 1
                 most = max(most, inside)
                 await asyncio.sleep(0)
@@ -28,43 +28,43 @@ def test_no_more_than_the_limit_are_inside_and_all_get_through() -> None:
 
 def test_requests_turned_away_together_halve_it_once() -> None:
     async def run() -> list[int]:
-        gate = Gate(16)
-        async with gate.slot() as first, gate.slot() as second:
-            gate.shrink(first)
-            gate.shrink(second)
-        limits = [gate.limit]
-        async with gate.slot() as later:
-            gate.shrink(later)
-        return [*limits, gate.limit]
+        limit = ConcurrencyLimit(16)
+        async with limit.slot() as first, limit.slot() as second:
+            limit.shrink(first)
+            limit.shrink(second)
+        limits = [limit.limit]
+        async with limit.slot() as later:
+            limit.shrink(later)
+        return [*limits, limit.limit]
 
     assert asyncio.run(run()) == [8, 4]
 
 
 def test_it_never_closes_and_grows_back_to_where_it_was() -> None:
     async def run() -> tuple[int, int, int]:
-        gate = Gate(4)
+        limit = ConcurrencyLimit(4)
         for _ in range(5):
-            async with gate.slot() as ticket:
-                gate.shrink(ticket)
-        low = gate.limit
-        gate.grow()
-        after_one = gate.limit
+            async with limit.slot() as ticket:
+                limit.shrink(ticket)
+        low = limit.limit
+        limit.grow()
+        after_one = limit.limit
         for _ in range(50):
-            gate.grow()
-        return low, after_one, gate.limit
+            limit.grow()
+        return low, after_one, limit.limit
 
     assert asyncio.run(run()) == (1, 2, 4)
 
 
 def test_one_who_gives_up_waiting_leaves_no_hole() -> None:
     async def run() -> bool:
-        gate = Gate(1)
+        limit = ConcurrencyLimit(1)
 
         async def one() -> None:
-            async with gate.slot():
+            async with limit.slot():
                 await asyncio.sleep(0)
 
-        async with gate.slot():
+        async with limit.slot():
             waiting = [asyncio.create_task(one()) for _ in range(3)]
             await asyncio.sleep(0)
             waiting[0].cancel()
@@ -77,17 +77,17 @@ def test_one_who_gives_up_waiting_leaves_no_hole() -> None:
     assert asyncio.run(run())
 
 
-@pytest.mark.parametrize("limit", [1, 2, 7])
-def test_limit_is_kept_after_shrinking(limit: int) -> None:
+@pytest.mark.parametrize("most_at_once", [1, 2, 7])
+def test_limit_is_kept_after_shrinking(most_at_once: int) -> None:
     async def run() -> int:
-        gate = Gate(limit)
-        async with gate.slot() as ticket:
-            gate.shrink(ticket)
+        limit = ConcurrencyLimit(most_at_once)
+        async with limit.slot() as ticket:
+            limit.shrink(ticket)
         inside = most = 0
 
         async def one() -> None:
             nonlocal inside, most
-            async with gate.slot():
+            async with limit.slot():
                 inside += 1
                 most = max(most, inside)
                 await asyncio.sleep(0)
@@ -96,4 +96,4 @@ def test_limit_is_kept_after_shrinking(limit: int) -> None:
         await asyncio.gather(*(one() for _ in range(10)))
         return most
 
-    assert asyncio.run(run()) == max(1, limit // 2)
+    assert asyncio.run(run()) == max(1, most_at_once // 2)

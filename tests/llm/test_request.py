@@ -5,8 +5,8 @@ from typing import Literal
 
 from pydantic import BaseModel
 
-from codriving.llm.forms import FORMS, Forms, response_format, schema_of, worded
 from codriving.llm.question import Message
+from codriving.llm.request import FORMS, Forms, response_format, schema_of, worded
 
 
 class Pair(BaseModel):

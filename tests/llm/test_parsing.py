@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.llm.extract import LONGEST, clean, is_page, last_object, one_line
+from codriving.llm.parsing import LONGEST, clean, is_page, last_object, one_line
 
 ANSWER = {"action": "IDLE"}
 TEXT = '{"action": "IDLE"}'

@@ -1,10 +1,13 @@
-"""The variables of the decision prompt: one situation, lane by lane and vehicle by vehicle."""
+"""The variables of the prompts of CoDrivingLLM: to decide, to negotiate and to reflect."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import cos, hypot, inf, sin
 from typing import Any
 
 from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.experience import Experience
+from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.ordering_problem import Instance, Pair
 from codriving.datatypes.road import LaneId
 from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
 from codriving.datatypes.situation import ActionAssessment, Situation
@@ -12,10 +15,13 @@ from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for
 from codriving.llm.prompts.views import (
     ActionView,
     ConflictView,
+    EntrantView,
+    FixedView,
     IntentView,
     LaneView,
     OrderView,
     OtherView,
+    PairView,
     VehicleView,
 )
 
@@ -156,3 +162,91 @@ def _actions(
         reasons = tuple(names.sentence(reason) for reason in a.reasons)
         views[key] = ActionView((*before, str(a.action)), a.safe, reasons, progress, arrivals)
     return list(views.values())
+
+
+def negotiation_view(
+    scenes: Mapping[str, SceneDescription],
+    instance: Instance,
+    pairs: Sequence[tuple[str, Conflict]],
+    previous: PassingOrder | None,
+    names: Names,
+    binding: bool,
+) -> dict[str, Any]:
+    """Return the variables of the negotiation prompt."""
+    asked = sorted({name for _, c in pairs for name in (c.ego, c.other)})
+    ahead = {instance.entrants[name].leader for name in asked} - {None}
+    fixed = sorted(pair for pair in instance.before if set(pair) <= {*asked, *ahead} and not _follows(instance, pair))
+    return {
+        "vehicles": [_entrant(scenes, instance, name, names) for name in asked],
+        "pairs": [_pair(name, c, previous, names) for name, c in pairs],
+        "fixed": [FixedView(names(first), names(second)) for first, second in fixed],
+        "binding": binding,
+    }
+
+
+def _follows(instance: Instance, pair: Pair) -> bool:
+    """Whether a pair is fixed because one drives behind the other, which is said of that vehicle."""
+    return instance.entrants[pair[1]].leader == pair[0]
+
+
+def _entrant(scenes: Mapping[str, SceneDescription], instance: Instance, name: str, names: Names) -> EntrantView:
+    entrant, scene = instance.entrants[name], scenes[name]
+    windows = {(max(begin, 0.0), end) for begin, end in entrant.windows if begin < float("inf") and end > 0}
+    return EntrantView(
+        id=names(name),
+        speed=entrant.speed,
+        route=scene.intent.route,
+        turns=entrant.turning,
+        target_speed=scene.intent.target_speed,
+        distance=entrant.distance,
+        earliest=max(entrant.eta, 0.0),
+        can_stop=not entrant.committed,
+        behind="" if entrant.leader is None else names(entrant.leader),
+        blocked=_joined(sorted(windows)),
+    )
+
+
+def _joined(windows: Sequence[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    """Put windows together that overlap."""
+    joined: list[tuple[float, float]] = []
+    for begin, end in windows:
+        if joined and begin <= joined[-1][1]:
+            joined[-1] = (joined[-1][0], max(end, joined[-1][1]))
+        else:
+            joined.append((begin, end))
+    return tuple(joined)
+
+
+def _pair(name: str, c: Conflict, previous: PassingOrder | None, names: Names) -> PairView:
+    agreed = None if previous is None else previous.first_of(c.ego, c.other)
+    return PairView(
+        name=name,
+        one=names(c.ego),
+        other=names(c.other),
+        relation=str(c.relation),
+        distances=c.distances,
+        ttcp=c.ttcp,
+        dttcp=c.dttcp,
+        severity=str(c.severity),
+        agreed="" if agreed is None else names(agreed),
+    )
+
+
+def reflection_view(experience: Experience) -> dict[str, Any]:
+    """Return the variables of the reflection prompt."""
+    effect = experience.effect
+    return {
+        "scene": experience.description.scene,
+        "conflict": experience.description.conflict,
+        "order": experience.description.order,
+        "action": str(experience.action),
+        "verdict": str(experience.verdict),
+        "comment": experience.lesson,
+        "dttcp_before": effect.dttcp_before,
+        "dttcp_after": effect.dttcp_after,
+        "own_change": effect.own_change,
+        "own_braking": effect.own_braking,
+        "forced_braking": effect.forced_braking,
+        "collision": effect.collision,
+        "needless": effect.needless,
+    }
