@@ -52,7 +52,7 @@ def reasoned(world: Junction, script: Script, **change: Any) -> Reasoned:
     method = CoDriving(level, Offline(), None, 1.5)
     method.reset(world.road_map, world.model, 0)
     pipeline = method._pipeline
-    coordinator, decider, ledger = ports(model, world.road_map, pipeline.forecast, level.binding, level.intent_sharing)
+    coordinator, decider, ledger = ports(model, level.binding, level.intent_sharing)
     assert ledger is not None
     if level.negotiation:
         pipeline.negotiation = AgreedOrder(coordinator)

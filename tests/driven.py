@@ -22,7 +22,7 @@ from codriving.methods.protocol import Method
 from codriving.reasoning.execution.executor import Executor
 from codriving.reasoning.execution.layered import Layered
 from codriving.reasoning.execution.planned import Planned
-from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.protocol import Ordering, OrderRule
 from codriving.reasoning.prediction.rollout import rollout
 
@@ -50,18 +50,9 @@ def ordered(world: Junction, rule: OrderRule | None = None, executor: Executor |
     return made
 
 
-def stage_of(thoughts: Thoughts, time: float = 0.0) -> Stage:
+def moment_of(thoughts: Thoughts, time: float = 0.0) -> Moment:
     """One moment as an executor sees it."""
-    known = {name: scene.vehicles() for name, scene in thoughts.scenes.items()}
-    return Stage(
-        thoughts.scenes,
-        thoughts.conflicts,
-        known,
-        thoughts.available,
-        thoughts.junction.road_map,
-        thoughts.forecast,
-        time,
-    )
+    return thoughts.moment(time)
 
 
 def ordering_of(*sequence: str, **times: float) -> Ordering:

@@ -16,6 +16,7 @@ from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
 from codriving.geometry.lane_path import lane_path
 from codriving.reasoning.conflicts import find_conflicts
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.coordinator import RuleCoordinator
 from codriving.reasoning.prediction.expectation import expect
 from codriving.reasoning.prediction.forecast import Forecast
@@ -103,11 +104,15 @@ class Thoughts:
     conflicts: dict[str, tuple[Conflict, ...]]
     available: Mapping[str, tuple[Action, ...]]
 
+    def moment(self, time: float = 0.0) -> Moment:
+        """All of it as one moment."""
+        known = {name: scene.vehicles() for name, scene in self.scenes.items()}
+        road_map = self.junction.road_map
+        return Moment(time, self.scenes, self.conflicts, known, self.available, road_map, self.forecast)
+
     def negotiate(self, coordinator: RuleCoordinator | None = None) -> PassingOrder:
         """The order of the built-in coordinator."""
-        who = coordinator or RuleCoordinator(self.junction.road_map, self.forecast, False)
-        who.forecast = self.forecast
-        return who.negotiate(self.scenes, self.conflicts)
+        return (coordinator or RuleCoordinator(False)).negotiate(self.moment())
 
     def outlook(
         self, ego: str, order: PassingOrder | None = None, actions: tuple[Action, ...] | None = None

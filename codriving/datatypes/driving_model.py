@@ -22,6 +22,11 @@ class DrivingModel:
     detection_range: float
 
     @property
+    def top_speed(self) -> float:
+        """Highest target speed [m/s]."""
+        return self.target_speeds[-1]
+
+    @property
     def substeps(self) -> int:
         """Simulation steps per decision."""
         return round(self.decision_interval / self.step)

@@ -12,10 +12,9 @@ from codriving.memory.protocol import CaseMemory
 from codriving.methods.deliberation import Deliberation
 from codriving.methods.experience_log import ExperienceLog
 from codriving.methods.language_model.ports import Reasoner, check_prompts, ports
-from codriving.methods.perception import Perception
 from codriving.methods.pipeline import Pipeline
-from codriving.reasoning.ordering.negotiation import AgreedOrder, Negotiation
-from codriving.reasoning.ordering.own_order import OwnOrders
+from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
+from codriving.reasoning.perception import Perception
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
@@ -56,16 +55,9 @@ class CoDriving:
         forecast = Forecast(model, (*CONTINUATIONS, *PLANS))
         coordinator, decider, ledger = ports(
             llm=self.llm,
-            road_map=road_map,
-            forecast=forecast,
             binding=self.cda.binding,
             sees_conflicts=self.cda.intent_sharing,
         )
-        negotiation: Negotiation
-        if self.cda.negotiation:
-            negotiation = AgreedOrder(coordinator)
-        else:
-            negotiation = OwnOrders(road_map, forecast, self.cda.own_order, seed)
         self._ledger = ledger
         self._pipeline = Pipeline(
             perception=Perception(
@@ -75,7 +67,7 @@ class CoDriving:
                 state_sharing=SharedStates() if self.cda.state_sharing else SensedStates(),
                 intent_sharing=SharedIntents() if self.cda.intent_sharing else HiddenIntents(),
             ),
-            negotiation=negotiation,
+            negotiation=AgreedOrder(coordinator) if self.cda.negotiation else OwnOrders(self.cda.own_order, seed),
             safety=ThreeLayers() if self.cda.safety_check else NoCheck(),
             decider=decider,
             margin=self.margin,

@@ -7,13 +7,13 @@ from codriving.datatypes.situation import ActionAssessment, Decision, Situation
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.deliberation import Deliberation
-from codriving.methods.perception import Perception
 from codriving.reasoning.execution.executor import Drive, Executor
 from codriving.reasoning.execution.lane_requests import LaneRequests
-from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.agreement import agreement
-from codriving.reasoning.ordering.problem import ProblemMaker
+from codriving.reasoning.ordering.problem import pose
 from codriving.reasoning.ordering.protocol import Ordering, OrderRule
+from codriving.reasoning.perception import Perception
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.safety.outlook import CONTINUATIONS, LONGITUDINAL
@@ -40,7 +40,6 @@ class Ordered:
         """Begin an episode; nothing is remembered from the one before."""
         forecast = Forecast(model, (*CONTINUATIONS, *PLANS, *self.executor.library))
         self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SharedIntents())
-        self._problems = ProblemMaker(road_map, forecast, self.executor.gap)
         self._requests = LaneRequests()
         self._lag = round(self.executor.margin / forecast.sample)
         self.rule.reset(seed)
@@ -48,40 +47,31 @@ class Ordered:
 
     def act(self, world: WorldState) -> Deliberation:
         """Order everybody, and decide for every CAV on the road."""
-        perceived = self._perception.perceive(world)
-        stage = Stage(
-            perceived.scenes,
-            perceived.conflicts,
-            perceived.known,
-            world.available,
-            self._perception.road_map,
-            self._perception.forecast,
-            world.time,
-        )
-        problem = self._problems.pose(stage.scenes, stage.conflicts, world.time)
-        ordering = self.rule.order(problem.instance, self.executor.planner(stage))
+        moment = self._perception.perceive(world)
+        problem = pose(moment, self.executor.gap)
+        ordering = self.rule.order(problem.instance, self.executor.planner(moment))
 
         def reason(first: str, second: str) -> str:
             return ordering.reasons.get((first, second), f"{first} comes before {second} in the order")
 
-        agreed = agreement(problem, ordering.times, stage.conflicts, reason, True)
-        drive = self.executor.drive(stage, ordering)
-        changes = self._lane_changes(stage, ordering, agreed, drive)
-        situations = tuple(_situation(stage, name, agreed, drive, changes.get(name)) for name in stage.scenes)
+        agreed = agreement(moment, problem, ordering.times, reason, True)
+        drive = self.executor.drive(moment, ordering)
+        changes = self._lane_changes(moment, ordering, agreed, drive)
+        situations = tuple(_situation(moment, name, agreed, drive, changes.get(name)) for name in moment.scenes)
         decisions = tuple(
-            changes.get(name) or Decision(name, drive.actions[name], drive.reasons[name]) for name in stage.scenes
+            changes.get(name) or Decision(name, drive.actions[name], drive.reasons[name]) for name in moment.scenes
         )
         return Deliberation(world.time, world.step, situations, decisions, {**ordering.counts, **drive.counts})
 
     def _lane_changes(
-        self, stage: Stage, ordering: Ordering, agreed: PassingOrder, drive: Drive
+        self, moment: Moment, ordering: Ordering, agreed: PassingOrder, drive: Drive
     ) -> dict[str, Decision]:
         """Return the lane changes that are wanted, pass the gap test and have been granted."""
-        requests = self._requests.gather(stage, ordering, agreed, drive.expected, self._lag)
+        requests = self._requests.gather(moment, ordering, agreed, drive.expected, self._lag)
         if not requests:
             return {}
         granted = self.rule.grant(requests)
-        self._requests.granted(granted, stage.time)
+        self._requests.granted(granted, moment.time)
         return {
             r.ego: Decision(r.ego, r.action, f"{r.action} was granted among {len(requests)} requests")
             for r in requests
@@ -89,17 +79,17 @@ class Ordered:
         }
 
 
-def _situation(stage: Stage, name: str, agreed: PassingOrder, drive: Drive, change: Decision | None) -> Situation:
+def _situation(moment: Moment, name: str, agreed: PassingOrder, drive: Drive, change: Decision | None) -> Situation:
     """Write down what a decision rests on, in the form in which every method's decisions are recorded."""
     taken = change.action if change is not None else drive.actions[name]
     progress = drive.progress.get(name, {})
-    conflicts = stage.conflicts[name]
+    conflicts = moment.conflicts[name]
     return Situation(
-        scene=stage.scenes[name],
+        scene=moment.scenes[name],
         conflicts=conflicts,
         order=agreed,
         clear_times=(0.0,) * len(conflicts),
-        assessments=tuple(_assessment(action, progress.get(action), taken) for action in stage.available[name]),
+        assessments=tuple(_assessment(action, progress.get(action), taken) for action in moment.available[name]),
     )
 
 

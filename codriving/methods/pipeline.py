@@ -13,10 +13,10 @@ from codriving.geometry.road_map import RoadMap
 from codriving.llm.ledger import Ledger
 from codriving.memory.protocol import CaseMemory
 from codriving.methods.deliberation import Deliberation
-from codriving.methods.perception import Perception
 from codriving.reasoning.decision.clear_times import clear_time
 from codriving.reasoning.decision.decider import Decider
 from codriving.reasoning.ordering.negotiation import Negotiation
+from codriving.reasoning.perception import Perception
 from codriving.reasoning.prediction.expectation import Expected, Motions, expect, motions_of
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.safety.assessment import SafetyCheck
@@ -43,9 +43,9 @@ class Pipeline:
 
     def act(self, world: WorldState) -> Deliberation:
         """Decide for every CAV on the road."""
-        perceived = self.perception.perceive(world)
-        scenes, conflicts, known = perceived.scenes, perceived.conflicts, perceived.known
-        orders = self.negotiation.orders(scenes, conflicts)
+        moment = self.perception.perceive(world)
+        scenes, conflicts, known = moment.scenes, moment.conflicts, moment.vehicles
+        orders = self.negotiation.orders(moment)
         expectations = self._expectations(known, orders)
         situations = tuple(
             self._situation(

@@ -14,8 +14,7 @@ from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
 from codriving.llm.language_model import Offline
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.ordering.negotiation import AgreedOrder
-from codriving.reasoning.ordering.own_order import OwnOrders
+from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
 from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
 from codriving.reasoning.sharing.cda import CdaLevel
 from codriving.reasoning.sharing.intent_sharing import HiddenIntents, SharedIntents

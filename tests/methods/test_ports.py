@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 from asked import Model, sensible
-from worlds import Junction
 
 from codriving.errors import ConfigError
 from codriving.llm.language_model import Offline
@@ -16,17 +15,17 @@ from codriving.reasoning.decision.rules import RuleDecider
 from codriving.reasoning.ordering.coordinator import RuleCoordinator
 
 
-def test_rules_stand_there_without_a_model(junction: Junction) -> None:
-    coordinator, decider, ledger = ports(Offline(), junction.road_map, junction.forecast(), True, True)
+def test_rules_stand_there_without_a_model() -> None:
+    coordinator, decider, ledger = ports(Offline(), True, True)
     assert isinstance(coordinator, RuleCoordinator)
     assert coordinator.binding
     assert isinstance(decider, RuleDecider)
     assert ledger is None
 
 
-def test_model_stands_behind_both_with_one_ledger(junction: Junction) -> None:
+def test_model_stands_behind_both_with_one_ledger() -> None:
     model = Model(ScriptedChat(sensible), ask_plain=True)
-    coordinator, decider, ledger = ports(model, junction.road_map, junction.forecast(), True, False)
+    coordinator, decider, ledger = ports(model, True, False)
     assert isinstance(coordinator, ModelCoordinator)
     assert isinstance(decider, ModelDecider)
     assert coordinator.chat is decider.chat is model.scripted

@@ -9,13 +9,14 @@ from hidden import scrambled
 from worlds import Junction, car
 
 from codriving.environment.environment import Environment
-from codriving.methods.perception import Perceived, single_vehicle_perception
+from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import single_vehicle_perception
 
 SCENARIOS = ("intersection", "roundabout", "highway", "merge")
 
 
-def told(perceived: Perceived, ego: str) -> tuple[object, ...]:
-    return perceived.scenes[ego], perceived.conflicts[ego], perceived.known[ego]
+def told(perceived: Moment, ego: str) -> tuple[object, ...]:
+    return perceived.scenes[ego], perceived.conflicts[ego], perceived.vehicles[ego]
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
@@ -41,7 +42,7 @@ def test_conflicts_are_found_with_every_way_that_is_possible_and_fewer_once_it_s
     assert {route for route, _ in seen.routes} == {"west-east", "west-north", "west-south"}
     assert len({c.routes[1] for c in early.conflicts["CAV1"]}) > 1
     assert not any(c.certain for c in early.conflicts["CAV1"])
-    assert not early.known["CAV1"]["CAV2"].is_cav
+    assert not early.vehicles["CAV1"]["CAV2"].is_cav
     late = perception.perceive(junction.world(ego, car("CAV2", "west-south", 112.0, 7.0, 9.0)))
     (seen,) = late.scenes["CAV1"].neighbours
     assert [route for route, _ in seen.routes] == ["west-south"]

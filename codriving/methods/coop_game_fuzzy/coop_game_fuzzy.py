@@ -10,7 +10,7 @@ from codriving.methods.coop_game_fuzzy.joint_choice import MOST, Costs, Joint, s
 from codriving.methods.coop_game_fuzzy.joint_costs import Weights, joint_costs
 from codriving.methods.ordered import Ordered
 from codriving.reasoning.execution.executor import Drive, Executor, humans_expected
-from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering
 from codriving.reasoning.ordering.request import Request, best_subset
 from codriving.reasoning.ordering.schedule import timed
@@ -113,23 +113,23 @@ class JointActions(Executor):
         self.participation, self.weights, self.shares = participation, weights, shares
         self.hold, self.horizon = hold, horizon
 
-    def planner(self, stage: Stage) -> JointPlanner:
+    def planner(self, moment: Moment) -> JointPlanner:
         """Return a planner that has no plan for any order."""
-        return NoPlans(stage.forecast.sample)
+        return NoPlans(moment.forecast.sample)
 
-    def drive(self, stage: Stage, ordering: Ordering) -> Drive:
+    def drive(self, moment: Moment, ordering: Ordering) -> Drive:
         """Return the joint action on which all settle."""
-        vehicles = {name: known[name] for name, known in sorted(stage.known.items())}
+        vehicles = {name: known[name] for name, known in sorted(moment.vehicles.items())}
         if not vehicles:
             return Drive({}, {}, {}, {})
-        plans = self._plans(stage)
-        travels = {v.id: stage.forecast.travel(v.speed, v.target, plans) for v in vehicles.values()}
-        samples = round(self.horizon / stage.forecast.sample) + 1
-        costs = joint_costs(stage, vehicles, travels, samples, self.weights)
-        allowed = [self._allowed(stage, v) for v in vehicles.values()]
+        plans = self._plans(moment)
+        travels = {v.id: moment.forecast.travel(v.speed, v.target, plans) for v in vehicles.values()}
+        samples = round(self.horizon / moment.forecast.sample) + 1
+        costs = joint_costs(moment, vehicles, travels, samples, self.weights)
+        allowed = [self._allowed(moment, v) for v in vehicles.values()]
         joint = settle(costs, allowed, self.participation)
         shares = self._shares(costs, allowed, joint, list(vehicles)) if self.shares and len(vehicles) <= MOST else {}
-        actions, reasons, expected, progress = {}, {}, humans_expected(stage), {}
+        actions, reasons, expected, progress = {}, {}, humans_expected(moment), {}
         for (name, v), k, cost in zip(vehicles.items(), joint, costs.of([joint])[0], strict=True):
             actions[name] = OPTIONS[k]
             share = f", its share of what that saves is {shares[name]:.2f}" if name in shares else ""
@@ -141,17 +141,17 @@ class JointActions(Executor):
             )
         return Drive(actions, reasons, expected, progress)
 
-    def _allowed(self, stage: Stage, v: TrackedVehicle) -> list[int]:
+    def _allowed(self, moment: Moment, v: TrackedVehicle) -> list[int]:
         """Return the options that the road allows a CAV: where its lane ends it must still be able to stop."""
-        found = [k for k, action in enumerate(OPTIONS) if action in stage.available[v.id]] or [0]
-        change = stage.scenes[v.id].must_change
+        found = [k for k, action in enumerate(OPTIONS) if action in moment.available[v.id]] or [0]
+        change = moment.scenes[v.id].must_change
         if change is None:
             return found
-        stops = stage.forecast.travel(v.speed, v.target, [then_stop(action) for action in OPTIONS])[:, -1]
+        stops = moment.forecast.travel(v.speed, v.target, [then_stop(action) for action in OPTIONS])[:, -1]
         return [k for k in found if stops[k] <= change.room - LANE_END_GAP] or found[-1:]
 
-    def _plans(self, stage: Stage) -> list[Plan]:
-        held = min(max(round(self.hold / stage.forecast.model.decision_interval), 1), LONGEST)
+    def _plans(self, moment: Moment) -> list[Plan]:
+        held = min(max(round(self.hold / moment.forecast.model.decision_interval), 1), LONGEST)
         return [(*(action,) * held, Action.FASTER) for action in OPTIONS]
 
     def _shares(

@@ -20,9 +20,9 @@ from codriving.methods.dilu.ports import dilu_ports
 from codriving.methods.dilu.thinker import Thought
 from codriving.methods.dilu.told import Told, tell
 from codriving.methods.language_model.ports import Reasoner, check_prompts
-from codriving.methods.perception import single_vehicle_perception
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
 from codriving.methods.single_vehicle.protocol import Driver, View
+from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
 

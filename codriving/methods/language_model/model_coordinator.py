@@ -7,17 +7,17 @@ from typing import cast
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.ordering_problem import Pair
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes.scene_description import SceneDescription
 from codriving.llm.ledger import Ledger
 from codriving.llm.prompts.free_text import Names
 from codriving.llm.prompts.render import Prompts
 from codriving.llm.prompts.replies import OrderReply, first_of_pairs, order_reply
 from codriving.llm.prompts.variables import negotiation_view
 from codriving.llm.question import Chat, Question
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.coordinator import RuleCoordinator
 from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
-from codriving.reasoning.ordering.problem import Conflicts, Problem, Scenes
-from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.ordering.problem import Problem, pose
 
 Told = dict[Pair, str]
 """Who goes before whom, and why."""
@@ -38,33 +38,31 @@ class ModelCoordinator:
     both count as a repaired order. Without an answer, the rules decide everything, and the ledger counts a fallback.
     """
 
-    def __init__(
-        self, chat: Chat, prompts: Prompts, ledger: Ledger, road_map: RoadMap, forecast: Forecast, binding: bool
-    ) -> None:
+    def __init__(self, chat: Chat, prompts: Prompts, ledger: Ledger, binding: bool) -> None:
         self.chat, self.prompts, self.ledger = chat, prompts, ledger
-        self.rules = RuleCoordinator(road_map, forecast, binding)
+        self.rules = RuleCoordinator(binding)
         self._agreed: tuple[Premise, Told] | None = None
 
-    def negotiate(self, scenes: Scenes, conflicts: Conflicts) -> PassingOrder:
+    def negotiate(self, moment: Moment) -> PassingOrder:
         """Return an order without cycles for all conflicts.
 
         Raises:
             ModelUnavailableError: If the model does not answer.
             SpendingLimitError: If the tokens or the money that may be spent are used up.
         """
-        problem = self.rules.problems.pose(scenes, conflicts, 0.0)
-        urgent = _most_urgent(problem, conflicts)
+        problem = pose(moment)
+        urgent = _most_urgent(problem, moment.conflicts)
         asked = open_pairs(problem.instance, urgent)
         if not asked:
             self._agreed = None
-            return self.rules.settle(problem, conflicts, {})
+            return self.rules.settle(moment, problem, {})
         now = premise(problem.instance, asked)
         told = self._kept(problem, now)
         if told is not None:
             self.ledger.count("kept_orders")
-            return self.rules.settle(problem, conflicts, told)
-        told = self._ask(scenes, problem, [urgent[pair] for pair in asked])
-        order = self.rules.settle(problem, conflicts, told or {})
+            return self.rules.settle(moment, problem, told)
+        told = self._ask(moment.scenes, problem, [urgent[pair] for pair in asked])
+        order = self.rules.settle(moment, problem, told or {})
         # Without an answer nothing has been agreed on, and the next step asks again.
         self._agreed = None if told is None else (now, _decided(order, asked))
         return order
@@ -78,7 +76,9 @@ class ModelCoordinator:
             return None
         return {pair: why for pair, why in told.items() if pair in now.leads or pair[::-1] in now.leads}
 
-    def _ask(self, scenes: Scenes, problem: Problem, conflicts: Iterable[Conflict]) -> Told | None:
+    def _ask(
+        self, scenes: Mapping[str, SceneDescription], problem: Problem, conflicts: Iterable[Conflict]
+    ) -> Told | None:
         """Ask the model, and repair what it says; None if there is no answer."""
         by_urgency = sorted(conflicts, key=lambda c: (c.dttcp + 0.2 * min(c.ttcp), c.ego, c.other))
         pairs = {f"p{k + 1}": c for k, c in enumerate(by_urgency)}
@@ -99,7 +99,9 @@ class ModelCoordinator:
             self.ledger.count("repaired_orders")
         return acyclic
 
-    def _question(self, scenes: Scenes, problem: Problem, pairs: Asked, names: Names) -> Question:
+    def _question(
+        self, scenes: Mapping[str, SceneDescription], problem: Problem, pairs: Asked, names: Names
+    ) -> Question:
         shown = _shown(pairs, names)
         values = negotiation_view(
             scenes, problem.instance, list(pairs.items()), self.rules.previous, names, self.rules.binding
@@ -126,7 +128,7 @@ class ModelCoordinator:
         )
 
 
-def _most_urgent(problem: Problem, conflicts: Conflicts) -> dict[Pair, Conflict]:
+def _most_urgent(problem: Problem, conflicts: Mapping[str, tuple[Conflict, ...]]) -> dict[Pair, Conflict]:
     """Return the most urgent conflict of each pair of CAVs, seen from the one with the lower id."""
     entrants = problem.instance.entrants
     found: dict[Pair, Conflict] = {}

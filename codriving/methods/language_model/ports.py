@@ -2,11 +2,9 @@
 
 from typing import TYPE_CHECKING, Protocol
 
-from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.decision.decider import Decider
 from codriving.reasoning.decision.rules import RuleDecider
 from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator
-from codriving.reasoning.prediction.forecast import Forecast
 
 if TYPE_CHECKING:
     from codriving.llm.ledger import Ledger
@@ -40,13 +38,11 @@ def check_prompts(llm: Reasoner) -> None:
         load_prompts(folder)
 
 
-def ports(
-    llm: Reasoner, road_map: RoadMap, forecast: Forecast, binding: bool, sees_conflicts: bool
-) -> "tuple[Coordinator, Decider, Ledger | None]":
+def ports(llm: Reasoner, binding: bool, sees_conflicts: bool) -> "tuple[Coordinator, Decider, Ledger | None]":
     """Return who negotiates, who decides, and where answers are noted."""
     chat = llm.chat()
     if chat is None:
-        return RuleCoordinator(road_map, forecast, binding), RuleDecider(), None
+        return RuleCoordinator(binding), RuleDecider(), None
     # pydantic and Jinja2 are needed only if a model is asked.
     from codriving.llm.ledger import Ledger
     from codriving.llm.prompts.render import load_prompts
@@ -54,6 +50,6 @@ def ports(
     from codriving.methods.language_model.model_decider import ModelDecider
 
     prompts, ledger = load_prompts(getattr(llm, "prompts", None)), Ledger()
-    coordinator = ModelCoordinator(chat, prompts, ledger, road_map, forecast, binding)
+    coordinator = ModelCoordinator(chat, prompts, ledger, binding)
     ask_plain = bool(getattr(llm, "ask_plain", False))
     return coordinator, ModelDecider(chat, prompts, ledger, ask_plain, sees_conflicts), ledger

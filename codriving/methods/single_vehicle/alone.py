@@ -7,9 +7,9 @@ from codriving.datatypes.situation import Decision
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.deliberation import Deliberation
-from codriving.methods.perception import single_vehicle_perception
 from codriving.methods.single_vehicle.account import account
 from codriving.methods.single_vehicle.protocol import Driver, View
+from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from codriving.datatypes.action import Action
-from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.rollout import Plan
@@ -45,20 +45,20 @@ class Executor(ABC):
         """Begin an episode; nothing is remembered from the one before."""
 
     @abstractmethod
-    def planner(self, stage: Stage) -> JointPlanner:
+    def planner(self, moment: Moment) -> JointPlanner:
         """Return what plans all CAVs in an order; the rule uses it to choose the order."""
 
     @abstractmethod
-    def drive(self, stage: Stage, ordering: Ordering) -> Drive:
+    def drive(self, moment: Moment, ordering: Ordering) -> Drive:
         """Return what every CAV does now."""
 
 
-def humans_expected(stage: Stage) -> dict[str, tuple[Expected, ...]]:
+def humans_expected(moment: Moment) -> dict[str, tuple[Expected, ...]]:
     """Expect each human driver that any CAV knows to keep its speed, on every way that it may take."""
     found: dict[str, tuple[Expected, ...]] = {}
-    for known in stage.known.values():
+    for known in moment.vehicles.values():
         for v in known.values():
             if not v.is_cav and v.id not in found:
-                steady = stage.forecast.reach(v.speed, False).steady
+                steady = moment.forecast.reach(v.speed, False).steady
                 found[v.id] = tuple(Expected(route, place + steady, True, {}) for route, place in v.routes)
     return found

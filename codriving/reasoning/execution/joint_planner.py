@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.reasoning.conflicts import is_open
-from codriving.reasoning.execution.stage import Stage
 from codriving.reasoning.execution.violations import SIZES, Array, Meeting, Steps, first_true, minds_humans
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.protocol import JointPlan
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind, worth
 from codriving.reasoning.prediction.plans import PLANS
@@ -48,18 +48,18 @@ class JointPlans:
         gains: What each plan is worth, by id (plans,) [m].
     """
 
-    def __init__(self, stage: Stage, before: Mapping[str, Plan], margin: float, pad: float, headway: float) -> None:
-        self.stage, self.pad = stage, pad
-        self.vehicles = {name: known[name] for name, known in sorted(stage.known.items())}
-        sample = stage.forecast.sample
+    def __init__(self, moment: Moment, before: Mapping[str, Plan], margin: float, pad: float, headway: float) -> None:
+        self.moment, self.pad = moment, pad
+        self.vehicles = {name: known[name] for name, known in sorted(moment.vehicles.items())}
+        sample = moment.forecast.sample
         self._lag, self._following = round(margin / sample), round(min(margin, headway) / sample)
         self._continued = {name: before[name] for name in self.vehicles if name in before}
-        self._ahead = drives_ahead(stage, self.vehicles)
+        self._ahead = drives_ahead(moment, self.vehicles)
         own = self._continuations()
         self.travels: dict[str, Array] = {}
         self._alone: dict[str, Steps] = {}
         for v in self.vehicles.values():
-            travels = stage.forecast.travel(v.speed, v.target, PLANS)
+            travels = moment.forecast.travel(v.speed, v.target, PLANS)
             self.travels[v.id] = np.concatenate([travels, own[v.id]]) if v.id in own else travels
         self.gains = {name: worth(travels) for name, travels in self.travels.items()}
         self._met: dict[tuple[str, str], list[Meeting]] = {}
@@ -73,7 +73,7 @@ class JointPlans:
             return {}
         cavs = [self.vehicles[name] for name in names]
         states, plans = [(v.speed, v.target) for v in cavs], [self._continued[name] for name in names]
-        return dict(zip(names, self.stage.forecast.travel_each(states, plans)[:, None], strict=True))
+        return dict(zip(names, self.moment.forecast.travel_each(states, plans)[:, None], strict=True))
 
     def plan_of(self, name: str, k: int) -> Plan:
         """Return a plan of a CAV."""
@@ -111,22 +111,22 @@ class JointPlans:
 
     def _too_early(self, name: str, time: float) -> Steps:
         """When each plan reaches the first zone, if that is before the method allows it."""
-        distance = min((c.distances[0] for c in self.stage.conflicts[name]), default=0.0)
+        distance = min((c.distances[0] for c in self.moment.conflicts[name]), default=0.0)
         travels = self.travels[name]
         if distance <= 0:
             return np.full(len(travels), travels.shape[1])
-        return first_true((travels >= distance) & (self.stage.forecast.times < time))
+        return first_true((travels >= distance) & (self.moment.forecast.times < time))
 
     def _violations_alone(self, name: str) -> Steps:
         """When each plan first comes too close to a human driver, or cannot stop before the lane ends any more."""
         if name not in self._alone:
             v, travels = self.vehicles[name], self.travels[name]
-            steps = minds_humans(self.stage, v, travels, self._lag, self._following, self.pad)
-            change = self.stage.scenes[name].must_change
+            steps = minds_humans(self.moment, v, travels, self._lag, self._following, self.pad)
+            change = self.moment.scenes[name].must_change
             if change is not None:
                 firsts = [self.plan_of(name, k)[0] for k in range(len(travels))]
                 kinds = sorted(set(firsts))
-                stops = self.stage.forecast.travel(v.speed, v.target, [then_stop(a) for a in kinds])[:, -1]
+                stops = self.moment.forecast.travel(v.speed, v.target, [then_stop(a) for a in kinds])[:, -1]
                 too_far = {a: stop > change.room - LANE_END_GAP for a, stop in zip(kinds, stops, strict=True)}
                 steps = np.where([too_far[a] for a in firsts], 0, steps)
             self._alone[name] = steps
@@ -150,16 +150,16 @@ class JointPlans:
         """Where one CAV has to mind another one that has been planned before it."""
         if (first, second) not in self._met:
             found = []
-            short = round(CLEARS / self.stage.forecast.sample) + 1
-            n = self.stage.forecast.steps + 1
+            short = round(CLEARS / self.moment.forecast.sample) + 1
+            n = self.moment.forecast.steps + 1
             for r, (route, place) in enumerate(self.vehicles[second].routes):
                 for way, there in self.vehicles[first].routes:
-                    for zone in self.stage.road_map.zones(route, way):
+                    for zone in self.moment.road_map.zones(route, way):
                         if is_behind(zone, place, there):
                             until = n if r == 0 else short
                             found.append(Meeting((zone,), place, there, until, self._following, 0.0))
                         elif r == 0 and is_open(zone, place, there):
-                            smaller = tuple(self.stage.road_map.zones(route, way, size) for size in SIZES[1:])
+                            smaller = tuple(self.moment.road_map.zones(route, way, size) for size in SIZES[1:])
                             found.append(Meeting((zone,), place, there, n, self._lag, self.pad, smaller))
             self._met[first, second] = found
         return self._met[first, second]
@@ -172,7 +172,7 @@ class JointPlans:
         """Return what all CAVs would do."""
         joint = self.joint(order)
         travels = {name: self.travels[name][k] for name, k in joint.chosen.items()}
-        return JointPlan(not joint.stuck, travels, self.stage.forecast.sample, len(joint.stuck))
+        return JointPlan(not joint.stuck, travels, self.moment.forecast.sample, len(joint.stuck))
 
     def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
         """Return the least time between one vehicle's leaving a shared zone and the other's entering it.
@@ -180,10 +180,10 @@ class JointPlans:
         Returns:
             Time [s]; inf if they share no zone or one of them does not come there within the horizon.
         """
-        least, time = float("inf"), self.stage.forecast.time_to
+        least, time = float("inf"), self.moment.forecast.time_to
         mine, theirs = plan.travels[one], plan.travels[other]
         (route, place), (way, there) = self.vehicles[one].routes[0], self.vehicles[other].routes[0]
-        for zone in self.stage.road_map.zones(route, way):
+        for zone in self.moment.road_map.zones(route, way):
             if is_open(zone, place, there):
                 gaps = (
                     time(zone.entry_j - there, theirs) - time(zone.exit_i - place, mine),
@@ -194,7 +194,7 @@ class JointPlans:
         return least
 
 
-def drives_ahead(stage: Stage, vehicles: Mapping[str, TrackedVehicle]) -> set[tuple[str, str]]:
+def drives_ahead(moment: Moment, vehicles: Mapping[str, TrackedVehicle]) -> set[tuple[str, str]]:
     """Return the pairs of CAVs (ahead, behind) that follow one another, whatever the order says."""
     found = set()
     for behind in vehicles.values():
@@ -203,23 +203,23 @@ def drives_ahead(stage: Stage, vehicles: Mapping[str, TrackedVehicle]) -> set[tu
                 continue
             for route, place in behind.routes:
                 for other, there in ahead.routes:
-                    zones = stage.road_map.zones(route, other)
+                    zones = moment.road_map.zones(route, other)
                     if any(is_behind(zone, place, there) for zone in zones):
                         found.add((ahead.id, behind.id))
-            if _is_alongside(stage, behind, ahead):
+            if _is_alongside(moment, behind, ahead):
                 found.add((ahead.id, behind.id))
     return found
 
 
-def _is_alongside(stage: Stage, changing: TrackedVehicle, other: TrackedVehicle) -> bool:
+def _is_alongside(moment: Moment, changing: TrackedVehicle, other: TrackedVehicle) -> bool:
     """Whether a CAV cannot go first since another one drives ahead or alongside on the lane that it must change to."""
-    change = stage.scenes[changing.id].must_change
-    if change is None or not LANE_CHANGES & set(stage.available[changing.id]):
+    change = moment.scenes[changing.id].must_change
+    if change is None or not LANE_CHANGES & set(moment.available[changing.id]):
         return False
     (route, place), (way, there) = changing.routes[0], other.routes[0]
-    if stage.scenes[other.id].ego.lane != change.lane:
+    if moment.scenes[other.id].ego.lane != change.lane:
         return False
-    for zone in stage.road_map.zones(route, way):
+    for zone in moment.road_map.zones(route, way):
         if zone.merge_i is not None and zone.merge_j is not None and is_open(zone, place, there):
             return zone.merge_j - there < zone.merge_i - place + BODY
     return False

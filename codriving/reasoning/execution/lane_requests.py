@@ -5,8 +5,7 @@ from collections.abc import Mapping
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
-from codriving.reasoning.execution.stage import Stage
-from codriving.reasoning.ordering.problem import Scenes
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.protocol import Ordering
 from codriving.reasoning.ordering.request import Request
 from codriving.reasoning.prediction.expectation import Expected
@@ -42,20 +41,20 @@ class LaneRequests:
 
     def gather(
         self,
-        stage: Stage,
+        moment: Moment,
         ordering: Ordering,
         agreed: PassingOrder,
         expected: Mapping[str, tuple[Expected, ...]],
         lag: int,
     ) -> list[Request]:
         """Return the requests of this moment, the earliest first."""
-        found = {name: self._wanted(stage, name, agreed, expected, lag) for name in sorted(stage.scenes)}
+        found = {name: self._wanted(moment, name, agreed, expected, lag) for name in sorted(moment.scenes)}
         wanted = {name: change for name, change in found.items() if change is not None}
         self._since = {
-            (name, action): self._since.get((name, action), stage.time) for name, (action, _) in wanted.items()
+            (name, action): self._since.get((name, action), moment.time) for name, (action, _) in wanted.items()
         }
         requests = [
-            Request(name, action, incentive, self._since[name, action], _overlaps(stage.scenes, name, wanted))
+            Request(name, action, incentive, self._since[name, action], _overlaps(moment.scenes, name, wanted))
             for name, (action, incentive) in wanted.items()
         ]
         return sorted(requests, key=lambda r: (r.since, r.ego))
@@ -66,24 +65,24 @@ class LaneRequests:
 
     def _wanted(
         self,
-        stage: Stage,
+        moment: Moment,
         name: str,
         agreed: PassingOrder,
         expected: Mapping[str, tuple[Expected, ...]],
         lag: int,
     ) -> tuple[Action, float] | None:
         """Return the lane change that a CAV wants most among those that pass the gap test, and its incentive."""
-        scene, actions = stage.scenes[name], stage.available[name]
+        scene, actions = moment.scenes[name], moment.available[name]
         sides = [action for action in SIDES if action in actions]
         must = scene.must_change
-        if not sides or (must is None and not self._may_choose(scene, stage.time)):
+        if not sides or (must is None and not self._may_choose(scene, moment.time)):
             return None
         if must is not None:
             sides = [a for a in sides if scene.ego.lane[2] + SIDES[a] == must.lane[2]]
-        stops, goes = motions(scene, actions, stage.forecast)
+        stops, goes = motions(scene, actions, moment.forecast)
         outlook = Outlook(
-            scene, stage.conflicts[name], agreed, dict(stage.known[name]), dict(expected), actions, stops, goes,
-            stage.road_map, stage.forecast, lag, True,
+            scene, moment.conflicts[name], agreed, dict(moment.vehicles[name]), dict(expected), actions, stops, goes,
+            moment.road_map, moment.forecast, lag, True,
         )  # fmt: skip
         unsafe = check_adjacent(outlook)
         options = []
@@ -91,7 +90,7 @@ class LaneRequests:
             there = beside(outlook, action)
             if action in unsafe or there is None:
                 continue
-            gain = float("inf") if must is not None else incentive(scene, there.scene, stage)
+            gain = float("inf") if must is not None else incentive(scene, there.scene, moment)
             if gain > THRESHOLD:
                 options.append((gain, -SIDES[action], action))
         if not options:
@@ -104,13 +103,13 @@ class LaneRequests:
         return rested and not scene.covers and scene.ego.speed >= SLOWEST
 
 
-def incentive(scene: SceneDescription, there: SceneDescription, stage: Stage) -> float:
+def incentive(scene: SceneDescription, there: SceneDescription, moment: Moment) -> float:
     """Return what a lane change gains: MOBIL's incentive (Kesting, Treiber and Helbing, 2007).
 
     Returns:
         Gain of the CAV, and with the weight of politeness of those behind it on both lanes [m/s2].
     """
-    top = stage.forecast.model.target_speeds[-1]
+    top = moment.forecast.model.target_speeds[-1]
     ahead, behind = _role(scene, Role.LEADING), _role(scene, Role.REARING)
     new_ahead, new_behind = _role(there, Role.LEADING), _role(there, Role.REARING)
     ego = scene.ego.speed
@@ -137,7 +136,9 @@ def _behind(speed: float, top: float, ahead: TrackedVehicle | None) -> float:
     return DRIVER.accelerate(speed, top, ahead.gap, ahead.speed)
 
 
-def _overlaps(scenes: Scenes, name: str, wanted: Mapping[str, tuple[Action, float]]) -> frozenset[str]:
+def _overlaps(
+    scenes: Mapping[str, SceneDescription], name: str, wanted: Mapping[str, tuple[Action, float]]
+) -> frozenset[str]:
     """Return the CAVs whose lane change needs the same piece of road at the same time."""
     found = set()
     mine = scenes[name]

@@ -8,7 +8,7 @@ from codriving.datatypes.action import Action
 from codriving.errors import require_range
 from codriving.reasoning.execution.executor import Drive, Executor, humans_expected
 from codriving.reasoning.execution.joint_planner import Joint, JointPlans
-from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.protocol import Ordering
 from codriving.reasoning.prediction.expectation import Expected, progress_by_action
 from codriving.reasoning.prediction.plans import PLANS
@@ -44,21 +44,21 @@ class Planned(Executor):
         self._before: dict[str, Plan] = {}
         self._plans: JointPlans | None = None
 
-    def planner(self, stage: Stage) -> JointPlans:
+    def planner(self, moment: Moment) -> JointPlans:
         """Return what plans all CAVs in an order."""
-        if self._plans is None or self._plans.stage is not stage:
-            self._plans = JointPlans(stage, self._before, self.margin, self.pad, self.headway)
+        if self._plans is None or self._plans.moment is not moment:
+            self._plans = JointPlans(moment, self._before, self.margin, self.pad, self.headway)
         return self._plans
 
-    def drive(self, stage: Stage, ordering: Ordering) -> Drive:
+    def drive(self, moment: Moment, ordering: Ordering) -> Drive:
         """Return the first action of each CAV's plan."""
-        plans = self.planner(stage)
+        plans = self.planner(moment)
         joint = plans.joint(ordering.sequence, ordering.not_before)
         self._before = {name: plans.plan_of(name, k)[1:] or plans.plan_of(name, k) for name, k in joint.chosen.items()}
-        return drive_of(stage, plans, joint, ordering)
+        return drive_of(moment, plans, joint, ordering)
 
 
-def drive_of(stage: Stage, plans: JointPlans, joint: Joint, ordering: Ordering) -> Drive:
+def drive_of(moment: Moment, plans: JointPlans, joint: Joint, ordering: Ordering) -> Drive:
     """Write down what a joint plan means for the step."""
     actions, reasons, expected, progress = {}, {}, {}, {}
     for name, k in joint.chosen.items():
@@ -72,7 +72,7 @@ def drive_of(stage: Stage, plans: JointPlans, joint: Joint, ordering: Ordering) 
             Expected(route, place + travel, k == 0, gains if r == 0 else {})
             for r, (route, place) in enumerate(plans.vehicles[name].routes)
         )
-    return Drive(actions, reasons, expected | humans_expected(stage), progress, {"plans_infeasible": len(joint.stuck)})
+    return Drive(actions, reasons, expected | humans_expected(moment), progress, {"plans_infeasible": len(joint.stuck)})
 
 
 def _reason(plans: JointPlans, joint: Joint, name: str, sequence: Sequence[str]) -> str:

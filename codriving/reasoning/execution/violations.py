@@ -12,7 +12,7 @@ from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.geometry.box import PLANNING, TRUE, Footprint
 from codriving.geometry.zone import ConflictZone
-from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.conflict_lane import BODY
@@ -105,47 +105,47 @@ ROOM = 0.5
 """Room that a driver who gives way leaves to the zone [m]."""
 
 
-def minds_humans(stage: Stage, ego: TrackedVehicle, travels: Array, lag: int, following: int, pad: float) -> Steps:
+def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, following: int, pad: float) -> Steps:
     """Return when each plan of a CAV first comes too close to a human driver.
 
     A driver behind on the same way has to mind the CAV, not the other way round; one who gives way, by standing or by
     the rules of the road, is expected to stay before the zone.
     """
     found: Steps = np.full(len(travels), travels.shape[1])
-    people = {m.id: m for m in stage.known[ego.id].values() if not m.is_cav}
+    people = {m.id: m for m in moment.vehicles[ego.id].values() if not m.is_cav}
     for other in people.values():
-        found = np.minimum(found, _drives_ahead(stage, ego, other, travels, following))
-    for c in stage.conflicts[ego.id]:
+        found = np.minimum(found, _drives_ahead(moment, ego, other, travels, following))
+    for c in moment.conflicts[ego.id]:
         if c.other in people:
-            found = np.minimum(found, _in_zone(stage, c, people[c.other], travels, lag, pad))
+            found = np.minimum(found, _in_zone(moment, c, people[c.other], travels, lag, pad))
     return found
 
 
-def _drives_ahead(stage: Stage, ego: TrackedVehicle, other: TrackedVehicle, travels: Array, following: int) -> Steps:
+def _drives_ahead(moment: Moment, ego: TrackedVehicle, other: TrackedVehicle, travels: Array, following: int) -> Steps:
     n = travels.shape[1]
     found: Steps = np.full(len(travels), n)
-    low, _ = stage.forecast.likely(other.speed)
+    low, _ = moment.forecast.likely(other.speed)
     for k, (route, place) in enumerate(ego.routes):
         # A lane that the CAV is leaving is minded until its body is off it.
-        until = n if k == 0 else round(CLEARS / stage.forecast.sample) + 1
+        until = n if k == 0 else round(CLEARS / moment.forecast.sample) + 1
         for way, there in other.routes:
-            for zone in stage.road_map.zones(route, way):
+            for zone in moment.road_map.zones(route, way):
                 if is_behind(zone, place, there):
                     steps = passes_too_early(zone, place + travels[:, :until], there + low, following, 0.0)
                     found = np.minimum(found, np.where(steps < until, steps, n))
     return found
 
 
-def _in_zone(stage: Stage, c: Conflict, other: TrackedVehicle, travels: Array, lag: int, pad: float) -> Steps:
+def _in_zone(moment: Moment, c: Conflict, other: TrackedVehicle, travels: Array, lag: int, pad: float) -> Steps:
     place, there = c.places
-    low, high = stage.forecast.likely(other.speed)
-    yields = gives_way(c, other, stage.road_map)
+    low, high = moment.forecast.likely(other.speed)
+    yields = gives_way(c, other, moment.road_map)
     steps: Steps = np.zeros(len(travels), dtype=np.int64)
     # Beside a driver who gives way the bodies have to keep clear, no more.
     for size in SIZES[1:] if yields else SIZES:
         whole, apart = size is PLANNING, not yields and size is not TRUE
         # One zone of the larger footprint may be several of the smaller one.
-        zones = stage.road_map.zones(*c.routes, size)
+        zones = moment.road_map.zones(*c.routes, size)
         for zone in (zones[c.zone],) if whole else zones:
             room = max(zone.entry_j - there - ROOM, 0.0) if yields else np.inf
             touched = meets(

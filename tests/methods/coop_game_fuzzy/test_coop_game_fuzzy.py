@@ -1,5 +1,6 @@
 """The fuzzy coalition: joint actions at the intersection."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from codriving.datatypes.action import Action
 from codriving.errors import ConfigError
 from codriving.methods.coop_game_fuzzy.coop_game_fuzzy import LIBRARY, OPTIONS, Arrival, CoopGameFuzzy
 from codriving.reasoning.execution.executor import Executor
-from codriving.reasoning.execution.stage import Stage
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.protocol import Ordering
 from codriving.reasoning.ordering.request import Request
 from codriving.reasoning.prediction.forecast import Forecast
@@ -36,13 +37,12 @@ def coalition(**change: Any) -> Executor:
     return CoopGameFuzzy(**{**SETTINGS, **change}).executor
 
 
-def stage(junction: Junction, *cars: Car) -> Stage:
+def moment(junction: Junction, *cars: Car) -> Moment:
     world = junction.world(*cars)
     thoughts = junction.think(world)
     forecast = Forecast(junction.model, LIBRARY)
     forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
-    known = {name: scene.vehicles() for name, scene in thoughts.scenes.items()}
-    return Stage(thoughts.scenes, thoughts.conflicts, known, world.available, junction.road_map, forecast, world.time)
+    return replace(thoughts.moment(), forecast=forecast)
 
 
 def routes(junction: Junction) -> tuple[str, str]:
@@ -57,7 +57,7 @@ def entry(junction: Junction, one: str, other: str) -> float:
 
 def test_whoever_is_alone_goes(junction: Junction) -> None:
     route, _ = routes(junction)
-    drive = coalition().drive(stage(junction, car("CAV1", route, 20.0, 4.0)), ORDER)
+    drive = coalition().drive(moment(junction, car("CAV1", route, 20.0, 4.0)), ORDER)
     assert drive.actions == {"CAV1": Action.FASTER}
     assert list(drive.progress["CAV1"]) == list(OPTIONS)
     assert drive.progress["CAV1"][Action.FASTER] > drive.progress["CAV1"][Action.SLOWER]
@@ -68,7 +68,7 @@ def test_of_two_who_would_meet_one_gives_way(junction: Junction, participation: 
     one, other = routes(junction)
     cars = [car("CAV1", a, entry(junction, a, b) - 22.0, 8.0) for a, b in ((one, other),)]
     cars.append(car("CAV2", other, entry(junction, other, one) - 24.0, 8.0))
-    drive = coalition(participation=participation).drive(stage(junction, *cars), ORDER)
+    drive = coalition(participation=participation).drive(moment(junction, *cars), ORDER)
     assert len(set(drive.actions.values())) == 2
     assert list(drive.expected) == ["CAV1", "CAV2"]
     (first,), (second,) = drive.expected["CAV1"], drive.expected["CAV2"]
@@ -83,7 +83,7 @@ def test_risk_without_weight_lets_everybody_go(junction: Junction) -> None:
         car("CAV1", one, entry(junction, one, other) - 15.0, 6.0),
         car("CAV2", other, entry(junction, other, one) - 15.0, 6.0),
     )
-    drive = coalition(risk=0.0).drive(stage(junction, *cars), ORDER)
+    drive = coalition(risk=0.0).drive(moment(junction, *cars), ORDER)
     assert set(drive.actions.values()) == {Action.FASTER}
 
 
@@ -91,24 +91,24 @@ def test_a_human_driver_is_given_way_to(junction: Junction) -> None:
     one, other = routes(junction)
     human = car("HDV1", other, entry(junction, other, one) - 12.0, 8.0)
     ego = car("CAV1", one, entry(junction, one, other) - 14.0, 8.0)
-    drive = coalition().drive(stage(junction, ego, human), ORDER)
+    drive = coalition().drive(moment(junction, ego, human), ORDER)
     assert drive.actions == {"CAV1": Action.SLOWER}
     assert drive.expected["HDV1"]
     assert not drive.expected["HDV1"][0].progress
     gone = car("HDV1", other, entry(junction, other, one) + 40.0, 8.0)
-    assert coalition().drive(stage(junction, ego, gone), ORDER).actions == {"CAV1": Action.FASTER}
+    assert coalition().drive(moment(junction, ego, gone), ORDER).actions == {"CAV1": Action.FASTER}
 
 
 def test_whoever_follows_does_not_run_into_the_one_ahead(junction: Junction) -> None:
     route, _ = routes(junction)
     cars = car("CAV1", route, 34.0, 0.0), car("CAV2", route, 20.0, 8.0), car("HDV1", route, 42.0, 0.0)
-    assert coalition().drive(stage(junction, *cars), ORDER).actions["CAV2"] is Action.SLOWER
+    assert coalition().drive(moment(junction, *cars), ORDER).actions["CAV2"] is Action.SLOWER
 
 
 def test_many_choose_together_and_always_the_same(junction: Junction) -> None:
     found = sorted(junction.road_map.routes)[:6]
     cars = [car(f"CAV{k}", route, 25.0 + 4.0 * k, 6.0) for k, route in enumerate(found)]
-    drives = [coalition().drive(stage(junction, *cars), ORDER) for _ in range(2)]
+    drives = [coalition().drive(moment(junction, *cars), ORDER) for _ in range(2)]
     assert drives[0].actions == drives[1].actions
     assert list(drives[0].actions) == [c.id for c in cars]
 
@@ -119,7 +119,7 @@ def test_shares_are_told_if_asked_for(junction: Junction) -> None:
         car("CAV1", one, entry(junction, one, other) - 18.0, 8.0),
         car("CAV2", other, entry(junction, other, one) - 18.0, 8.0),
     )
-    told, silent = (coalition(shares=shares).drive(stage(junction, *cars), ORDER) for shares in (True, False))
+    told, silent = (coalition(shares=shares).drive(moment(junction, *cars), ORDER) for shares in (True, False))
     assert told.actions == silent.actions
     assert all("its share" in reason for reason in told.reasons.values())
     assert not any("its share" in reason for reason in silent.reasons.values())
@@ -127,27 +127,19 @@ def test_shares_are_told_if_asked_for(junction: Junction) -> None:
 
 def test_only_what_the_road_allows_is_chosen(junction: Junction) -> None:
     route, _ = routes(junction)
-    here = stage(junction, car("CAV1", route, 20.0, 4.0))
-    bound = Stage(
-        here.scenes,
-        here.conflicts,
-        here.known,
-        {"CAV1": (Action.SLOWER, Action.IDLE)},
-        here.road_map,
-        here.forecast,
-        0.0,
-    )
+    here = moment(junction, car("CAV1", route, 20.0, 4.0))
+    bound = replace(here, available={"CAV1": (Action.SLOWER, Action.IDLE)})
     assert coalition().drive(bound, ORDER).actions == {"CAV1": Action.IDLE}
 
 
 def test_nobody_there_is_nothing_to_do(junction: Junction) -> None:
-    empty = Stage({}, {}, {}, {}, junction.road_map, Forecast(junction.model, LIBRARY), 0.0)
+    empty = Moment(0.0, {}, {}, {}, {}, junction.road_map, Forecast(junction.model, LIBRARY))
     assert coalition().drive(empty, ORDER).actions == {}
 
 
 def test_its_planner_has_no_plan(junction: Junction) -> None:
     route, _ = routes(junction)
-    planner = coalition().planner(stage(junction, car("CAV1", route, 20.0, 4.0)))
+    planner = coalition().planner(moment(junction, car("CAV1", route, 20.0, 4.0)))
     plan = planner.plan(["CAV1"])
     assert not plan.feasible
     assert planner.gap_time(plan, "CAV1", "CAV2") == float("inf")
@@ -180,7 +172,7 @@ def test_whoever_has_to_change_lanes_stops_before_its_lane_ends(merge: Junction)
     ramp = next(r for r in sorted(merge.road_map.routes) if "ramp" in r)
     rooms = {}
     for place in np.arange(0.0, merge.road_map.paths[ramp].length - 30.0, 5.0):
-        here = stage(merge, car("CAV1", ramp, float(place), 10.0))
+        here = moment(merge, car("CAV1", ramp, float(place), 10.0))
         change = here.scenes["CAV1"].must_change
         if change is not None:
             rooms[change.room] = coalition().drive(here, ORDER).actions["CAV1"]

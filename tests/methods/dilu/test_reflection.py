@@ -15,9 +15,9 @@ from codriving.methods.dilu.diary import Diary
 from codriving.methods.dilu.dilu import DiLu
 from codriving.methods.dilu.reflection import RuleReflector
 from codriving.methods.dilu.told import Told, tell
-from codriving.methods.perception import single_vehicle_perception
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
 from codriving.methods.single_vehicle.protocol import View
+from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
 CRASH = Collision(3.2, "CAV1", "HDV1", "CAV-HDV")

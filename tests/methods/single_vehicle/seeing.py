@@ -8,10 +8,10 @@ from worlds import Car, Junction
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.methods.noncoop_game.noncoop_game import NonCooperativeGame
-from codriving.methods.perception import single_vehicle_perception
 from codriving.methods.pidm import ProjectedIdm
 from codriving.methods.single_vehicle.alone import Alone
 from codriving.methods.single_vehicle.protocol import Choice, Driver, View
+from codriving.reasoning.perception import single_vehicle_perception
 
 D = TypeVar("D", bound=Driver)
 

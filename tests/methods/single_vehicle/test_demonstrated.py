@@ -6,9 +6,9 @@ from worlds import Car, Junction, car
 
 from codriving.datatypes.action import Action
 from codriving.errors import ConfigError
-from codriving.methods.perception import single_vehicle_perception
 from codriving.methods.single_vehicle.demonstrated import CONSTANT, LIMITS
 from codriving.methods.single_vehicle.protocol import Choice, View
+from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
 

@@ -1,6 +1,6 @@
 """In which order everybody is planned."""
 
-from driven import stage_of
+from driven import moment_of
 from hypothesis import given
 from hypothesis import strategies as st
 from worlds import Junction, car
@@ -79,8 +79,8 @@ def test_the_order_of_those_who_have_gone_is_of_no_interest() -> None:
 
 def ahead_of(junction: Junction, *routes: tuple[str, float]) -> set[tuple[str, str]]:
     thoughts = junction.thoughts(*[car(f"CAV{k}", route, place, 5.0) for k, (route, place) in enumerate(routes, 1)])
-    stage = stage_of(thoughts)
-    return drives_ahead(stage, {name: known[name] for name, known in sorted(stage.known.items())})
+    moment = moment_of(thoughts)
+    return drives_ahead(moment, {name: known[name] for name, known in sorted(moment.vehicles.items())})
 
 
 def test_who_drives_ahead(junction: Junction) -> None:

@@ -4,7 +4,7 @@ from itertools import combinations, pairwise
 from math import inf
 
 import pytest
-from driven import drive, ordered, planned, stage_of
+from driven import drive, moment_of, ordered, planned
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
@@ -26,10 +26,10 @@ NOBODY = PassingOrder((), ())
 
 def ask(world: Junction, *cars: Car, requests: LaneRequests | None = None, time: float = 0.0) -> list[Request]:
     """What is asked for on a road without conflicts."""
-    stage = stage_of(world.thoughts(*cars), time)
+    moment = moment_of(world.thoughts(*cars), time)
     empty = Ordering((), {})
-    driven = planned().drive(stage, empty)
-    return (requests or LaneRequests()).gather(stage, empty, NOBODY, driven.expected, 8)
+    driven = planned().drive(moment, empty)
+    return (requests or LaneRequests()).gather(moment, empty, NOBODY, driven.expected, 8)
 
 
 def gain(world: Junction, *cars: Car, action: Action = LEFT) -> float:
@@ -37,7 +37,7 @@ def gain(world: Junction, *cars: Car, action: Action = LEFT) -> float:
     thoughts = world.thoughts(*cars)
     there = beside(thoughts.outlook("CAV1", NOBODY), action)
     assert there is not None
-    return incentive(thoughts.scenes["CAV1"], there.scene, stage_of(thoughts))
+    return incentive(thoughts.scenes["CAV1"], there.scene, moment_of(thoughts))
 
 
 ME = car("CAV1", "lane-1", 300.0, 25.0)

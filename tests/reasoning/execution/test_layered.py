@@ -3,7 +3,7 @@
 from typing import Any
 
 import pytest
-from driven import layered, ordering_of, stage_of
+from driven import layered, moment_of, ordering_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
@@ -26,13 +26,23 @@ def four(place: float = 85.0, speed: float = 6.0) -> list[Car]:
 
 
 def act(junction: Junction, cars: list[Car], *order: str, **change: Any) -> Drive:
-    return layered(**change).drive(stage_of(junction.thoughts(*cars)), ordering_of(*order))
+    return layered(**change).drive(moment_of(junction.thoughts(*cars)), ordering_of(*order))
 
 
 def test_those_whose_ways_do_not_meet_share_a_layer(junction: Junction) -> None:
-    stage = stage_of(junction.thoughts(*four()))
-    assert layers_of(stage, ordering_of("CAV1", "CAV2", "CAV3", "CAV4")) == {"CAV1": 0, "CAV2": 0, "CAV3": 1, "CAV4": 1}
-    assert layers_of(stage, ordering_of("CAV1", "CAV3", "CAV2", "CAV4")) == {"CAV1": 0, "CAV3": 1, "CAV2": 2, "CAV4": 3}
+    moment = moment_of(junction.thoughts(*four()))
+    assert layers_of(moment, ordering_of("CAV1", "CAV2", "CAV3", "CAV4")) == {
+        "CAV1": 0,
+        "CAV2": 0,
+        "CAV3": 1,
+        "CAV4": 1,
+    }
+    assert layers_of(moment, ordering_of("CAV1", "CAV3", "CAV2", "CAV4")) == {
+        "CAV1": 0,
+        "CAV3": 1,
+        "CAV2": 2,
+        "CAV4": 3,
+    }
 
 
 @settings(max_examples=30, deadline=None)
@@ -43,13 +53,13 @@ def test_those_whose_ways_do_not_meet_share_a_layer(junction: Junction) -> None:
 def test_a_layer_is_one_more_than_the_highest_it_has_to_wait_for(
     junction: Junction, some: list[tuple[str, float]], draw: Any
 ) -> None:
-    stage = stage_of(junction.thoughts(*[car(f"CAV{k}", *c, 6.0) for k, c in enumerate(some)]))
-    order = sorted(name for name, cs in stage.conflicts.items() if cs)
+    moment = moment_of(junction.thoughts(*[car(f"CAV{k}", *c, 6.0) for k, c in enumerate(some)]))
+    order = sorted(name for name, cs in moment.conflicts.items() if cs)
     draw.shuffle(order)
-    layers = layers_of(stage, ordering_of(*order))
+    layers = layers_of(moment, ordering_of(*order))
     assert list(layers) == order
     for k, name in enumerate(order):
-        earlier = {other: layers[other] for other in order[:k] if other in {c.other for c in stage.conflicts[name]}}
+        earlier = {other: layers[other] for other in order[:k] if other in {c.other for c in moment.conflicts[name]}}
         assert all(layer < layers[name] for layer in earlier.values())
         assert layers[name] == 0 or layers[name] - 1 in earlier.values(), "and not later than needed"
 
@@ -99,8 +109,8 @@ def test_nobody_comes_too_close_to_whoever_drives_ahead(gap: float, action: Acti
 
 def test_a_driver_who_may_be_there_first_is_waited_for(junction: Junction) -> None:
     cars = [car("CAV1", "south-north", 85.0, 6.0), car("HDV1", "west-east", 85.0, 6.0)]
-    stage = stage_of(junction.thoughts(*cars))
-    waits, goes = (layered().drive(stage, ordering_of("CAV1", CAV1=time)) for time in (3.0, -5.0))
+    moment = moment_of(junction.thoughts(*cars))
+    waits, goes = (layered().drive(moment, ordering_of("CAV1", CAV1=time)) for time in (3.0, -5.0))
     assert waits.actions["CAV1"] is Action.SLOWER
     assert "HDV1" in waits.reasons["CAV1"]
     assert goes.actions["CAV1"] is Action.FASTER, "it would be through before"

@@ -4,7 +4,7 @@ from itertools import permutations
 
 import numpy as np
 import pytest
-from driven import ordered, ordering_of, planned, puppets, stage_of
+from driven import moment_of, ordered, ordering_of, planned, puppets
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
@@ -23,8 +23,8 @@ LEGS = ("south", "west", "north", "east")
 
 
 def moment(junction: Junction, *cars: Car, order: tuple[str, ...] = ()) -> Drive:
-    stage = stage_of(junction.thoughts(*cars))
-    return planned().drive(stage, ordering_of(*order))
+    moment = moment_of(junction.thoughts(*cars))
+    return planned().drive(moment, ordering_of(*order))
 
 
 def passes(junction: Junction, drive: Drive, name: str, other: str) -> float:
@@ -48,11 +48,11 @@ def test_the_first_goes_and_the_second_arrives_after_it(order: tuple[str, ...], 
 
 @pytest.mark.parametrize("order", [("CAV1", "CAV2"), ("CAV2", "CAV1")])
 def test_the_plan_asked_for_is_the_one_that_is_driven(order: tuple[str, ...], junction: Junction) -> None:
-    stage = stage_of(junction.thoughts(*CROSSING))
+    moment = moment_of(junction.thoughts(*CROSSING))
     executor = planned()
-    planner = executor.planner(stage)
+    planner = executor.planner(moment)
     plan = planner.plan(order)
-    drive = executor.drive(stage, ordering_of(*order))
+    drive = executor.drive(moment, ordering_of(*order))
     assert plan.feasible
     for name in order:
         places = drive.expected[name][0].places
@@ -74,12 +74,12 @@ def test_every_moment_has_one_answer_that_the_road_allows(
     thoughts = junction.thoughts(*cars)
     order = sorted(name for name, cs in thoughts.conflicts.items() if cs)
     draw.shuffle(order)  # type: ignore[attr-defined]
-    stage = stage_of(thoughts)
-    first, second = (planned().drive(stage, ordering_of(*order)) for _ in range(2))
+    moment = moment_of(thoughts)
+    first, second = (planned().drive(moment, ordering_of(*order)) for _ in range(2))
     assert first.actions == second.actions
     assert first.reasons == second.reasons
-    assert set(first.actions) == set(stage.available)
-    assert all(action in stage.available[name] for name, action in first.actions.items())
+    assert set(first.actions) == set(moment.available)
+    assert all(action in moment.available[name] for name, action in first.actions.items())
     top = junction.model.target_speeds[-1]
     for name in first.actions:
         assert first.reasons[name]
@@ -87,7 +87,7 @@ def test_every_moment_has_one_answer_that_the_road_allows(
         assert first.counts["plans_infeasible"] or first.actions[name] in first.progress[name]
         steps = np.diff(first.expected[name][0].places)
         assert steps.min() >= -1e-9
-        assert steps.max() <= top * stage.forecast.sample + 1e-9
+        assert steps.max() <= top * moment.forecast.sample + 1e-9
 
 
 def test_only_what_keeps_the_order_is_worth_something(junction: Junction) -> None:
@@ -99,10 +99,10 @@ def test_only_what_keeps_the_order_is_worth_something(junction: Junction) -> Non
 
 
 def test_nobody_reaches_its_zone_before_the_method_allows_it(junction: Junction) -> None:
-    stage = stage_of(junction.thoughts(*CROSSING))
-    times = stage.forecast.times
+    moment = moment_of(junction.thoughts(*CROSSING))
+    times = moment.forecast.times
     at_once, later = (
-        planned().drive(stage, Ordering(("CAV1", "CAV2"), {"CAV1": 0.0, "CAV2": 3.0}, not_before=held))
+        planned().drive(moment, Ordering(("CAV1", "CAV2"), {"CAV1": 0.0, "CAV2": 3.0}, not_before=held))
         for held in ({}, {"CAV1": 8.0})
     )
     (zone,) = junction.road_map.zones("south-north", "west-east")

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from driven import layered, ordered, ordering_of, planned, puppets, stage_of
+from driven import layered, moment_of, ordered, ordering_of, planned, puppets
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
@@ -300,8 +300,8 @@ def test_a_driver_who_goes_on_is_let_through(junction: Junction) -> None:
 
 def test_whoever_drives_behind_minds_the_cav_and_not_the_other_way_round(junction: Junction) -> None:
     me, behind = car("CAV1", "south-north", 60.0, 6.0), car("HDV1", "south-north", 53.0, 9.0)
-    stage = stage_of(junction.thoughts(me, behind))
-    drive = planned().drive(stage, ordering_of("CAV1"))
+    moment = moment_of(junction.thoughts(me, behind))
+    drive = planned().drive(moment, ordering_of("CAV1"))
     assert drive.actions == {"CAV1": Action.FASTER}
     assert drive.expected["HDV1"][0].places[0] == pytest.approx(53.0)
 

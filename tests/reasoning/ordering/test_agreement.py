@@ -11,7 +11,7 @@ from worlds import Junction, Thoughts, car
 from codriving.datatypes.order import PassingOrder
 from codriving.environment.environment import Environment
 from codriving.reasoning.ordering.agreement import agreement
-from codriving.reasoning.ordering.problem import Problem, ProblemMaker
+from codriving.reasoning.ordering.problem import Problem, pose
 from codriving.reasoning.ordering.schedule import repaired, timed
 
 ROUTES = tuple(
@@ -27,13 +27,11 @@ def why(first: str, second: str) -> str:
 def agree(
     thoughts: Thoughts, times: dict[str, float] | None = None, binding: bool = True
 ) -> tuple[Problem, PassingOrder, dict[str, float]]:
-    problem = ProblemMaker(thoughts.junction.road_map, thoughts.forecast, 0.6).pose(
-        thoughts.scenes, thoughts.conflicts, 0.0
-    )
+    problem = pose(thoughts.moment(), 0.6)
     if times is None:
         ranking = sorted(problem.instance.entrants, key=lambda n: (problem.instance.entrants[n].eta, n))
         times = timed(problem.instance, repaired(problem.instance, ranking))
-    return problem, agreement(problem, times, thoughts.conflicts, why, binding), times
+    return problem, agreement(thoughts.moment(), problem, times, why, binding), times
 
 
 @settings(max_examples=50, deadline=None)

@@ -12,6 +12,7 @@ from codriving.datatypes.order import PassingOrder
 from codriving.environment.environment import Environment
 from codriving.reasoning.ordering.coordinator import RuleCoordinator
 from codriving.reasoning.ordering.negotiation import AgreedOrder
+from codriving.reasoning.ordering.problem import pose
 
 ROUTES = tuple(
     f"{a}-{b}" for a in ("south", "west", "north", "east") for b in ("south", "west", "north", "east") if a != b
@@ -82,9 +83,9 @@ def test_who_cannot_stop_any_more_or_drives_ahead_goes_first_whatever_is_saved(
 ) -> None:
     cars = [car(f"CAV{k}", *c) for k, c in enumerate(some)] + [car(f"HDV{k}", *c) for k, c in enumerate(others)]
     thoughts = junction.thoughts(*cars)
-    coordinator = RuleCoordinator(junction.road_map, thoughts.forecast, False)
+    coordinator = RuleCoordinator(False)
     order = thoughts.negotiate(coordinator)
-    fixed = coordinator.problems.pose(thoughts.scenes, thoughts.conflicts, 0.0).instance.before
+    fixed = pose(thoughts.moment()).instance.before
     for one, other in fixed:
         if (other, one) not in fixed:
             assert order.first_of(one, other) != other
@@ -144,7 +145,7 @@ def test_the_order_stays_while_nothing_changes(junction: Junction) -> None:
 
     for first, gain in (("CAV1", 6.0), ("CAV2", -6.0)):
         thoughts = ahead(gain)
-        coordinator = RuleCoordinator(junction.road_map, thoughts.forecast, False)
+        coordinator = RuleCoordinator(False)
         assert thoughts.negotiate(coordinator).first_of("CAV1", "CAV2") == first
         # Now the other one is a little ahead: it would be first if the order were new.
         assert ahead(-gain / 3).negotiate().first_of("CAV1", "CAV2") != first
@@ -161,8 +162,8 @@ def test_nobody_in_conflict_gives_an_empty_order(junction: Junction) -> None:
 def test_everybody_gets_the_same_order_and_is_told_if_it_binds(junction: Junction) -> None:
     thoughts = junction.thoughts(car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "west-east", 55.0, 8.0))
     for binding in (False, True):
-        agreed = AgreedOrder(RuleCoordinator(junction.road_map, thoughts.forecast, binding))
-        orders = agreed.orders(thoughts.scenes, thoughts.conflicts)
+        agreed = AgreedOrder(RuleCoordinator(binding))
+        orders = agreed.orders(thoughts.moment())
         assert orders["CAV1"] is orders["CAV2"]
         assert orders["CAV1"].binding is binding
 

@@ -6,8 +6,7 @@ from dataclasses import replace
 import pytest
 from worlds import Junction, Thoughts, car
 
-from codriving.reasoning.ordering.human_windows import CERTAIN_GAP, is_blocked, passes_first, window
-from codriving.reasoning.ordering.separation import GAP, lag_length
+from codriving.reasoning.ordering.problem import CERTAIN_GAP, GAP, is_blocked, lag_length, passes_first, window
 
 
 def meeting(junction: Junction, place: float, speed: float, cav: float = 85.0) -> Thoughts:
@@ -19,7 +18,7 @@ def first_window(thoughts: Thoughts) -> tuple[float, float]:
     c = next(c for c in thoughts.conflicts["CAV1"] if c.routes[1] == "west-east")
     n = thoughts.scenes["CAV1"].neighbours[0]
     zone = thoughts.junction.road_map.zones(*c.routes)[c.zone]
-    return window(c, n, zone.entry_i, thoughts.junction.road_map, thoughts.forecast)
+    return window(thoughts.moment(), c, n, zone.entry_i)
 
 
 def test_a_window_is_an_interval_around_the_passage(junction: Junction) -> None:
@@ -40,7 +39,7 @@ def test_a_driver_who_gives_way_blocks_nothing(junction: Junction) -> None:
     thoughts = meeting(junction, 90.0, 0.0)
     n = replace(thoughts.scenes["CAV1"].neighbours[0], standing=60.0)
     for c in thoughts.conflicts["CAV1"]:
-        assert window(c, n, 100.0, junction.road_map, thoughts.forecast) == (math.inf, math.inf)
+        assert window(thoughts.moment(), c, n, 100.0) == (math.inf, math.inf)
 
 
 @pytest.mark.parametrize(("human", "first"), [(65.0, True), (95.0, False)])
@@ -48,7 +47,7 @@ def test_a_cav_passes_first_only_if_it_is_through_in_time(human: float, first: b
     thoughts = meeting(junction, human, 6.0, cav=98.0)
     scene = thoughts.scenes["CAV1"]
     conflicts = thoughts.conflicts["CAV1"]
-    assert passes_first(scene, scene.neighbours[0], conflicts, junction.road_map, thoughts.forecast) is first
+    assert passes_first(thoughts.moment(), "CAV1", scene.neighbours[0], conflicts) is first
 
 
 def test_blocked_by_a_body_in_the_way_only(junction: Junction) -> None:
@@ -84,4 +83,4 @@ def test_a_driver_who_has_to_change_onto_the_own_lane_blocks_nothing(merge: Junc
     thoughts = merge.thoughts(car("CAV1", "main-1", 215.0, 15.0), car("HDV1", "ramp", 225.0, 15.0))
     (c,) = thoughts.conflicts["CAV1"]
     n = thoughts.scenes["CAV1"].neighbours[0]
-    assert window(c, n, 240.0, merge.road_map, thoughts.forecast) == (math.inf, math.inf)
+    assert window(thoughts.moment(), c, n, 240.0) == (math.inf, math.inf)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from codriving.datatypes.order import PassingOrder, Precedence
 from codriving.datatypes.ordering_problem import Entrant, Instance
-from codriving.reasoning.ordering.improve import SAVES, SWAP, cost, improve
+from codriving.reasoning.ordering.coordinator import SAVES, SWAP, cost, improve
 from codriving.reasoning.ordering.schedule import start_time
 
 NAMES = ("a", "b", "c", "d", "e")

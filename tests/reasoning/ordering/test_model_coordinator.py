@@ -28,19 +28,15 @@ THREE = (
 
 def coordinator(thoughts: Thoughts, script: Script) -> tuple[ModelCoordinator, ScriptedChat, Ledger]:
     chat, ledger = ScriptedChat(script), Ledger()
-    road_map, forecast = thoughts.junction.road_map, thoughts.forecast
-    return ModelCoordinator(chat, load_prompts(None), ledger, road_map, forecast, False), chat, ledger
+    return ModelCoordinator(chat, load_prompts(None), ledger, False), chat, ledger
 
 
 def again(made: ModelCoordinator, thoughts: Thoughts) -> PassingOrder:
-    made.rules.problems.forecast = thoughts.forecast
-    return made.negotiate(thoughts.scenes, thoughts.conflicts)
+    return made.negotiate(thoughts.moment())
 
 
 def by_rule(thoughts: Thoughts) -> PassingOrder:
-    return RuleCoordinator(thoughts.junction.road_map, thoughts.forecast, False).negotiate(
-        thoughts.scenes, thoughts.conflicts
-    )
+    return RuleCoordinator(False).negotiate(thoughts.moment())
 
 
 def firsts(order: PassingOrder) -> dict[frozenset[str], str]:

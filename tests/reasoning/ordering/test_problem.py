@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from worlds import Car, Junction, Thoughts, car
+from worlds import Car, Junction, car
 
 from codriving.geometry.box import TRUE
 from codriving.geometry.zone import ConflictZone
-from codriving.reasoning.ordering.problem import COMMITTED, FOREVER, Problem, ProblemMaker
+from codriving.reasoning.ordering.problem import COMMITTED, FOLLOWS, FOREVER, Problem, pose
 from codriving.reasoning.ordering.schedule import repaired, schedule
-from codriving.reasoning.ordering.separation import FOLLOWS
 from codriving.reasoning.sharing.tracking import Tracking
 
 ROUTES = tuple(
@@ -20,13 +19,8 @@ GAP = 0.6
 some_cars = st.lists(st.tuples(st.sampled_from(ROUTES), st.floats(20.0, 112.0), st.floats(0.0, 9.0)), max_size=7)
 
 
-def posed(thoughts: Thoughts, gap: float = GAP, time: float = 0.0) -> Problem:
-    maker = ProblemMaker(thoughts.junction.road_map, thoughts.forecast, gap)
-    return maker.pose(thoughts.scenes, thoughts.conflicts, time)
-
-
-def pose(junction: Junction, *cars: Car, gap: float = GAP) -> Problem:
-    return posed(junction.thoughts(*cars), gap)
+def posed(junction: Junction, *cars: Car, gap: float = GAP) -> Problem:
+    return pose(junction.thoughts(*cars).moment(), gap)
 
 
 def furthest(zone: ConflictZone) -> float:
@@ -43,7 +37,7 @@ def furthest(zone: ConflictZone) -> float:
 )
 def test_how_far_apart_two_must_be(routes: tuple[str, str], gap: float, junction: Junction) -> None:
     # w_ij = (max_b [hi_ij(b) - b] - r_i + r_j) / v_c + tau_g.
-    problem = pose(junction, car("CAV1", routes[0], 60.0, 8.0), car("CAV2", routes[1], 62.0, 8.0), gap=gap).instance
+    problem = posed(junction, car("CAV1", routes[0], 60.0, 8.0), car("CAV2", routes[1], 62.0, 8.0), gap=gap).instance
     (zone,) = junction.road_map.zones(*routes)
     top = junction.model.target_speeds[-1]
     r1, r2 = (problem.entrants[name].reference for name in ("CAV1", "CAV2"))
@@ -55,7 +49,7 @@ def test_how_far_apart_two_must_be(routes: tuple[str, str], gap: float, junction
 
 
 def test_whoever_passes_that_much_later_does_not_touch_the_first(junction: Junction) -> None:
-    problem = pose(junction, car("CAV1", "south-north", 60.0, 9.0), car("CAV2", "west-east", 60.0, 9.0), gap=0.0)
+    problem = posed(junction, car("CAV1", "south-north", 60.0, 9.0), car("CAV2", "west-east", 60.0, 9.0), gap=0.0)
     (zone,) = junction.road_map.zones("south-north", "west-east")
     apart, top = problem.instance.separation["CAV1", "CAV2"], junction.model.target_speeds[-1]
     t = np.arange(-3.0, 6.0, 0.02)
@@ -70,10 +64,10 @@ def test_whoever_passes_that_much_later_does_not_touch_the_first(junction: Junct
 
 
 def test_those_without_a_conflict_are_not_ordered(junction: Junction) -> None:
-    problem = pose(junction, car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "north-south", 60.0, 8.0)).instance
+    problem = posed(junction, car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "north-south", 60.0, 8.0)).instance
     assert problem.entrants == {}
     cars = car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "north-south", 60.0, 8.0)
-    third = pose(junction, *cars, car("CAV3", "west-east", 60.0, 8.0)).instance
+    third = posed(junction, *cars, car("CAV3", "west-east", 60.0, 8.0)).instance
     assert list(third.entrants) == ["CAV1", "CAV2", "CAV3"]
     assert not third.conflict("CAV1", "CAV2")
 
@@ -81,7 +75,7 @@ def test_those_without_a_conflict_are_not_ordered(junction: Junction) -> None:
 def test_one_arrives_as_early_as_it_can(junction: Junction) -> None:
     top = junction.model.target_speeds[-1]
     cars = car("CAV1", "south-north", 60.0, top), car("CAV2", "west-east", 60.0, 0.0)
-    entrants = pose(junction, *cars).instance.entrants
+    entrants = posed(junction, *cars).instance.entrants
     assert entrants["CAV1"].eta == pytest.approx(entrants["CAV1"].distance / top, abs=0.01)
     assert entrants["CAV2"].eta > entrants["CAV2"].distance / top + 1.0, "it has to get going"
     assert (entrants["CAV1"].speed, entrants["CAV2"].speed) == (top, 0.0)
@@ -92,7 +86,7 @@ def test_one_arrives_as_early_as_it_can(junction: Junction) -> None:
 def test_past_the_reference_point_the_time_is_gone(junction: Junction) -> None:
     (zone,) = junction.road_map.zones("south-north", "west-east")
     inside = car("CAV1", "south-north", zone.entry_i + 2.0, 5.0)
-    entrants = pose(junction, inside, car("CAV2", "west-east", 80.0, 8.0)).instance.entrants
+    entrants = posed(junction, inside, car("CAV2", "west-east", 80.0, 8.0)).instance.entrants
     assert entrants["CAV1"].eta < 0
     assert entrants["CAV1"].distance == 0
     assert entrants["CAV1"].committed
@@ -102,7 +96,7 @@ def test_past_the_reference_point_the_time_is_gone(junction: Junction) -> None:
 @pytest.mark.parametrize(("before", "committed"), [(4.0, True), (30.0, False)])
 def test_who_cannot_stop_any_more_goes_first(before: float, committed: bool, junction: Junction) -> None:
     (zone,) = junction.road_map.zones("south-north", "west-east")
-    problem = pose(
+    problem = posed(
         junction, car("CAV1", "south-north", zone.entry_i - before, 9.0), car("CAV2", "west-east", 60.0, 9.0)
     ).instance
     assert problem.entrants["CAV1"].committed is committed
@@ -111,7 +105,7 @@ def test_who_cannot_stop_any_more_goes_first(before: float, committed: bool, jun
 
 
 def test_whoever_drives_ahead_is_the_leader_and_goes_first(junction: Junction) -> None:
-    problem = pose(
+    problem = posed(
         junction,
         car("CAV1", "south-north", 60.0, 8.0),
         car("CAV2", "south-west", 75.0, 8.0),
@@ -128,7 +122,7 @@ def test_whoever_drives_ahead_is_the_leader_and_goes_first(junction: Junction) -
 
 def test_turning_matters_where_ways_cross(junction: Junction) -> None:
     def turning(route: str, other: str) -> bool:
-        problem = pose(junction, car("CAV1", route, 60.0, 8.0), car("CAV2", other, 60.0, 8.0)).instance
+        problem = posed(junction, car("CAV1", route, 60.0, 8.0), car("CAV2", other, 60.0, 8.0)).instance
         return problem.entrants["CAV1"].turning
 
     assert turning("south-west", "north-south")
@@ -138,7 +132,7 @@ def test_turning_matters_where_ways_cross(junction: Junction) -> None:
 
 def test_human_drivers_block_the_times_at_which_they_may_pass(junction: Junction) -> None:
     human = car("HDV1", "west-east", 82.0, 8.0)
-    problem = pose(junction, car("CAV1", "south-north", 82.0, 8.0), human)
+    problem = posed(junction, car("CAV1", "south-north", 82.0, 8.0), human)
     ((begin, end),) = problem.passages["CAV1"].values()
     windows = problem.instance.entrants["CAV1"].windows
     assert windows
@@ -156,7 +150,7 @@ def test_a_driver_who_stands_in_the_way_blocks_for_ever(junction: Junction) -> N
     tracking = Tracking(junction.road_map)
     for time in (0.0, 1.0):
         thoughts = junction.think(junction.world(*cars, time=time), tracking=tracking)
-    problem = posed(thoughts)
+    problem = pose(thoughts.moment(), GAP)
     assert (-FOREVER, FOREVER) in problem.instance.entrants["CAV1"].windows
     assert problem.passages["CAV1"]["HDV1"] == (-FOREVER, FOREVER)
 
@@ -168,7 +162,7 @@ def test_every_moment_is_a_problem_that_can_be_solved(
 ) -> None:
     cars = [car(f"CAV{k}", *c) for k, c in enumerate(some)] + [car(f"HDV{k}", *c) for k, c in enumerate(others[:3])]
     thoughts = junction.thoughts(*cars)
-    problem = posed(thoughts)
+    problem = pose(thoughts.moment(), GAP)
     instance = problem.instance
     assert set(instance.entrants) == {name for name, cs in thoughts.conflicts.items() if cs}
     assert list(instance.entrants) == sorted(instance.entrants)
@@ -197,5 +191,5 @@ def test_who_can_only_stop_where_the_other_cuts_the_corner_goes_first(junction: 
     (reach,), (body,) = (junction.road_map.zones(*routes, size) for size in (COMMITTED, TRUE))
     assert reach.entry_i < body.entry_i
     for place, fixed in ((reach.entry_i - 0.3, False), ((reach.entry_i + body.entry_i) / 2, True)):
-        before = pose(junction, car("CAV1", routes[0], place, 0.0), car("CAV2", routes[1], 40.0, 8.0)).instance.before
+        before = posed(junction, car("CAV1", routes[0], place, 0.0), car("CAV2", routes[1], 40.0, 8.0)).instance.before
         assert (("CAV1", "CAV2") in before) is fixed

@@ -2,7 +2,7 @@
 
 from worlds import Junction
 
-from codriving.reasoning.ordering.separation import lag_length
+from codriving.reasoning.ordering.problem import lag_length
 
 
 def test_lag_length_is_enough_room_anywhere_in_the_zone(junction: Junction) -> None:

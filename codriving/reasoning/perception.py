@@ -1,27 +1,17 @@
 """What all CAVs know at one moment, which every method begins with: states, intents, scenes and conflicts."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.conflicts import find_conflicts
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.sharing.intent_sharing import GuessedIntents, IntentSharing
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
 from codriving.reasoning.sharing.state_sharing import StateSharing, WatchedStates
 from codriving.reasoning.sharing.tracking import Tracking
-
-
-@dataclass(frozen=True, slots=True)
-class Perceived:
-    """What is known at one moment."""
-
-    scenes: Mapping[str, SceneDescription]
-    conflicts: Mapping[str, tuple[Conflict, ...]]
-    known: Mapping[str, dict[str, TrackedVehicle]]
 
 
 @dataclass(slots=True)
@@ -34,17 +24,21 @@ class Perception:
     state_sharing: StateSharing
     intent_sharing: IntentSharing
 
-    def perceive(self, world: WorldState) -> Perceived:
+    def perceive(self, world: WorldState) -> Moment:
         """Return what every CAV knows, and begin the predictions of this step."""
         self.forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
         views = self.state_sharing.views(world, self.forecast.model)
         intents = self.intent_sharing.intents(world)
         scenes = describe_scenes(world, views, intents, self.tracking)
         conflicts: dict[str, tuple[Conflict, ...]] = dict.fromkeys(scenes, ())
-        if self.intent_sharing.finds_conflicts:
+        finds_conflicts = self.intent_sharing.finds_conflicts
+        if finds_conflicts:
             conflicts = {ego: find_conflicts(scene, self.road_map) for ego, scene in scenes.items()}
             scenes = {ego: with_conflicts(scene, conflicts[ego], self.road_map) for ego, scene in scenes.items()}
-        return Perceived(scenes, conflicts, {ego: scene.vehicles() for ego, scene in scenes.items()})
+        vehicles = {ego: scene.vehicles() for ego, scene in scenes.items()}
+        return Moment(
+            world.time, scenes, conflicts, vehicles, world.available, self.road_map, self.forecast, finds_conflicts
+        )
 
 
 def single_vehicle_perception(road_map: RoadMap, forecast: Forecast) -> Perception:

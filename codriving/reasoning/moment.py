@@ -1,4 +1,4 @@
-"""One moment as an executor sees it: everybody's knowledge together, since all CAVs are planned jointly."""
+"""One moment: what has been perceived at one time, with the road and the forecast."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,17 +11,20 @@ from codriving.reasoning.prediction.forecast import Forecast
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
-    """One moment.
+class Moment:
+    """All that the CAVs know at one time, each by its id; functions are handed ``(moment, ego)``.
 
     Attributes:
         time: Simulated time [s].
+        vehicles: The vehicles that each CAV knows of, itself included, by id.
+        sees_conflicts: Whether conflicts can be told at all, which takes routes that are shared or guessed.
     """
 
+    time: float
     scenes: Mapping[str, SceneDescription]
     conflicts: Mapping[str, tuple[Conflict, ...]]
-    known: Mapping[str, dict[str, TrackedVehicle]]
+    vehicles: Mapping[str, dict[str, TrackedVehicle]]
     available: Mapping[str, tuple[Action, ...]]
     road_map: RoadMap
     forecast: Forecast
-    time: float
+    sees_conflicts: bool = True

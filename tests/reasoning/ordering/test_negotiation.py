@@ -6,15 +6,15 @@ from hypothesis import strategies as st
 from worlds import Car, Junction, Thoughts, car
 
 from codriving.datatypes.order import PassingOrder
-from codriving.reasoning.ordering.own_order import OwnOrders
+from codriving.reasoning.ordering.negotiation import OwnOrders
 from codriving.reasoning.sharing.cda import OwnOrder
 
 READINGS: tuple[OwnOrder, ...] = ("own_view", "same_rule", "independent")
 
 
 def orders(thoughts: Thoughts, reading: OwnOrder, seed: int = 0) -> dict[str, PassingOrder]:
-    own = OwnOrders(thoughts.junction.road_map, thoughts.forecast, reading, seed)
-    return dict(own.orders(thoughts.scenes, thoughts.conflicts))
+    own = OwnOrders(reading, seed)
+    return dict(own.orders(thoughts.moment()))
 
 
 def crossing(junction: Junction, gain: float = 0.0, speeds: tuple[float, float] = (8.0, 8.0)) -> Thoughts:
@@ -75,10 +75,10 @@ def test_independent_guesses_are_mostly_right_where_the_difference_is_clear(junc
 
 def test_a_guess_lasts_for_the_episode(junction: Junction) -> None:
     thoughts = crossing(junction)
-    own = OwnOrders(junction.road_map, thoughts.forecast, "independent", 5)
-    first = dict(own.orders(thoughts.scenes, thoughts.conflicts))
+    own = OwnOrders("independent", 5)
+    first = dict(own.orders(thoughts.moment()))
     later = crossing(junction, 38.0)
-    again = dict(own.orders(later.scenes, later.conflicts))
+    again = dict(own.orders(later.moment()))
     assert believed_first(first) == believed_first(again)
 
 
