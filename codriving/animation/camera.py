@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.animation.window import Area, Window, rows
+from codriving.animation.window import Area, Window, bounds, rows
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.geometry.lane_path import lane_path
@@ -35,9 +35,6 @@ class Camera:
     """Keeps the CAVs of an episode in view.
 
     On a compact road it stays over the middle and moves in and out alone, so that nobody loses the way.
-
-    Args:
-        view: Part of the frame that shows the road [px].
     """
 
     def __init__(self, trajectory: Trajectory, road_map: RoadMap, view: Area) -> None:
@@ -49,11 +46,7 @@ class Camera:
             self._zooms = _zooms(tracks, trajectory.step, self.still[0])
 
     def at(self, time: float) -> tuple[Window, ...]:
-        """Return what is seen at a moment.
-
-        Args:
-            time: Simulated time [s].
-        """
+        """Return what is seen at a moment."""
         if self._zooms is None:
             return self.still
         window = self.still[0]
@@ -66,7 +59,6 @@ def overview(points: NDArray[np.float64], road_map: RoadMap, view: Area) -> tupl
 
     Args:
         points: What has to be seen (n, 2) [m].
-        view: Part of the frame [px].
     """
     lanes = np.concatenate([lane_path(lane, spacing=5.0).points for lane in road_map.road.lanes])
     whole, box = bounds(lanes), bounds(points)
@@ -89,24 +81,11 @@ def _around(points: NDArray[np.float64], road_map: RoadMap, view: Area) -> Windo
     return shared if shared.zoom > _NEAR * own.zoom else own
 
 
-def bounds(points: NDArray[np.float64]) -> Area:
-    """Return the smallest upright rectangle around points.
-
-    Args:
-        points: Points (n, 2).
-    """
-    low, high = points.min(0), points.max(0)
-    return Area(float(low[0]), float(low[1]), float(high[0] - low[0]), float(high[1] - low[1]))
-
-
 def fitting(points: NDArray[np.float64], x: float, y: float, view: Area) -> float:
     """Return how large the world may be shown around a place so that points are seen [px/m].
 
     Args:
         points: Points (n, 2) [m].
-        x: Place in the middle of the view [m].
-        y: Place in the middle of the view [m].
-        view: Part of the frame [px].
     """
     far_x, far_y = np.abs(points - (x, y)).max(0) + MARGIN
     return float(min(view.width / 2 / far_x, view.height / 2 / far_y, CLOSEST))

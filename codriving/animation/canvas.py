@@ -1,17 +1,41 @@
 """A sheet to draw on: smooth shapes by Matplotlib's Agg, letters by Pillow, and no display."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 from matplotlib.backends import backend_agg
+from matplotlib.path import Path as Outline
 from matplotlib.transforms import Affine2D, Bbox
 from numpy.typing import ArrayLike, NDArray
 
-from codriving.animation.colours import rgba
-from codriving.animation.lettering import stamp, text_width
-from codriving.animation.shape import Shape
+from codriving.animation.lettering import rgba, stamp, text_width
+
+
+class Shape:
+    """Lines or areas, any number of them.
+
+    Args:
+        parts: Points of each part (n, 2).
+    """
+
+    def __init__(self, parts: Iterable[ArrayLike], closed: bool = False) -> None:
+        points, codes = [], []
+        for part in parts:
+            corners = np.asarray(part, dtype=float)
+            points.append(np.vstack((corners, corners[:1])) if closed else corners)
+            kinds = np.full(len(points[-1]), Outline.LINETO, dtype=Outline.code_type)
+            kinds[0] = Outline.MOVETO
+            if closed:
+                kinds[-1] = Outline.CLOSEPOLY
+            codes.append(kinds)
+        self.outline = Outline(
+            np.concatenate(points) if points else np.empty((0, 2)), np.concatenate(codes) if codes else None
+        )
+        # Whether points are left out is a setting of the user's otherwise.
+        self.outline.should_simplify = False
+
 
 Pixels = NDArray[np.uint8]
 
@@ -24,10 +48,6 @@ _DPI = 72
 
 class Canvas:
     """A sheet of `width` by `height` logical pixels; x grows to the right, y downwards.
-
-    Args:
-        width: Width [px].
-        height: Height [px].
 
     Attributes:
         width: Width [px].
@@ -49,11 +69,7 @@ class Canvas:
         self._clip: Bbox | None = None
 
     def fill(self, colour: str) -> None:
-        """Paint the whole sheet.
-
-        Args:
-            colour: ``#rrggbb``.
-        """
+        """Paint the whole sheet."""
         self._words[:] = np.array([round(part * 255) for part in rgba(colour)], dtype=np.uint8).view(np.uint32)
 
     def polygon(
@@ -63,8 +79,6 @@ class Canvas:
 
         Args:
             points: Its corners (n, 2) [px].
-            fill: Colour inside, ``#rrggbb`` or ``#rrggbbaa``.
-            width: Width of the outline [px].
         """
         self.shape(Shape([points], closed=True), None, fill, stroke, width)
 
@@ -73,7 +87,6 @@ class Canvas:
 
         Args:
             points: Points (n, 2) [px].
-            width: Its width [px].
             dash: Lengths of dashes and gaps in turn [px]; none for a full line.
         """
         self.shape(Shape([points]), None, None, colour, width, dash)
@@ -81,14 +94,7 @@ class Canvas:
     def box(
         self, left: float, top: float, width: float, height: float, fill: str | None, stroke: str | None = None
     ) -> None:
-        """Draw an upright rectangle.
-
-        Args:
-            left: Left edge [px].
-            top: Upper edge [px].
-            width: Width [px].
-            height: Height [px].
-        """
+        """Draw an upright rectangle."""
         right, bottom = left + width, top + height
         self.polygon([(left, top), (right, top), (right, bottom), (left, bottom)], fill, stroke)
 
@@ -105,8 +111,6 @@ class Canvas:
 
         Args:
             matrix: From its units to pixels (3, 3), for points as columns (x, y, 1); None if it is in pixels.
-            fill: Colour inside, ``#rrggbb`` or ``#rrggbbaa``.
-            width: Width of its lines [px].
             dash: Lengths of dashes and gaps in turn [px]; none for a full line.
         """
         pen = self._pen
@@ -130,13 +134,7 @@ class Canvas:
         anchor: float = 0.0,
         halo: str | None = None,
     ) -> None:
-        """Write a line of text.
-
-        Args:
-            x: Where it stands [px].
-            y: Middle of its capitals [px].
-            size: Size of the letters [px].
-        """
+        """Write a line of text."""
         words = " ".join(words.split())
         size, rim = size * self.scale, round(1.8 * self.scale) if halo else 0
         cut = stamp(words, size, bold, colour, halo, rim)
@@ -151,33 +149,15 @@ class Canvas:
             there[:] = there * cut.keep[part] + cut.ink[part] + np.float32(0.5)
 
     def width_of(self, words: str, size: float, bold: bool = False) -> float:
-        """Return the width of a line of text [px].
-
-        Args:
-            size: Size of the letters [px].
-        """
+        """Return the width of a line of text [px]."""
         return text_width(" ".join(words.split()), size * self.scale, bold) / self.scale
 
     def copy(self, left: float, top: float, width: float, height: float) -> Pixels:
-        """Return what has been drawn in a rectangle, to be put back later.
-
-        Args:
-            left: Left edge [px].
-            top: Upper edge [px].
-            width: Width [px].
-            height: Height [px].
-        """
+        """Return what has been drawn in a rectangle, to be put back later."""
         return self._part(left, top, width, height).copy()
 
     def paste(self, left: float, top: float, width: float, height: float, part: Pixels) -> None:
-        """Put back what was copied from the same rectangle.
-
-        Args:
-            left: Left edge [px].
-            top: Upper edge [px].
-            width: Width [px].
-            height: Height [px].
-        """
+        """Put back what was copied from the same rectangle."""
         np.copyto(self._part(left, top, width, height), part)
 
     def _part(self, left: float, top: float, width: float, height: float) -> Pixels:
@@ -193,17 +173,38 @@ class Canvas:
 
     @contextmanager
     def within(self, left: float, top: float, width: float, height: float) -> Iterator[None]:
-        """Draw only inside a rectangle while the block lasts.
-
-        Args:
-            left: Left edge [px].
-            top: Upper edge [px].
-            width: Width [px].
-            height: Height [px].
-        """
+        """Draw only inside a rectangle while the block lasts."""
         before, rows, s = self._clip, self.pixels.shape[0], self.scale
         self._clip = Bbox([[left * s, rows - (top + height) * s], [(left + width) * s, rows - top * s]])
         try:
             yield
         finally:
             self._clip = before
+
+
+def shortened(canvas: Canvas, words: str, size: float, room: float, bold: bool = False) -> str:
+    """Cut a text so that it fits into a line, and show that it was cut."""
+    words = " ".join(words.split())
+    if canvas.width_of(words, size, bold) <= room:
+        return words
+    low, high = 0, len(words)
+    while low < high:
+        middle = (low + high + 1) // 2
+        if canvas.width_of(words[:middle].rstrip() + "…", size, bold) <= room:
+            low = middle
+        else:
+            high = middle - 1
+    return words[:low].rstrip() + "…"
+
+
+def wrapped(canvas: Canvas, words: str, size: float, room: float, lines: int) -> list[str]:
+    """Break a text into at most so many lines; the last is cut if there is more."""
+    rest, broken = words.split(), list[str]()
+    while rest and len(broken) < lines - 1:
+        line = rest.pop(0)
+        while rest and canvas.width_of(f"{line} {rest[0]}", size) <= room:
+            line += " " + rest.pop(0)
+        broken.append(shortened(canvas, line, size, room))
+    if rest and lines > 0:
+        broken.append(shortened(canvas, " ".join(rest), size, room))
+    return broken

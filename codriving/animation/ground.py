@@ -5,8 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from codriving.animation.canvas import Canvas
-from codriving.animation.shape import Shape
+from codriving.animation.canvas import Canvas, Shape
 from codriving.animation.style import ASPHALT, FAINT, GREEN, GROUND, INK, ORANGE, PAINT
 from codriving.animation.window import Points, Window
 from codriving.datatypes.road import Lane, Line, Straight

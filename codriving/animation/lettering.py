@@ -9,7 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from codriving.animation.colours import rgba
+
+@lru_cache(maxsize=256)
+def rgba(colour: str) -> tuple[float, float, float, float]:
+    """Return red, green, blue and opacity, each 0 to 1."""
+    digits = colour.removeprefix("#").ljust(8, "f")
+    red, green, blue, alpha = (int(digits[k : k + 2], 16) / 255 for k in (0, 2, 4, 6))
+    return red, green, blue, alpha
+
 
 _CAPITAL = 0.73
 """Height of a capital of DejaVu Sans, as a part of the size."""
@@ -42,11 +49,7 @@ def _font(size: float, bold: bool) -> ImageFont.FreeTypeFont:
 
 @lru_cache(maxsize=8192)
 def text_width(words: str, size: float, bold: bool) -> float:
-    """Return the width of a line of text [px].
-
-    Args:
-        size: Size of the letters [px].
-    """
+    """Return the width of a line of text [px]."""
     return _font(size, bold).getlength(words)
 
 
@@ -55,7 +58,6 @@ def stamp(words: str, size: float, bold: bool, colour: str, halo: str | None, ri
     """Cut the stamp of a line of text.
 
     Args:
-        size: Size of the letters [px].
         halo: Colour of a rim around them, or None.
         rim: Width of the rim [px].
     """

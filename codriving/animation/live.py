@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.animation.moment import Body, Moment, Thought
-from codriving.animation.sizes import check_size
+from codriving.animation.content import DrawnDecision, DrawnVehicle, FrameContent
+from codriving.animation.style import check_size
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.vehicle import Kind
@@ -87,7 +87,7 @@ class LivePicture:
     def _begin(self, world: WorldState) -> None:
         """Choose a view from which the vehicles that are there and the places that they go to are seen."""
         from codriving.animation.camera import overview
-        from codriving.animation.cards import natural
+        from codriving.animation.panel import natural
         from codriving.animation.picture import Picture
 
         cavs = tuple(sorted((vehicle.id for vehicle in world.cavs), key=natural))
@@ -107,17 +107,17 @@ class LivePicture:
         deliberation: Mapping[str, Any] | None,
         outcome: Outcome | None,
         arrivals: Mapping[str, float] | None,
-    ) -> Moment:
-        from codriving.animation.deliberated import Deliberated, deliberated
+    ) -> FrameContent:
+        from codriving.animation.content import Deliberated, deliberated
 
         decided = deliberated(deliberation, self._road_map) if deliberation else Deliberated(world.time)
-        told = {name: Thought(Action(action)) for name, action in actions.items()}
+        told = {name: DrawnDecision(Action(action)) for name, action in actions.items()}
         bodies = []
         for v in world.vehicles:
             intent = world.intents.get(v.id) if v.kind is Kind.CAV else None
             route = intent.route if intent else None
-            bodies.append(Body(v.id, v.kind, v.x, v.y, v.heading, v.speed, route, v.length, v.width))
-        return Moment(
+            bodies.append(DrawnVehicle(v.id, v.kind, v.x, v.y, v.heading, v.speed, route, v.length, v.width))
+        return FrameContent(
             time=world.time,
             bodies=tuple(bodies),
             thoughts={**told, **decided.thoughts},

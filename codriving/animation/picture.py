@@ -1,33 +1,56 @@
-"""One frame put together: road, plans, conflicts, vehicles, names, panel, banner."""
+"""One frame put together: road, plans, conflicts, vehicles, names, panel, and how it ended."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.animation.banner import draw_banner
-from codriving.animation.bodies import draw_bodies, draw_names
-from codriving.animation.canvas import Canvas
-from codriving.animation.glyphs import target
+from codriving.animation.canvas import Canvas, shortened
+from codriving.animation.conflicts import ConflictLayer
+from codriving.animation.content import FrameContent
 from codriving.animation.ground import Ground
-from codriving.animation.meetings import Meetings
-from codriving.animation.moment import Moment
-from codriving.animation.panel import Panel
-from codriving.animation.plans import draw_plan, way_ahead
-from codriving.animation.sizes import PANEL
-from codriving.animation.space import Space
-from codriving.animation.style import GROUND
-from codriving.animation.window import Area, Window
+from codriving.animation.panel import SidePanel
+from codriving.animation.signs import cross, target, tick
+from codriving.animation.style import GREEN, GROUND, INK, PANEL, PAPER, VERMILION
+from codriving.animation.vehicles import draw_names, draw_plan, draw_vehicles, way_ahead
+from codriving.animation.window import Area, FreeSpace, Window
+from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.vehicle import Kind
 from codriving.geometry.road_map import RoadMap
 
 
+def sentence(outcome: Outcome, cavs: int) -> str:
+    """Say how an episode ended."""
+    after = f"after {outcome.time:.1f} s"
+    arrived = f"{len(outcome.arrivals)} of {cavs} CAVs arrived"
+    if outcome.ending is Ending.SUCCESS:
+        return f"Success: all {cavs} CAVs arrived {after}"
+    if outcome.ending is Ending.COLLISION and outcome.collision is not None:
+        c = outcome.collision
+        return f"Collision: {c.striker} ran into {c.struck} {after}; {arrived}"
+    if outcome.ending is Ending.TIMEOUT:
+        return f"Timeout {after}; {arrived}"
+    if outcome.ending is Ending.OFF_ROAD:
+        return f"{', '.join(outcome.off_road)} left the road {after}; {arrived}"
+    return f"Error {after}: {outcome.message}"
+
+
+def draw_banner(canvas: Canvas, area: Area, outcome: Outcome, cavs: int) -> None:
+    """Draw the banner."""
+    good = outcome.ending is Ending.SUCCESS
+    colour = GREEN if good else VERMILION
+    words = shortened(canvas, sentence(outcome, cavs), 17, area.width - 120, bold=True)
+    width = canvas.width_of(words, 17, bold=True) + 74
+    left, top = area.centre[0] - width / 2, area.top + area.height - 70
+    canvas.box(left, top, width, 44, PAPER + "f0", colour)
+    canvas.box(left, top, 8, 44, colour)
+    sign = tick if good else cross
+    sign(canvas, left + 30, top + 22, 18, colour)
+    canvas.text(left + 52, top + 22, words, 17, INK, bold=True)
+
+
 class Picture:
     """Draws the moments of one episode.
-
-    Args:
-        width: Width of a frame [px].
-        height: Height of a frame [px].
 
     Attributes:
         view: The part of a frame that shows the road [px].
@@ -46,7 +69,7 @@ class Picture:
         self.road_map, self.cavs = road_map, cavs
         self._canvas = Canvas(width, height, scale)
         self.view = Area(0.0, 0.0, width - (PANEL if panel else 0.0), height)
-        self._panel = Panel(Area(self.view.width, 0.0, PANEL, height), title, cavs) if panel else None
+        self._panel = SidePanel(Area(self.view.width, 0.0, PANEL, height), title, cavs) if panel else None
         self._ground = Ground(road_map)
         self._cached: tuple[tuple[Window, ...], NDArray[np.uint8]] | None = None
 
@@ -56,7 +79,7 @@ class Picture:
         rows, columns = self._canvas.pixels.shape[:2]
         return rows, columns
 
-    def draw(self, moment: Moment, windows: tuple[Window, ...]) -> NDArray[np.uint8]:
+    def draw(self, moment: FrameContent, windows: tuple[Window, ...]) -> NDArray[np.uint8]:
         """Draw a frame.
 
         Returns:
@@ -64,7 +87,7 @@ class Picture:
         """
         canvas = self._canvas
         self._lay_ground(windows)
-        meetings = Meetings(moment.meetings, moment.bodies, self.road_map)
+        meetings = ConflictLayer(moment.meetings, moment.bodies, self.road_map)
         ways = [way for b in moment.bodies if b.kind is Kind.CAV and (way := way_ahead(self.road_map, b)) is not None]
         for window in windows:
             a = window.area
@@ -73,9 +96,9 @@ class Picture:
                 for way in ways:
                     draw_plan(canvas, window, way)
                 meetings.marks(canvas, window)
-                draw_bodies(canvas, window, moment.bodies)
+                draw_vehicles(canvas, window, moment.bodies)
                 _veil(canvas, window)
-                space = Space(a)
+                space = FreeSpace(a)
                 meetings.claim(window, space)
                 draw_names(canvas, window, space, moment)
                 meetings.label(canvas, window, space)
@@ -86,7 +109,7 @@ class Picture:
             self._panel.draw(canvas, moment)
         return canvas.pixels
 
-    def rgb(self, moment: Moment, windows: tuple[Window, ...]) -> NDArray[np.uint8]:
+    def rgb(self, moment: FrameContent, windows: tuple[Window, ...]) -> NDArray[np.uint8]:
         """Draw a frame that may be kept.
 
         Returns:
@@ -107,7 +130,7 @@ class Picture:
         self._ground.draw(canvas, windows)
         self._cached = (windows, canvas.pixels.copy())
 
-    def _crash(self, window: Window, moment: Moment) -> None:
+    def _crash(self, window: Window, moment: FrameContent) -> None:
         """Mark where a collision was."""
         if moment.outcome is None or moment.outcome.collision is None:
             return

@@ -1,4 +1,4 @@
-"""Colours and strokes: the palette of Okabe and Ito (2008), and a second cue for everything that a colour says."""
+"""Colours, strokes and sizes: the palette of Okabe and Ito (2008), with a second cue for each colour."""
 
 from dataclasses import dataclass
 
@@ -6,9 +6,10 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Severity
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.vehicle import Kind
+from codriving.errors import ConfigError
 
 PAPER, GROUND, ASPHALT, PAINT = "#ffffff", "#f3f2ec", "#cfd3d9", "#ffffff"
-"""Panel, land, road and painted lines."""
+"""SidePanel, land, road and painted lines."""
 
 BAND = "90"
 """Opacity of the bands along which two vehicles come together; the plans on them stay in sight."""
@@ -61,3 +62,24 @@ SEVERITIES = {
     Severity.SLIGHT: Stroke("#b86fa3", 3.5, (3.0, 4.0), 6.5, "slight", "up to 8 s"),
 }
 """The bands of danger that are drawn; beyond 8 s nothing is."""
+
+
+PANEL = 384.0
+"""Width of the panel [px]."""
+
+SCALES = (0.5, 4.0)
+SMALLEST, LARGEST = 240, 4096
+
+
+def check_size(width: float, height: float, scale: float, panel: bool = True) -> None:
+    """Refuse sizes at which nothing could be read, or that would fill the memory.
+
+    Raises:
+        ConfigError: If one of them is out of range.
+    """
+    low = SMALLEST + (round(PANEL) if panel else 0)
+    for name, value, least in (("width", width, low), ("height", height, SMALLEST)):
+        if not least <= value <= LARGEST:
+            raise ConfigError(f"{name} must be {least} to {LARGEST} px, got {value:g}")
+    if not SCALES[0] <= scale <= SCALES[1]:
+        raise ConfigError(f"scale must be {SCALES[0]:g} to {SCALES[1]:g}, got {scale:g}")

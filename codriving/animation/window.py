@@ -1,5 +1,6 @@
-"""Windows: which part of the world is seen where on the frame, and how large."""
+"""Which part of the world is seen where on the frame, how large, and where there is room for words."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,12 +111,21 @@ class Window:
         )
 
 
+def bounds(points: Points) -> Area:
+    """Return the smallest upright rectangle around points.
+
+    Args:
+        points: Points (n, 2).
+    """
+    low, high = points.min(0), points.max(0)
+    return Area(float(low[0]), float(low[1]), float(high[0] - low[0]), float(high[1] - low[1]))
+
+
 def rows(box: Area, area: Area) -> tuple[Window, ...]:
     """Show a part of the world as large as it gets; one that is long and narrow is cut into rows, as text is.
 
     Args:
         box: Part of the world [m].
-        area: Part of the frame [px].
     """
     turned = box.height > 1.5 * box.width
     long, wide = (box.height, box.width) if turned else (box.width, box.height)
@@ -138,3 +148,66 @@ def rows(box: Area, area: Area) -> tuple[Window, ...]:
         dim = (shared if k else 0.0, shared if k < n - 1 else 0.0)
         windows.append(Window(Area(area.left, area.top + k * step, area.width, height), x, y, zoom(n), turned, dim))
     return tuple(windows)
+
+
+class FreeSpace:
+    """What is taken of a part of the frame.
+
+    Args:
+        frame: The part [px]; words never leave it.
+    """
+
+    def __init__(self, frame: Area) -> None:
+        self._frame = frame
+        self._taken: list[Area] = []
+
+    def take(self, area: Area) -> None:
+        """Let nothing be written here, if it can be helped."""
+        self._taken.append(area)
+
+    def find(self, options: Sequence[Area]) -> Area:
+        """Take the first place that covers nothing, or the one that covers least.
+
+        Args:
+            options: Places, the best first [px].
+        """
+        best, least = self._inside(options[0]), float("inf")
+        for option in options:
+            place = self._inside(option)
+            cost = sum(overlap(place, other) for other in self._taken)
+            if cost < least:
+                best, least = place, cost
+            if cost == 0:
+                break
+        self._taken.append(best)
+        return best
+
+    def _inside(self, area: Area) -> Area:
+        frame = self._frame
+        left = max(min(area.left, frame.left + frame.width - area.width - 2), frame.left + 2)
+        top = max(min(area.top, frame.top + frame.height - area.height - 2), frame.top + 2)
+        return Area(left, top, area.width, area.height)
+
+
+def overlap(a: Area, b: Area) -> float:
+    """Return how much two areas have in common [px²]."""
+    across = min(a.left + a.width, b.left + b.width) - max(a.left, b.left)
+    down = min(a.top + a.height, b.top + b.height) - max(a.top, b.top)
+    return max(across, 0.0) * max(down, 0.0)
+
+
+def beside(own: Area, width: float, height: float) -> list[Area]:
+    """Return the places around something, first those where people look first."""
+    (x, y), right, bottom = own.centre, own.left + own.width, own.top + own.height
+    over = [
+        Area(x - width / 2, own.top - height - 1, width, height),
+        Area(x - width / 2, bottom + 1, width, height),
+    ]
+    sides = [Area(right + 3, y - height / 2, width, height), Area(own.left - width - 3, y - height / 2, width, height)]
+    further = [
+        Area(left, top, width, height)
+        for top in (own.top - 2 * height - 1, bottom + height + 1)
+        for left in (x - width / 2, right + 3, own.left - width - 3)
+    ]
+    # What stands upright on the frame leaves its sides free.
+    return [*(sides + over if own.height > own.width else over + sides), *further]

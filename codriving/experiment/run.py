@@ -116,7 +116,7 @@ def drive_plan(plan: Plan, extend: Callable[[Driven], Further] | None = None) ->
         UserError: If the run folder cannot be used.
         Interrupted: If the user stops it; finished episodes are kept.
     """
-    preload = [*modules_to_preload(plan.configs.values()), *(["codriving.animation.screening"] if plan.render else [])]
+    preload = [*modules_to_preload(plan.configs.values()), *(["codriving.animation.film"] if plan.render else [])]
     further = extend or (lambda _: Further())
 
     def progress(units: Mapping[str, int], note: Callable[[], str] | None) -> AbstractContextManager[Progress]:

@@ -18,7 +18,7 @@ from codriving.runs.run_folder import EPISODES
 from codriving.runs.trajectory_file import TRAJECTORY, read_trajectory
 
 if TYPE_CHECKING:
-    from codriving.animation.screening import Screening
+    from codriving.animation.film import EpisodeFilm
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,17 +77,17 @@ def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode
     return StoredEpisode(entry, chosen, episodes / str(chosen))
 
 
-def screening(episode: StoredEpisode, scale: float = 1.0, config_dir: Path | None = None) -> "Screening":
+def screening(episode: StoredEpisode, scale: float = 1.0, config_dir: Path | None = None) -> "EpisodeFilm":
     """Read an episode for its pictures.
 
     Raises:
         RunFolderError: If there is nothing to show, or a file is damaged.
         ConfigError: If its scenario cannot be built any more.
     """
-    from codriving.animation.screening import Screening
+    from codriving.animation.film import EpisodeFilm
 
     record, trajectory = read_driven(episode.folder)
-    return Screening(road_of(episode.cell, config_dir), trajectory, read_decisions(episode.folder), record, scale)
+    return EpisodeFilm(road_of(episode.cell, config_dir), trajectory, read_decisions(episode.folder), record, scale)
 
 
 def read_driven(folder: Path) -> tuple[EpisodeRecord, Trajectory]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.animation.colours import rgba
+from codriving.animation.lettering import rgba
 from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.road import Block, Lane, Line, Road, Route, Straight, Turn
 from codriving.datatypes.trajectory import Track, Trajectory

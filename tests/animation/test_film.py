@@ -11,8 +11,7 @@ from crossing import Frame, crossing, episode, line, share
 from imageio_ffmpeg import count_frames_and_secs, get_ffmpeg_exe
 from PIL import Image
 
-from codriving.animation.film import Reel, write_film, write_png
-from codriving.animation.screening import Screening
+from codriving.animation.film import EpisodeFilm, Reel, write_film, write_png
 from codriving.animation.style import ASPHALT, BLUE, GREEN, GROUND, PAPER, VERMILION
 from codriving.datatypes.record import EpisodeRecord
 from codriving.errors import FilmError
@@ -21,9 +20,9 @@ TRAJECTORY, OUTCOME = episode()
 
 
 @pytest.fixture(scope="module")
-def shown() -> Screening:
+def shown() -> EpisodeFilm:
     record = EpisodeRecord("crossing", "codriving", "full", "rules", 7, OUTCOME, None, (), 2, {})
-    return Screening(crossing().road, TRAJECTORY, [line(0.0), line(1.0)], record, 0.5)
+    return EpisodeFilm(crossing().road, TRAJECTORY, [line(0.0), line(1.0)], record, 0.5)
 
 
 def decoded(path: Path, rows: int = 360, columns: int = 640) -> list[Frame]:
@@ -33,7 +32,7 @@ def decoded(path: Path, rows: int = 360, columns: int = 640) -> list[Frame]:
     return list(np.frombuffer(data, np.uint8).reshape(-1, rows, columns, 3))
 
 
-def test_an_mp4_has_every_frame_and_holds_the_last(shown: Screening, tmp_path: Path) -> None:
+def test_an_mp4_has_every_frame_and_holds_the_last(shown: EpisodeFilm, tmp_path: Path) -> None:
     path = tmp_path / "film"
     written = shown.write(path, "mp4", Fraction(10), 1.0)
     frames = decoded(path)
@@ -44,7 +43,7 @@ def test_an_mp4_has_every_frame_and_holds_the_last(shown: Screening, tmp_path: P
     assert np.abs(frames[0].astype(int) - frames[-1]).mean() > 1
 
 
-def test_colours_arrive_as_they_were_sent(shown: Screening, tmp_path: Path) -> None:
+def test_colours_arrive_as_they_were_sent(shown: EpisodeFilm, tmp_path: Path) -> None:
     path = tmp_path / "film"
     shown.write(path, "mp4", Fraction(5), 1.0)
     frame = decoded(path)[0]
@@ -53,13 +52,13 @@ def test_colours_arrive_as_they_were_sent(shown: Screening, tmp_path: Path) -> N
     assert share(frame, BLUE, 40) > 0.0005
 
 
-def test_twice_the_speed_takes_half_the_frames(shown: Screening) -> None:
+def test_twice_the_speed_takes_half_the_frames(shown: EpisodeFilm) -> None:
     rate = Fraction(25)
     assert [shown.frame_count(rate, speed) - 51 for speed in (0.5, 1.0, 2.0)] == [150, 75, 38]
     assert sum(1 for _ in shown.frames(Fraction(3), 2.0)) == shown.frame_count(Fraction(3), 2.0)
 
 
-def test_a_gif_repeats_and_keeps_its_colours(shown: Screening, tmp_path: Path) -> None:
+def test_a_gif_repeats_and_keeps_its_colours(shown: EpisodeFilm, tmp_path: Path) -> None:
     path = tmp_path / "film"
     shown.write(path, "gif", Fraction(5), 1.0)
     with Image.open(path) as gif:
@@ -105,7 +104,7 @@ def test_without_ffmpeg_there_is_a_clear_line(tmp_path: Path, monkeypatch: pytes
         write_film(tmp_path / "film", Reel("mp4", Fraction(5), 64, 64), iter(()))
 
 
-def test_a_png_always_has_the_same_bytes(shown: Screening, tmp_path: Path) -> None:
+def test_a_png_always_has_the_same_bytes(shown: EpisodeFilm, tmp_path: Path) -> None:
     for name in ("one.png", "other.png"):
         shown.frame(2.0)
         write_png(tmp_path / name, shown.frame(0.7))

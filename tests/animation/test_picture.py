@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from crossing import Frame, crossing, episode, line, share
 
-from codriving.animation.banner import sentence
 from codriving.animation.canvas import Canvas
-from codriving.animation.screening import Screening
-from codriving.animation.sizes import PANEL
-from codriving.animation.style import ASPHALT, BLUE, GREEN, GROUND, INK, ORANGE, PAPER, VERMILION
+from codriving.animation.film import EpisodeFilm
+from codriving.animation.picture import sentence
+from codriving.animation.style import ASPHALT, BLUE, GREEN, GROUND, INK, ORANGE, PANEL, PAPER, VERMILION
 from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.datatypes.record import EpisodeRecord
 
@@ -18,17 +17,17 @@ TRAJECTORY, OUTCOME = episode()
 ROAD = 1280 - round(PANEL)
 
 
-def screening(outcome: Outcome = OUTCOME, scale: float = 1.0) -> Screening:
+def screening(outcome: Outcome = OUTCOME, scale: float = 1.0) -> EpisodeFilm:
     record = EpisodeRecord("crossing", "codriving", "full", "rules", 7, outcome, None, (), 2, {})
-    return Screening(crossing().road, TRAJECTORY, [line(0.0), line(1.0)], record, scale)
+    return EpisodeFilm(crossing().road, TRAJECTORY, [line(0.0), line(1.0)], record, scale)
 
 
 @pytest.fixture(scope="module")
-def shown() -> Screening:
+def shown() -> EpisodeFilm:
     return screening()
 
 
-def test_a_frame_is_the_same_whatever_was_drawn_before(shown: Screening) -> None:
+def test_a_frame_is_the_same_whatever_was_drawn_before(shown: EpisodeFilm) -> None:
     first = {time: shown.frame(time).copy() for time in (0.0, 0.5, 1.7, 3.0)}
     fresh = screening()
     for time in (3.0, 0.5, 1.7, 0.0):
@@ -36,7 +35,7 @@ def test_a_frame_is_the_same_whatever_was_drawn_before(shown: Screening) -> None
     assert (screening().frame(1.7) == first[1.7]).all()
 
 
-def test_everything_is_on_it(shown: Screening) -> None:
+def test_everything_is_on_it(shown: EpisodeFilm) -> None:
     frame = shown.frame(0.2)
     road, panel = frame[:, :ROAD], frame[:, ROAD:]
     assert share(road, GROUND) > 0.3
@@ -48,25 +47,25 @@ def test_everything_is_on_it(shown: Screening) -> None:
     assert (frame[..., 3] == 255).all()
 
 
-def test_the_conflict_is_gone_once_one_of_the_two_has_left(shown: Screening) -> None:
+def test_the_conflict_is_gone_once_one_of_the_two_has_left(shown: EpisodeFilm) -> None:
     bands = [share(shown.frame(time)[:, :ROAD], "#7a1f5c") for time in (0.0, 3.0)]
     assert bands[0] > 0
     without = replace(TRAJECTORY, tracks=TRAJECTORY.tracks[:2])
     record = EpisodeRecord("crossing", "codriving", "full", "rules", 7, OUTCOME, None, (), 2, {})
-    alone = Screening(crossing().road, without, [line(0.0)], record)
+    alone = EpisodeFilm(crossing().road, without, [line(0.0)], record)
     assert share(alone.frame(0.0)[:, :ROAD], "#7a1f5c") == 0
 
 
-def test_the_panel_follows_the_decisions(shown: Screening) -> None:
+def test_the_panel_follows_the_decisions(shown: EpisodeFilm) -> None:
     record = EpisodeRecord("crossing", "codriving", "full", "rules", 7, OUTCOME, None, (), 2, {})
     other = line(0.0)
     other["cavs"][1]["action"] = "IDLE"
-    changed = Screening(crossing().road, TRAJECTORY, [other], record)
+    changed = EpisodeFilm(crossing().road, TRAJECTORY, [other], record)
     assert share(shown.frame(0.0)[:, ROAD:], VERMILION) > 0
     assert share(changed.frame(0.0)[:, ROAD:], VERMILION) == 0
 
 
-def test_the_end_has_a_banner(shown: Screening) -> None:
+def test_the_end_has_a_banner(shown: EpisodeFilm) -> None:
     before, after = (shown.frame(time)[:, :ROAD].copy() for time in (2.9, 3.0))
     foot = slice(640, 710)
     assert share(after[foot], GREEN) > share(before[foot], GREEN) + 0.003
@@ -93,7 +92,7 @@ def test_the_banner_says_how_it_ended(outcome: Outcome, words: str) -> None:
     assert sentence(outcome, 2) == words
 
 
-def test_at_twice_the_scale_it_is_the_same_picture_and_crisper(shown: Screening) -> None:
+def test_at_twice_the_scale_it_is_the_same_picture_and_crisper(shown: EpisodeFilm) -> None:
     once = shown.frame(0.2)[..., :3].astype(float)
     twice = screening(scale=2.0).frame(0.2)[..., :3].astype(float)
     assert twice.shape == (1440, 2560, 3)

@@ -1,4 +1,4 @@
-"""What is seen where: one view or rows, every place of the road in exactly one of them."""
+"""Windows onto the world, and room for words on them."""
 
 from itertools import pairwise
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.animation.window import LARGEST, Area, Window, rows
+from codriving.animation.window import LARGEST, Area, FreeSpace, Window, beside, overlap, rows
 
 FRAME = Area(0.0, 0.0, 896.0, 720.0)
 lengths = st.floats(20.0, 3000.0)
@@ -65,3 +65,35 @@ def test_a_line_right_across_is_seen_though_both_ends_are_outside() -> None:
     assert window.sees([(-200.0, 0.0), (200.0, 0.0)])
     assert not window.sees([(-200.0, 80.0), (200.0, 80.0)])
     assert window.sees([(-200.0, 80.0), (200.0, 80.0)], margin=40.0)
+
+
+SHEET = Area(0.0, 0.0, 400.0, 300.0)
+
+
+@given(st.lists(st.tuples(st.floats(0, 380), st.floats(0, 290)), max_size=12), st.floats(10, 90))
+def test_words_stay_in_the_frame(places: list[tuple[float, float]], width: float) -> None:
+    space = FreeSpace(SHEET)
+    for x, y in places:
+        own = Area(x, y, 20.0, 8.0)
+        space.take(own)
+        spot = space.find(beside(own, width, 15.0))
+        assert spot.left >= 0
+        assert spot.top >= 0
+        assert spot.left + spot.width <= 400
+        assert spot.top + spot.height <= 300
+
+
+def test_three_side_by_side_cover_nothing() -> None:
+    space = FreeSpace(SHEET)
+    things = [Area(180.0, 100.0 + 20 * k, 30.0, 12.0) for k in range(3)]
+    for thing in things:
+        space.take(thing)
+    spots = [space.find(beside(thing, 60.0, 15.0)) for thing in things]
+    everything = [*things, *spots]
+    assert all(overlap(a, b) == 0 for k, a in enumerate(everything) for b in everything[k + 1 :])
+
+
+def test_what_stands_upright_is_named_at_its_side() -> None:
+    own = Area(100.0, 100.0, 8.0, 20.0)
+    spot = FreeSpace(SHEET).find(beside(own, 60.0, 15.0))
+    assert spot.left >= own.left + own.width

@@ -12,7 +12,7 @@ from driven import drive
 from hidden import scrambled
 from worlds import Junction, car
 
-from codriving.animation.deliberated import deliberated
+from codriving.animation.content import deliberated
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.config.sweep import expand

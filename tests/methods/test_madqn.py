@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from worlds import Car, Junction, car
 
-from codriving.animation.deliberated import deliberated
+from codriving.animation.content import deliberated
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.config.sweep import expand

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Junction, car
 
-from codriving.animation.deliberated import deliberated
-from codriving.animation.screening import Screening
+from codriving.animation.content import deliberated
+from codriving.animation.film import EpisodeFilm
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.action import Action
@@ -252,7 +252,7 @@ def test_its_episodes_can_be_drawn(scenario: str, name: str, configured: Make) -
         assert {frozenset((m.one, m.other)) for m in shown.meetings} == met
     outcome = Outcome(Ending.TIMEOUT, DECISIONS * 0.5, {})
     record = EpisodeRecord(scenario, name, "full", "none", 10_007, outcome, None, (), DECISIONS, {})
-    shown_film = Screening(environment.scenario.road, episode.trajectory, lines, record)
+    shown_film = EpisodeFilm(environment.scenario.road, episode.trajectory, lines, record)
     frames = [frame.copy() for frame in shown_film.frames(Fraction(1), 1.0)]
     assert frames
     assert any((frame != frames[0]).any() for frame in frames[1:])

@@ -5,10 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from codriving.animation.canvas import Canvas
-from codriving.animation.moment import Body, Meeting
-from codriving.animation.space import Space, beside
+from codriving.animation.content import DrawnConflict, DrawnVehicle
 from codriving.animation.style import BAND, HALO, PAPER, SEVERITIES
-from codriving.animation.window import Area, Points, Window
+from codriving.animation.window import Area, FreeSpace, Points, Window, beside
 from codriving.datatypes.conflict import Severity
 from codriving.datatypes.vehicle import Kind
 from codriving.geometry.path import Path
@@ -17,13 +16,13 @@ from codriving.geometry.road_map import RoadMap
 _RANK = {severity: rank for rank, severity in enumerate(SEVERITIES)}
 
 
-def worst_first(meetings: Sequence[Meeting]) -> list[Meeting]:
+def worst_first(meetings: Sequence[DrawnConflict]) -> list[DrawnConflict]:
     """Return the conflicts that are drawn, the most severe first."""
     shown = [m for m in meetings if m.severity in _RANK]
     return sorted(shown, key=lambda m: (_RANK[m.severity], m.dttcp, m.one, m.other))
 
 
-def pressing(meetings: Sequence[Meeting], bodies: Mapping[str, Body]) -> list[Meeting]:
+def pressing(meetings: Sequence[DrawnConflict], bodies: Mapping[str, DrawnVehicle]) -> list[DrawnConflict]:
     """Return the conflicts that get lines and words: the most severe of each CAV."""
     done, chosen = set[str](), []
     for meeting in meetings:
@@ -34,14 +33,14 @@ def pressing(meetings: Sequence[Meeting], bodies: Mapping[str, Body]) -> list[Me
     return chosen
 
 
-class Meetings:
+class ConflictLayer:
     """The conflicts of a frame."""
 
-    def __init__(self, meetings: Sequence[Meeting], bodies: Sequence[Body], road_map: RoadMap) -> None:
+    def __init__(self, meetings: Sequence[DrawnConflict], bodies: Sequence[DrawnVehicle], road_map: RoadMap) -> None:
         self._bodies = {body.id: body for body in bodies}
         self._shown = worst_first([m for m in meetings if m.one in self._bodies and m.other in self._bodies])
         self._pressing = pressing(self._shown, self._bodies)
-        self._shapes = {id(m): meeting_lines(m, self._bodies, road_map) for m in self._shown}
+        self._shapes = {id(m): conflict_lines(m, self._bodies, road_map) for m in self._shown}
 
     def lines(self, canvas: Canvas, window: Window) -> None:
         """Draw the ways of the two to where they meet, for those conflicts that press, the most severe on top."""
@@ -59,17 +58,17 @@ class Meetings:
                 x, y = window.place(place)
                 mark(canvas, float(x), float(y), 1.0, meeting.severity, meeting.certain)
 
-    def claim(self, window: Window, space: Space) -> None:
+    def claim(self, window: Window, space: FreeSpace) -> None:
         """Keep words off the marks."""
         for meeting in self._shown:
             space.take(self._box(window, meeting))
 
-    def _box(self, window: Window, meeting: Meeting) -> Area:
+    def _box(self, window: Window, meeting: DrawnConflict) -> Area:
         x, y = (float(v) for v in window.place(self._shapes[id(meeting)][0]))
         half = SEVERITIES[meeting.severity].mark
         return Area(x - half, y - half, 2 * half, 2 * half)
 
-    def label(self, canvas: Canvas, window: Window, space: Space) -> None:
+    def label(self, canvas: Canvas, window: Window, space: FreeSpace) -> None:
         """Write at the marks of those that press how severe they are."""
         for meeting in self._pressing:
             place = self._shapes[id(meeting)][0]
@@ -81,7 +80,9 @@ class Meetings:
             canvas.text(spot.left + 2, spot.centre[1], words, 11, stroke.colour, bold=True, halo=HALO)
 
 
-def meeting_lines(meeting: Meeting, bodies: Mapping[str, Body], road_map: RoadMap) -> tuple[Points, list[Points]]:
+def conflict_lines(
+    meeting: DrawnConflict, bodies: Mapping[str, DrawnVehicle], road_map: RoadMap
+) -> tuple[Points, list[Points]]:
     """Return where two vehicles would meet, and the ways of the two until there.
 
     Returns:
@@ -113,12 +114,7 @@ def _stretch(path: Path, start: float, end: float) -> Points:
 
 
 def mark(canvas: Canvas, x: float, y: float, size: float, severity: Severity, certain: bool) -> None:
-    """Draw a mark.
-
-    Args:
-        x: Its middle [px].
-        y: Its middle [px].
-    """
+    """Draw a mark."""
     colour = SEVERITIES[severity].colour
     inside, rim = (colour, PAPER) if certain else (PAPER, colour)
     half = size * SEVERITIES[severity].mark

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from crossing import Frame, is_colour, share
 
-from codriving.animation.bodies import draw_bodies, draw_names
 from codriving.animation.canvas import Canvas
-from codriving.animation.moment import Body, Moment, Thought
-from codriving.animation.space import Space
+from codriving.animation.content import DrawnDecision, DrawnVehicle, FrameContent
 from codriving.animation.style import ACTIONS, BLUE, INK, ORANGE, PAPER
-from codriving.animation.window import Area, Window
+from codriving.animation.vehicles import draw_names, draw_vehicles
+from codriving.animation.window import Area, FreeSpace, Window
 from codriving.datatypes.action import Action
 from codriving.datatypes.vehicle import Kind
 
@@ -19,14 +18,14 @@ VIEW = Area(0.0, 0.0, 300.0, 300.0)
 WINDOW = Window(VIEW, 0.0, 0.0, 20.0)
 
 
-def body(kind: Kind, heading: float = 0.0, x: float = 0.0, name: str = "") -> Body:
-    return Body(name or f"{kind}1", kind, x, 0.0, heading, 7.5)
+def body(kind: Kind, heading: float = 0.0, x: float = 0.0, name: str = "") -> DrawnVehicle:
+    return DrawnVehicle(name or f"{kind}1", kind, x, 0.0, heading, 7.5)
 
 
-def bodies(*given: Body, window: Window = WINDOW) -> Frame:
+def bodies(*given: DrawnVehicle, window: Window = WINDOW) -> Frame:
     canvas = Canvas(300, 300)
     canvas.fill("#cfd3d9")
-    draw_bodies(canvas, window, given)
+    draw_vehicles(canvas, window, given)
     return canvas.pixels
 
 
@@ -66,10 +65,10 @@ def test_far_away_a_vehicle_is_still_a_symbol() -> None:
     assert share(frame, BLUE) * 300 * 300 > 25
 
 
-def named(window: Window, *given: Body) -> Frame:
+def named(window: Window, *given: DrawnVehicle) -> Frame:
     canvas = Canvas(300, 300)
     canvas.fill("#cfd3d9")
-    draw_names(canvas, window, Space(window.area), Moment(0.0, given, {"CAV1": Thought(Action.FASTER)}))
+    draw_names(canvas, window, FreeSpace(window.area), FrameContent(0.0, given, {"CAV1": DrawnDecision(Action.FASTER)}))
     return canvas.pixels
 
 

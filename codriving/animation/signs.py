@@ -23,13 +23,7 @@ SIGNS = {
 
 
 def action_glyph(canvas: Canvas, action: Action, x: float, y: float, size: float) -> None:
-    """Draw the sign of an action.
-
-    Args:
-        x: Its middle [px].
-        y: Its middle [px].
-        size: Its width [px].
-    """
+    """Draw the sign of an action."""
     width = max(size / 5, 1.5)
     for colour, extra in ((PAPER, 2.0), (ACTIONS[action], 0.0)):
         for line in SIGNS[action]:
@@ -37,25 +31,13 @@ def action_glyph(canvas: Canvas, action: Action, x: float, y: float, size: float
 
 
 def tick(canvas: Canvas, x: float, y: float, size: float, colour: str) -> None:
-    """Draw the sign of success.
-
-    Args:
-        x: Its middle [px].
-        y: Its middle [px].
-        size: Its width [px].
-    """
+    """Draw the sign of success."""
     points = np.array([(-0.45, 0.0), (-0.1, 0.35), (0.5, -0.4)])
     canvas.line(points * size + (x, y), colour, size / 5)
 
 
 def target(canvas: Canvas, x: float, y: float, radius: float) -> None:
-    """Draw a ring with four ticks around something, which stays in sight.
-
-    Args:
-        x: Its middle [px].
-        y: Its middle [px].
-        radius: Its radius [px].
-    """
+    """Draw a ring with four ticks around something, which stays in sight."""
     angles = np.linspace(0.0, 2 * np.pi, 49)
     ring = np.column_stack((np.cos(angles), np.sin(angles)))
     for colour, width in ((PAPER, 7.0), (VERMILION, 4.0)):
@@ -65,13 +47,7 @@ def target(canvas: Canvas, x: float, y: float, radius: float) -> None:
 
 
 def cross(canvas: Canvas, x: float, y: float, size: float, colour: str = VERMILION) -> None:
-    """Draw the sign of failure.
-
-    Args:
-        x: Its middle [px].
-        y: Its middle [px].
-        size: Its width [px].
-    """
+    """Draw the sign of failure."""
     arm = np.array([(-0.4, -0.4), (0.4, 0.4)])
     for line in (arm, arm * (1, -1)):
         canvas.line(line * size + (x, y), colour, size / 5)

@@ -1,4 +1,4 @@
-"""Vehicles: CAVs filled and pointed, human drivers hollow and square, each with its name."""
+"""Vehicles with their names, and the routes that CAVs plan."""
 
 import math
 from collections.abc import Sequence
@@ -6,12 +6,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from codriving.animation.canvas import Canvas
-from codriving.animation.glyphs import action_glyph
-from codriving.animation.moment import Body, Moment
-from codriving.animation.space import Space, beside
-from codriving.animation.style import HALO, INK, KINDS, PAPER
-from codriving.animation.window import Area, Points, Window
+from codriving.animation.content import DrawnVehicle, FrameContent
+from codriving.animation.signs import action_glyph
+from codriving.animation.style import BLUE, HALO, INK, KINDS, PAPER
+from codriving.animation.window import FreeSpace, Points, Window, beside, bounds
 from codriving.datatypes.vehicle import Kind
+from codriving.geometry.road_map import RoadMap
 
 _SMALLEST = 15.0
 """A vehicle is never drawn shorter [px]; far away it is a symbol."""
@@ -20,7 +20,7 @@ _LETTERS = 12.0
 """Size of a name [px]."""
 
 
-def draw_bodies(canvas: Canvas, window: Window, bodies: Sequence[Body]) -> None:
+def draw_vehicles(canvas: Canvas, window: Window, bodies: Sequence[DrawnVehicle]) -> None:
     """Draw vehicles."""
     for body in bodies:
         if not window.sees([(body.x, body.y)], 40.0):
@@ -42,17 +42,17 @@ _GLASS = np.array([(0.22, 0.30), (0.22, -0.30)])
 """Outlines in lengths and widths of the vehicle, its front to the right."""
 
 
-def _outline(window: Window, body: Body, shape: Points) -> Points:
+def _outline(window: Window, body: DrawnVehicle, shape: Points) -> Points:
     grow = max(_SMALLEST / (body.length * window.zoom), 1.0)
     along, across = (shape * (body.length, body.width) * grow).T
     cos, sin = math.cos(body.heading), math.sin(body.heading)
     return window.place(np.column_stack((body.x + along * cos - across * sin, body.y + along * sin + across * cos)))
 
 
-def draw_names(canvas: Canvas, window: Window, space: Space, moment: Moment) -> None:
+def draw_names(canvas: Canvas, window: Window, space: FreeSpace, moment: FrameContent) -> None:
     """Write at each vehicle who it is, what it does and how fast; on the side where there is room."""
     shown = [body for body in moment.bodies if window.owns((body.x, body.y))]
-    boxes = [_bounds(_outline(window, body, _CAV)) for body in shown]
+    boxes = [bounds(_outline(window, body, _CAV)) for body in shown]
     for box in boxes:
         space.take(box)
     for body, box in zip(shown, boxes, strict=True):
@@ -71,6 +71,47 @@ def draw_names(canvas: Canvas, window: Window, space: Space, moment: Moment) -> 
         canvas.text(x + name + sign, y, speed, _LETTERS - 1, INK, halo=HALO)
 
 
-def _bounds(placed: Points) -> Area:
-    low, high = placed.min(0), placed.max(0)
-    return Area(float(low[0]), float(low[1]), float(high[0] - low[0]), float(high[1] - low[1]))
+_AHEAD = 70.0
+"""How far a plan is shown [m]."""
+
+_STEP = 2.0
+"""Distance between two points of a plan [m]."""
+
+
+def way_ahead(road_map: RoadMap, body: DrawnVehicle) -> Points | None:
+    """Return the way that a vehicle plans to drive next.
+
+    Returns:
+        Points (n, 2) [m], or None if it is not known or has been driven.
+    """
+    path = road_map.paths.get(body.route or "")
+    if path is None or body.route is None:
+        return None
+    s, lateral = path.project(body.x, body.y)
+    end = min(road_map.routes[body.route].goal, s + _AHEAD)
+    start = s + body.length / 2
+    if end - start < _STEP:
+        return None
+    along = np.append(np.arange(start, end, _STEP), end)
+    x, y = path.position(along)
+    heading = path.heading(along)
+    # A vehicle beside its way, as in a lane change, comes back to it.
+    beside = lateral * np.clip(1 - (along - start) / 25.0, 0.0, 1.0)
+    return np.column_stack((x - beside * np.sin(heading), y + beside * np.cos(heading)))
+
+
+def draw_plan(canvas: Canvas, window: Window, way: Points) -> None:
+    """Draw a way with an arrow at its end.
+
+    Args:
+        way: Points (n, 2) [m].
+    """
+    if not window.sees(way, 10.0):
+        return
+    placed = window.place(way)
+    canvas.line(placed, BLUE, 1.6)
+    along = placed[-1] - placed[-2]
+    along = along / max(float(np.hypot(*along)), 1e-9)
+    across = np.array([-along[1], along[0]])
+    tip = placed[-1]
+    canvas.polygon([tip + 4 * along, tip - 6 * along + 4.5 * across, tip - 6 * along - 4.5 * across], BLUE)

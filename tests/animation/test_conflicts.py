@@ -7,11 +7,10 @@ import pytest
 from crossing import Frame, crossing, is_colour, share
 
 from codriving.animation.canvas import Canvas
-from codriving.animation.meetings import Meetings, meeting_lines, pressing, worst_first
-from codriving.animation.moment import Body, Meeting
-from codriving.animation.space import Space
+from codriving.animation.conflicts import ConflictLayer, conflict_lines, pressing, worst_first
+from codriving.animation.content import DrawnConflict, DrawnVehicle
 from codriving.animation.style import PAPER, SEVERITIES
-from codriving.animation.window import Area, Window
+from codriving.animation.window import Area, FreeSpace, Window
 from codriving.datatypes.conflict import Severity
 from codriving.datatypes.vehicle import Kind
 
@@ -19,27 +18,27 @@ WINDOW = Window(Area(0.0, 0.0, 400.0, 400.0), 0.0, 0.0, 10.0)
 WAYS = (("east", 30.0), ("south", 30.0))
 
 
-def meeting(one: str = "CAV1", other: str = "HDV1", dttcp: float = 1.0, **changes: Any) -> Meeting:
+def meeting(one: str = "CAV1", other: str = "HDV1", dttcp: float = 1.0, **changes: Any) -> DrawnConflict:
     values: dict[str, Any] = {"severity": Severity.SERIOUS, "certain": True, "ways": WAYS, **changes}
-    return Meeting(one, other, dttcp=dttcp, **values)
+    return DrawnConflict(one, other, dttcp=dttcp, **values)
 
 
-def cars(cav: float = -15.0, hdv: float = -15.0) -> list[Body]:
+def cars(cav: float = -15.0, hdv: float = -15.0) -> list[DrawnVehicle]:
     """CAV1 on the way east, HDV1 on the way south; places along them from the crossing [m]."""
     return [
-        Body("CAV1", Kind.CAV, cav, 0.0, 0.0, 5.0, "east"),
-        Body("HDV1", Kind.HDV, 0.0, hdv, np.pi / 2, 5.0),
+        DrawnVehicle("CAV1", Kind.CAV, cav, 0.0, 0.0, 5.0, "east"),
+        DrawnVehicle("HDV1", Kind.HDV, 0.0, hdv, np.pi / 2, 5.0),
     ]
 
 
-def drawn(*meetings: Meeting, bodies: list[Body] | None = None, words: bool = False) -> Frame:
+def drawn(*meetings: DrawnConflict, bodies: list[DrawnVehicle] | None = None, words: bool = False) -> Frame:
     canvas = Canvas(400, 400)
     canvas.fill("#cfd3d9")
-    shown = Meetings(meetings, bodies or cars(), crossing())
+    shown = ConflictLayer(meetings, bodies or cars(), crossing())
     shown.lines(canvas, WINDOW)
     shown.marks(canvas, WINDOW)
     if words:
-        shown.label(canvas, WINDOW, Space(WINDOW.area))
+        shown.label(canvas, WINDOW, FreeSpace(WINDOW.area))
     return canvas.pixels
 
 
@@ -81,10 +80,13 @@ def test_the_way_of_one_who_is_past_the_mark_is_not_drawn_any_more() -> None:
 
 
 def test_one_behind_the_other_meet_between_them() -> None:
-    behind = [Body("CAV1", Kind.CAV, -15.0, 0.0, 0.0, 5.0, "east"), Body("HDV1", Kind.HDV, -5.0, 0.0, 0.0, 5.0)]
+    behind = [
+        DrawnVehicle("CAV1", Kind.CAV, -15.0, 0.0, 0.0, 5.0, "east"),
+        DrawnVehicle("HDV1", Kind.HDV, -5.0, 0.0, 0.0, 5.0),
+    ]
     ways = (("east", 20.0), ("east", 20.0))
     for together in (meeting(ways=None), meeting(ways=ways)):
-        place, lines = meeting_lines(together, {body.id: body for body in behind}, crossing())
+        place, lines = conflict_lines(together, {body.id: body for body in behind}, crossing())
         assert place == pytest.approx((-10.0, 0.0))
         assert lines
 
@@ -94,7 +96,7 @@ def test_whoever_has_left_the_road_is_in_no_conflict() -> None:
 
 
 def test_each_cav_gets_one_that_presses_and_the_worst_comes_first() -> None:
-    names = {name: Body(name, Kind[name[:3]], 0, 0, 0, 0) for name in ("CAV1", "CAV2", "CAV3", "HDV1")}
+    names = {name: DrawnVehicle(name, Kind[name[:3]], 0, 0, 0, 0) for name in ("CAV1", "CAV2", "CAV3", "HDV1")}
     given = [
         meeting("CAV1", "HDV1", 4.0, severity=Severity.GENERAL),
         meeting("CAV1", "CAV2", 1.0),

@@ -1,0 +1,282 @@
+"""What a frame shows, as plain data, and how it is read from a stored episode at any time."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.conflict import Relation, Severity
+from codriving.datatypes.outcome import Outcome
+from codriving.datatypes.trajectory import Track, Trajectory
+from codriving.datatypes.vehicle import Kind
+from codriving.geometry.road_map import RoadMap
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnVehicle:
+    """A vehicle on the road.
+
+    Attributes:
+        x: Position [m].
+        y: Position [m].
+        heading: Heading [rad].
+        speed: Speed [m/s].
+        route: Id of the planned route; None for a human driver, whose mind nobody reads.
+        length: Length [m].
+        width: Width [m].
+    """
+
+    id: str
+    kind: Kind
+    x: float
+    y: float
+    heading: float
+    speed: float
+    route: str | None = None
+    length: float = 5.0
+    width: float = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnConflict:
+    """An open conflict between two vehicles.
+
+    Attributes:
+        dttcp: The time difference [s].
+        ways: Route of each, with the arc length at which it comes to where they would meet [m]; None if that is not
+            known.
+    """
+
+    one: str
+    other: str
+    severity: Severity
+    dttcp: float
+    certain: bool
+    ways: tuple[tuple[str, float], tuple[str, float]] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnDecision:
+    """What a CAV decided."""
+
+    action: Action | None
+    reason: str = ""
+    waits_for: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class FrameContent:
+    """One moment of an episode.
+
+    Attributes:
+        time: Simulated time [s].
+        order: The passing order, first to last; None if there is none that all share.
+        arrived: Arrival time of each CAV that has arrived [s], by id; None if it is not known when.
+    """
+
+    time: float
+    bodies: tuple[DrawnVehicle, ...]
+    thoughts: Mapping[str, DrawnDecision] = field(default_factory=dict)
+    meetings: tuple[DrawnConflict, ...] = ()
+    order: tuple[str, ...] | None = None
+    order_title: str = ""
+    arrived: Mapping[str, float | None] = field(default_factory=dict)
+    outcome: Outcome | None = None
+
+
+_ORDERS = {True: "Passing order, binding", False: "Passing order"}
+
+
+@dataclass(frozen=True, slots=True)
+class Deliberated:
+    """What was decided in one step.
+
+    Attributes:
+        time: When [s].
+        order: The passing order that all share, or None.
+    """
+
+    time: float
+    thoughts: Mapping[str, DrawnDecision] = field(default_factory=dict)
+    routes: Mapping[str, str] = field(default_factory=dict)
+    meetings: tuple[DrawnConflict, ...] = ()
+    order: tuple[str, ...] | None = None
+    order_title: str = ""
+
+
+def deliberated(line: Mapping[str, Any], road_map: RoadMap) -> Deliberated:
+    """Read a line."""
+    cavs = {name: entry for entry in _maps(line, "cavs") if (name := _text(entry, "id"))}
+    order, title = _order([_map(entry, "order") for entry in cavs.values()])
+    routes = {name: _text(_map(_map(entry, "scene"), "intent"), "route") for name, entry in cavs.items()}
+    return Deliberated(
+        time=_number(line, "time") or 0.0,
+        thoughts={name: _thought(name, entry) for name, entry in cavs.items()},
+        routes={name: route for name, route in routes.items() if route},
+        meetings=_meetings(cavs.values(), road_map),
+        order=order,
+        order_title=title,
+    )
+
+
+def action_named(name: str) -> Action | None:
+    """Return an action by its name, or None if it is not one."""
+    return Action(name) if name in {str(action) for action in Action} else None
+
+
+def _text(entry: Mapping[str, Any], key: str) -> str:
+    value = entry.get(key)
+    return value if isinstance(value, str) else ""
+
+
+def _number(entry: Mapping[str, Any], key: str) -> float | None:
+    value = entry.get(key)
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
+
+
+def _map(entry: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    value = entry.get(key)
+    return value if isinstance(value, Mapping) else {}
+
+
+def _maps(entry: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
+    return [value for value in _list(entry, key) if isinstance(value, Mapping)]
+
+
+def _texts(entry: Mapping[str, Any], key: str) -> tuple[str, ...]:
+    return tuple(value for value in _list(entry, key) if isinstance(value, str))
+
+
+def _list(entry: Mapping[str, Any], key: str) -> Sequence[Any]:
+    value = entry.get(key)
+    return value if isinstance(value, list | tuple) else ()
+
+
+def _thought(name: str, entry: Mapping[str, Any]) -> DrawnDecision:
+    pairs = _maps(_map(entry, "order"), "precedences")
+    firsts = dict.fromkeys(_text(pair, "first") for pair in pairs if _text(pair, "second") == name)
+    return DrawnDecision(action_named(_text(entry, "action")), _text(entry, "reason"), tuple(filter(None, firsts)))
+
+
+def _order(orders: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, ...] | None, str]:
+    sequences = [_texts(order, "sequence") for order in orders]
+    if not any(sequences):
+        return None, ""
+    if len(set(sequences)) > 1:
+        return None, "No common order: every CAV makes up its own"
+    return sequences[0], "Passing order, binding" if orders[0].get("binding") is True else "Passing order"
+
+
+def _meetings(entries: Iterable[Mapping[str, Any]], road_map: RoadMap) -> tuple[DrawnConflict, ...]:
+    worst: dict[frozenset[str], DrawnConflict] = {}
+    for conflict in (c for entry in entries for c in _maps(entry, "conflicts")):
+        meeting = _meeting(conflict, road_map)
+        if meeting is None:
+            continue
+        pair = frozenset((meeting.one, meeting.other))
+        if pair not in worst or meeting.dttcp < worst[pair].dttcp:
+            worst[pair] = meeting
+    return tuple(worst.values())
+
+
+def _meeting(conflict: Mapping[str, Any], road_map: RoadMap) -> DrawnConflict | None:
+    one, other, dttcp = _text(conflict, "ego"), _text(conflict, "other"), _number(conflict, "dttcp")
+    severity = _text(conflict, "severity")
+    if not one or not other or dttcp is None or severity not in {str(band) for band in Severity}:
+        return None
+    certain = conflict.get("certain") is not False
+    return DrawnConflict(one, other, Severity(severity), dttcp, certain, _ways(conflict, road_map))
+
+
+def _ways(conflict: Mapping[str, Any], road_map: RoadMap) -> tuple[tuple[str, float], tuple[str, float]] | None:
+    """Where the centre lines cross or come together; one behind the other meet nowhere on the map."""
+    routes, index = _texts(conflict, "routes"), conflict.get("zone")
+    if conflict.get("relation") == Relation.FOLLOWING or len(routes) != 2 or not isinstance(index, int):
+        return None
+    one, other = routes
+    if not {one, other} <= set(road_map.routes):
+        return None
+    zones = road_map.zones(one, other)
+    if not 0 <= index < len(zones):
+        return None
+    zone = zones[index]
+    at_one = zone.point_i if zone.merge_i is None else zone.merge_i
+    at_other = zone.point_j if zone.merge_j is None else zone.merge_j
+    return (one, at_one), (other, at_other)
+
+
+class StoredFrames:
+    """The moments of one episode.
+
+    Args:
+        decisions: Lines of ``decisions.jsonl``, by time; what another method wrote differently is not shown.
+
+    Attributes:
+        duration: Time from the first row to the last [s].
+    """
+
+    def __init__(
+        self, road_map: RoadMap, trajectory: Trajectory, decisions: Sequence[Mapping[str, Any]], outcome: Outcome
+    ) -> None:
+        self._trajectory, self._outcome = trajectory, outcome
+        self._headings = {track.id: np.unwrap(track.heading) for track in trajectory.tracks}
+        self._decided = [deliberated(line, road_map) for line in decisions]
+        self._times = np.array([d.time for d in self._decided])
+        self.duration = max((t.first_step + len(t.x) - 1) * trajectory.step for t in trajectory.tracks)
+
+    def at(self, time: float) -> FrameContent:
+        """Return what there was at a moment.
+
+        Args:
+            time: Simulated time [s]; after the end it is as at the end.
+        """
+        time = min(max(time, 0.0), self.duration)
+        decided = self._decision(time)
+        routes = decided.routes
+        bodies = []
+        thoughts = dict(decided.thoughts)
+        for track in self._trajectory.tracks:
+            row = time / self._trajectory.step - track.first_step
+            if not -1e-6 <= row <= len(track.x) - 1 + 1e-6:
+                continue
+            bodies.append(self._body(track, row, routes))
+            if track.kind is Kind.CAV and track.id not in thoughts:
+                action = action_named(track.action[min(int(row + 1), len(track.x) - 1)])
+                thoughts[track.id] = DrawnDecision(action)
+        over = time >= self.duration - 1e-6
+        return FrameContent(
+            time=time,
+            bodies=tuple(bodies),
+            thoughts=thoughts,
+            meetings=decided.meetings,
+            order=decided.order,
+            order_title=decided.order_title,
+            arrived={name: at for name, at in self._outcome.arrivals.items() if at <= time + 1e-6},
+            outcome=self._outcome if over else None,
+        )
+
+    def _decision(self, time: float) -> Deliberated:
+        k = int(np.searchsorted(self._times, time + 1e-6, side="right")) - 1
+        return self._decided[k] if k >= 0 else Deliberated(time)
+
+    def _body(self, track: Track, row: float, routes: Mapping[str, str]) -> DrawnVehicle:
+        k = min(max(int(row), 0), max(len(track.x) - 2, 0))
+        share, after = min(max(row - k, 0.0), 1.0), min(k + 1, len(track.x) - 1)
+
+        def between(values: np.ndarray) -> float:
+            return float(values[k] + share * (values[after] - values[k]))
+
+        route = routes.get(track.id, track.route) if track.kind is Kind.CAV else None
+        return DrawnVehicle(
+            track.id,
+            track.kind,
+            between(track.x),
+            between(track.y),
+            between(self._headings[track.id]),
+            between(track.speed),
+            route,
+            track.length,
+            track.width,
+        )
