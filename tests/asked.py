@@ -7,6 +7,7 @@ from typing import Any
 
 from worlds import FULL, Junction
 
+from codriving.datatypes.parts import Model
 from codriving.llm.language_model import Offline
 from codriving.llm.ledger import Ledger
 from codriving.llm.question import Question
@@ -18,10 +19,13 @@ from codriving.reasoning.sharing.cda import CdaLevel
 
 
 @dataclass
-class Model:
+class Scripted(Model):
     """A reasoner with a script behind it."""
 
     scripted: ScriptedChat
+    max_concurrency: int = 1
+    failures_in_a_row: int = 1
+    cache: str = "off"
     prompts: str | None = None
     ask_plain: bool = False
     name: str = "scripted"
@@ -47,7 +51,7 @@ class Reasoned:
 
 def reasoned(world: Junction, script: Script, **change: Any) -> Reasoned:
     """The method with a model behind its ports, ready for an episode; toggles that differ from full are named."""
-    model = Model(ScriptedChat(script), ask_plain=change.pop("ask_plain", False))
+    model = Scripted(ScriptedChat(script), ask_plain=change.pop("ask_plain", False))
     level = CdaLevel(**{**FULL, **change})
     method = CoDriving(level, Offline(), None, 1.5)
     method.reset(world.road_map, world.model, 0)

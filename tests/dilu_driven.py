@@ -4,17 +4,17 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from asked import Model
+from asked import Scripted
 from worlds import Junction
 
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.experience import Experience, Interaction, Memory
+from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.situation import Situation
 from codriving.llm.language_model import Offline
 from codriving.llm.question import Question
 from codriving.llm.scripted import Script, ScriptedChat
-from codriving.memory.protocol import CaseMemory
 from codriving.methods.dilu.dilu import DiLu
 from codriving.methods.single_vehicle.demonstrated import Demonstrated
 
@@ -22,7 +22,7 @@ NEVER_HELD = 0.1
 """A time for which nothing is held: every step is decided."""
 
 
-class Notebook:
+class Notebook(CaseMemory):
     """A memory that recalls what it is given and notes what it is to learn."""
 
     label, reflections = "notebook", 0
@@ -66,7 +66,7 @@ def modelled(
 ) -> tuple[DiLu, ScriptedChat]:
     """The method with a model, ready for an episode, and the model."""
     chat = ScriptedChat(script)
-    made = DiLu(Model(chat), memory, hold, 3, rule())
+    made = DiLu(Scripted(chat), memory, hold, 3, rule())
     made.reset(world.road_map, world.model, 0)
     return made, chat
 

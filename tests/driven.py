@@ -10,15 +10,15 @@ from worlds import Car, Junction, Thoughts
 
 from codriving.config.locate import conf_dir
 from codriving.datatypes.action import Action
+from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.outcome import Outcome
+from codriving.datatypes.parts import Method
 from codriving.datatypes.trajectory import Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
-from codriving.methods.deliberation import Deliberation
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.ordered import Ordered
-from codriving.methods.protocol import Method
 from codriving.reasoning.execution.executor import Executor
 from codriving.reasoning.execution.layered import Layered
 from codriving.reasoning.execution.planned import Planned
@@ -65,7 +65,7 @@ class Episode:
     """What was seen, decided and driven."""
 
     worlds: tuple[WorldState, ...]
-    steps: tuple[Deliberation, ...]
+    steps: tuple[ReasonedDeliberation, ...]
     trajectory: Trajectory
     outcome: Outcome | None
 
@@ -80,7 +80,7 @@ def drive(environment: Environment, method: Method, seed: int, decisions: int = 
     world = environment.reset(seed)
     method.reset(environment.road_map, environment.driving_model, seed)
     worlds = [world]
-    steps: list[Deliberation] = []
+    steps: list[ReasonedDeliberation] = []
     while environment.outcome is None and len(steps) < decisions:
         steps.append(method.act(world))
         world = environment.step(steps[-1].actions)
@@ -107,7 +107,7 @@ class Show:
     """How puppets moved: the arc length of everybody at every simulation step, by id; who has left counts as inf."""
 
     places: dict[str, np.ndarray]
-    steps: tuple[Deliberation, ...]
+    steps: tuple[ReasonedDeliberation, ...]
 
     def arrived(self, name: str) -> bool:
         """Whether a vehicle has reached its goal."""
@@ -119,7 +119,7 @@ def puppets(junction: Junction, method: Method, cars: Sequence[Car], seconds: fl
     model = junction.model
     now = {car.id: car for car in cars}
     places: dict[str, list[float]] = {car.id: [car.place] for car in cars}
-    steps: list[Deliberation] = []
+    steps: list[ReasonedDeliberation] = []
     for k in range(round(seconds / model.decision_interval)):
         world = junction.world(*now.values(), time=k * model.decision_interval, step=k)
         steps.append(method.act(world))

@@ -16,14 +16,21 @@ PACKAGE = "toy_methods"
 SOURCE = '''"""Methods for tests."""
 from dataclasses import dataclass, field
 from codriving.datatypes.action import Action
+from codriving.datatypes.deliberation import Deliberation
+from codriving.datatypes.parts import Method
 
 
 @dataclass
-class Said:
+class Said(Deliberation):
     """Nothing but actions."""
 
-    actions: dict
+    chosen: dict
     counts: dict = field(default_factory=dict)
+
+    @property
+    def actions(self):
+        """What was chosen."""
+        return self.chosen
 
     def as_dict(self):
         """One line."""
@@ -31,7 +38,7 @@ class Said:
 
 
 @dataclass
-class Steady:
+class Steady(Method):
     """Every CAV does the same."""
 
     action: str

@@ -7,8 +7,8 @@ import pytest
 from codriving.config.build import build
 from codriving.config.choices import choices
 from codriving.config.compose import compose
+from codriving.datatypes.parts import Method
 from codriving.environment.environment import Environment
-from codriving.methods.protocol import Method
 
 DECISIONS = 6
 SEED = 11

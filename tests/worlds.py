@@ -8,7 +8,8 @@ from typing import Any
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.order import PassingOrder, Precedence
-from codriving.datatypes.road import LaneId, beside
+from codriving.datatypes.parts import Scenario
+from codriving.datatypes.road import LaneId, Road, beside
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.scene_description import SceneDescription
 from codriving.datatypes.vehicle import Intent, Kind, VehicleState
@@ -79,7 +80,7 @@ def order_of(*pairs: str, binding: bool = False) -> PassingOrder:
 
 
 @dataclass
-class ByHand:
+class ByHand(Scenario):
     """A scenario with given starts on the road of another one."""
 
     environment: Environment
@@ -87,7 +88,12 @@ class ByHand:
     name: str = "by hand"
 
     def __post_init__(self) -> None:
-        self.road, self.pace = self.environment.scenario.road, self.environment.scenario.pace
+        self.pace = self.environment.scenario.pace
+
+    @property
+    def road(self) -> Road:
+        """The road of the other one."""
+        return self.environment.scenario.road
 
     def scene(self, seed: int) -> Scene:
         """The starts, whatever the seed."""

@@ -7,6 +7,7 @@ import numpy as np
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.outcome import Outcome
+from codriving.datatypes.parts import Scenario, Simulator
 from codriving.datatypes.trajectory import Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.datatypes.world import WorldState
@@ -16,7 +17,6 @@ from codriving.environment.corrections import Corrections
 from codriving.environment.judge import Judge
 from codriving.environment.network import build_network
 from codriving.environment.recorder import Recorder
-from codriving.environment.scenarios.protocol import Scenario
 from codriving.environment.snapshot import snapshot
 from codriving.environment.spawn import spawn
 from codriving.environment.traffic.driver_profile import DriverProfile
@@ -26,7 +26,7 @@ from codriving.errors import EpisodeError
 from codriving.geometry.road_map import road_map
 
 
-class Environment:
+class Environment(Simulator):
     """Several CAVs and human drivers on one road, on highway-env's physics.
 
     Raises:

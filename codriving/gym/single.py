@@ -9,12 +9,11 @@ import numpy as np
 from gymnasium.spaces import Box, Discrete
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Road
 from codriving.datatypes.scene import Scene
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
-from codriving.environment.scenarios.pace import Pace
-from codriving.environment.scenarios.protocol import Scenario
 from codriving.gym.actions import ACTIONS, check_seed, draw_seed
 from codriving.gym.configured import configured
 from codriving.gym.episode import AgentEpisode
@@ -25,22 +24,17 @@ DRAW = 2
 """Key of the random numbers that choose the CAV, apart from those of the scene and of the drivers."""
 
 
-class OneCav:
+class OneCav(Scenario):
     """Another scenario with a single CAV among human drivers."""
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario = scenario
-        self.name = scenario.name
+        self.name, self.pace = scenario.name, scenario.pace
 
     @property
     def road(self) -> Road:
         """The road."""
         return self.scenario.road
-
-    @property
-    def pace(self) -> Pace:
-        """Frequencies, target speeds, time limit and perception."""
-        return self.scenario.pace
 
     def scene(self, seed: int) -> Scene:
         """Draw the scene, and which of the CAVs is the one that is left; it is called ``CAV1`` always.

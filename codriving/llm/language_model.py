@@ -6,6 +6,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
+from codriving.datatypes.parts import Model, RuleModel
 from codriving.llm.settings import ModelSettings
 
 if TYPE_CHECKING:
@@ -14,24 +15,18 @@ if TYPE_CHECKING:
 _NOT_THE_CLIENTS = ("failures_in_a_row", "ask_plain", "prompts")
 
 
-class Offline:
+class Offline(RuleModel):
     """``llm=offline``: the built-in rules reason; no network, no key, deterministic, and every table says so."""
 
-    name = "rules"
-    max_concurrency = 1
 
-    def chat(self) -> None:
-        """Return nothing: there is no model to ask."""
-
-
-class LanguageModel(ModelSettings):
+class LanguageModel(ModelSettings, Model):
     """A model through LiteLLM."""
 
     _shared: ClassVar["dict[tuple[object, ...], ModelChat]"] = {}
     _lock: ClassVar[threading.Lock] = threading.Lock()
 
     @property
-    def name(self) -> str:
+    def name(self) -> str:  # type: ignore[override]
         """Name for tables."""
         return self.model
 

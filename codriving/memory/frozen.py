@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
-from codriving.datatypes.experience import Experience, Interaction, Memory
+from codriving.datatypes.experience import Memory
+from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.situation import Situation
 from codriving.errors import ConfigError, MemoryFileError
 from codriving.memory.embedders import EmbeddingServer, make_embedder
@@ -15,7 +16,7 @@ AUTO = "auto"
 """The word for the snapshot as it is when a run begins."""
 
 
-class FrozenMemory:
+class FrozenMemory(CaseMemory):
     """A snapshot, as ``codriving memory build`` leaves it.
 
     Args:
@@ -31,9 +32,6 @@ class FrozenMemory:
         ConfigError: If a setting breaks its rule.
         MemoryFileError: If the file is missing, damaged, of another embedder or version, or not the snapshot.
     """
-
-    learns = False
-    reflections = 0
 
     def __init__(
         self,
@@ -64,9 +62,6 @@ class FrozenMemory:
             )
         self.label = f"frozen {self.digest[:8]}, {self._recollection.interactions} interactions"
 
-    def begin(self, seed: int) -> None:
-        """Begin an episode; nothing depends on which."""
-
     def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
         """Find what is like each situation.
 
@@ -74,14 +69,6 @@ class FrozenMemory:
             The memories of each, most similar first.
         """
         return self._recall.find(self._recollection, self._embedder, situations)
-
-    def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
-        """Learn nothing.
-
-        Returns:
-            0.
-        """
-        return 0
 
 
 def _stamp(path: Path) -> tuple[int, int]:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from codriving.datatypes.experience import Experience, Interaction, Memory
+from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.situation import Situation
 from codriving.errors import ConfigError
 from codriving.memory.embedders import EmbeddingServer, make_embedder
@@ -14,7 +15,7 @@ from codriving.memory.store import MemoryStore
 REFLECTIONS = ("rules", "llm")
 
 
-class OnlineMemory:
+class OnlineMemory(CaseMemory):
     """A memory that grows by one episode after another.
 
     What an episode recalls is what episodes with smaller seeds have left; so a batch that was interrupted goes on as if

@@ -1,17 +1,15 @@
 """CoDrivingLLM: the paper's method, with its CDA level, its reasoner and its memory put into the slots."""
 
-from typing import Any
-
+from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.experience import Experience, Interaction
 from codriving.datatypes.outcome import Outcome
+from codriving.datatypes.parts import Account, CaseMemory, Method, Model
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
-from codriving.memory.protocol import CaseMemory
-from codriving.methods.deliberation import Deliberation
 from codriving.methods.experience_log import ExperienceLog
-from codriving.methods.language_model.ports import Reasoner, check_prompts, ports
+from codriving.methods.language_model.ports import check_prompts, ports
 from codriving.methods.pipeline import Pipeline
 from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
 from codriving.reasoning.perception import Perception
@@ -25,7 +23,7 @@ from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates
 from codriving.reasoning.sharing.tracking import Tracking
 
 
-class CoDriving:
+class CoDriving(Method):
     """The framework of the paper.
 
     Args:
@@ -38,7 +36,7 @@ class CoDriving:
 
     name = "codriving"
 
-    def __init__(self, cda: CdaLevel, llm: Reasoner, memory: CaseMemory | None, margin: float) -> None:
+    def __init__(self, cda: CdaLevel, llm: Model, memory: CaseMemory | None, margin: float) -> None:
         if not 0 <= margin <= 5:
             raise ConfigError(f"margin must be 0 to 5 s, got {margin:g}")
         check_prompts(llm)
@@ -79,19 +77,13 @@ class CoDriving:
         if self.memory is not None:
             self.memory.begin(seed)
 
-    def act(self, world: WorldState) -> Deliberation:
-        """Decide for every CAV on the road."""
+    def act(self, world: WorldState) -> ReasonedDeliberation:
         deliberation = self._pipeline.act(world)
         if self._log is not None:
             self._log.note(world, deliberation.situations, deliberation.decisions)
         return deliberation
 
-    def conclude(self, world: WorldState, outcome: Outcome) -> tuple[dict[str, float], list[dict[str, Any]]]:
-        """Learn from an episode that has come to its end, if there is a memory that learns.
-
-        Returns:
-            Counters by column, and lines of the transcript.
-        """
+    def conclude(self, world: WorldState, outcome: Outcome) -> Account:
         if self._log is None or self.memory is None:
             return {}, []
         experiences = self._log.conclude(world, outcome.collision)
@@ -100,7 +92,7 @@ class CoDriving:
         new = self.memory.learn(interaction, experiences)
         return {**counts, "experiences": len(experiences), "experiences_new": new}, lines
 
-    def _reflect(self, experiences: list[Experience], time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:
+    def _reflect(self, experiences: list[Experience], time: float) -> Account:
         """Let a language model write the lessons of mistakes, in place, if the memory wants that."""
         chat = self.llm.chat()
         if self.memory is None or not self.memory.reflections or chat is None or self._ledger is None:
@@ -108,17 +100,9 @@ class CoDriving:
         from codriving.llm.prompts.render import load_prompts
         from codriving.methods.language_model.reflection import Reflection
 
-        prompts = load_prompts(getattr(self.llm, "prompts", None))
+        prompts = load_prompts(self.llm.prompts)
         experiences[:] = Reflection(chat, prompts, self._ledger, self.memory.reflections).reflect(experiences)
         return self._ledger.close_step(time)
 
-    def unfinished_step(self, time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:
-        """Return what was asked in a step that broke off, so that its cost is not lost.
-
-        Args:
-            time: Simulated time of the step [s].
-
-        Returns:
-            Counters by column, and the lines of the transcript.
-        """
+    def unfinished_step(self, time: float) -> Account:
         return self._ledger.close_step(time) if self._ledger is not None else ({}, [])

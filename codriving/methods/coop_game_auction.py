@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from codriving.datatypes.ordering_problem import Entrant, Instance
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
 from codriving.reasoning.ordering.request import Request, best_subset
 from codriving.reasoning.ordering.schedule import repaired, timed
 from codriving.reasoning.ordering.tickets import reasons
@@ -29,7 +29,7 @@ def bid(entrant: Entrant, waited: float) -> float:
     return WAITED * waited + NEAR / (entrant.distance + NEAR_OFFSET) + SOON / (soon + SOON_OFFSET)
 
 
-class Auction:
+class Auction(OrderRule):
     """Vehicles go by decreasing bid.
 
     Raises:

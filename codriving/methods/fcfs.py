@@ -5,7 +5,7 @@ from typing import Literal, get_args
 
 from codriving.datatypes.ordering_problem import Instance
 from codriving.errors import require
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
 from codriving.reasoning.ordering.request import Request, in_order
 from codriving.reasoning.ordering.schedule import after_windows, timed
 from codriving.reasoning.ordering.slots import inserted, sequence
@@ -14,7 +14,7 @@ from codriving.reasoning.ordering.tickets import CONTROL_RADIUS, TicketBook, by_
 Mode = Literal["conflict", "global", "reservation"]
 
 
-class FirstComeFirstServed:
+class FirstComeFirstServed(OrderRule):
     """Right of way in the order of tickets.
 
     Args:

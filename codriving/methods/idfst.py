@@ -6,7 +6,7 @@ from math import inf
 
 from codriving.datatypes.ordering_problem import Instance, Pair
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
 from codriving.reasoning.ordering.request import Request
 from codriving.reasoning.ordering.schedule import LONGEST_WAIT, Objective, timed
 from codriving.reasoning.ordering.slots import carried_over, inserted, sequence
@@ -16,7 +16,7 @@ Windows = Sequence[tuple[float, float]]
 """When human drivers block the reference point, (begin, end) [s]."""
 
 
-class SpanningTree:
+class SpanningTree(OrderRule):
     """Improved depth-first spanning tree, with times in place of layers.
 
     A vehicle that is scheduled keeps its rank, a new one is inserted. All are scheduled anew if an earliest arrival

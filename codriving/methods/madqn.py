@@ -6,4 +6,5 @@ from codriving.methods.learned.learned import VALUES, Learned
 class Madqn(Learned):
     """Parameter-shared Double DQN: CAVs tell one another where they are and what they mean to do."""
 
-    name, shared, meaning = "madqn", True, VALUES
+    name = "madqn"
+    shared, meaning = True, VALUES

@@ -1,13 +1,13 @@
 """What rules that search for the best order share: the instance in numbers, and when the last order is kept."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 
 from codriving.datatypes.ordering_problem import Instance
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
 from codriving.reasoning.ordering.request import Request, best_subset
 from codriving.reasoning.ordering.schedule import LONGEST_WAIT, Objective, after_windows, left, repaired, timed
 from codriving.reasoning.ordering.slots import carried_over, inserted, sequence
@@ -29,7 +29,7 @@ class Found:
     complete: bool
 
 
-class SearchedOrder(ABC):
+class SearchedOrder(OrderRule):
     """An order rule that searches at each step.
 
     The seeds are the order of tickets, that of the earliest free slots, and that of the last step, which stays unless

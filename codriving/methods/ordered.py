@@ -1,12 +1,13 @@
 """Methods that order: a rule says who passes first, an executor drives; everything else is shared by all of them."""
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.parts import Method
 from codriving.datatypes.situation import ActionAssessment, Decision, Situation
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
-from codriving.methods.deliberation import Deliberation
 from codriving.reasoning.execution.executor import Drive, Executor
 from codriving.reasoning.execution.lane_requests import LaneRequests
 from codriving.reasoning.moment import Moment
@@ -22,13 +23,11 @@ from codriving.reasoning.sharing.state_sharing import SharedStates
 from codriving.reasoning.sharing.tracking import Tracking
 
 
-class Ordered:
+class Ordered(Method):
     """A method that orders all CAVs jointly.
 
     States and intents are shared as in the full framework. Only the choice of the order differs between such methods.
     """
-
-    reasoner = "none"
 
     def __init__(self, rule: OrderRule, executor: Executor) -> None:
         self.rule, self.executor = rule, executor
@@ -45,7 +44,7 @@ class Ordered:
         self.rule.reset(seed)
         self.executor.reset()
 
-    def act(self, world: WorldState) -> Deliberation:
+    def act(self, world: WorldState) -> ReasonedDeliberation:
         """Order everybody, and decide for every CAV on the road."""
         moment = self._perception.perceive(world)
         problem = pose(moment, self.executor.gap)
@@ -61,7 +60,7 @@ class Ordered:
         decisions = tuple(
             changes.get(name) or Decision(name, drive.actions[name], drive.reasons[name]) for name in moment.scenes
         )
-        return Deliberation(world.time, world.step, situations, decisions, {**ordering.counts, **drive.counts})
+        return ReasonedDeliberation(world.time, world.step, situations, decisions, {**ordering.counts, **drive.counts})
 
     def _lane_changes(
         self, moment: Moment, ordering: Ordering, agreed: PassingOrder, drive: Drive

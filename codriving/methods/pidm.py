@@ -10,7 +10,7 @@ from codriving.methods.single_vehicle.expected_first import goes_first
 from codriving.methods.single_vehicle.lane_choice import LaneChoice
 from codriving.methods.single_vehicle.leaders import leaders
 from codriving.methods.single_vehicle.patience import Patience
-from codriving.methods.single_vehicle.protocol import Choice, View
+from codriving.methods.single_vehicle.protocol import Choice, Driver, View
 from codriving.methods.single_vehicle.starting import may_start
 from codriving.reasoning.prediction.idm import IntelligentDriver
 
@@ -32,7 +32,7 @@ LIMITS = {
 """Least and largest value of each setting."""
 
 
-class ProjectedIdm:
+class ProjectedIdm(Driver):
     """A driver who follows real leaders, and those whom it projects onto its lane (after Kreutz and Eggert, 2021).
 
     Args:

@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.llm.ledger import Ledger
-from codriving.memory.protocol import CaseMemory
-from codriving.methods.deliberation import Deliberation
 from codriving.reasoning.decision.clear_times import clear_time
 from codriving.reasoning.decision.decider import Decider
 from codriving.reasoning.ordering.negotiation import Negotiation
@@ -41,7 +41,7 @@ class Pipeline:
     memory: CaseMemory | None = None
     ledger: Ledger | None = None
 
-    def act(self, world: WorldState) -> Deliberation:
+    def act(self, world: WorldState) -> ReasonedDeliberation:
         """Decide for every CAV on the road."""
         moment = self.perception.perceive(world)
         scenes, conflicts, known = moment.scenes, moment.conflicts, moment.vehicles
@@ -62,7 +62,7 @@ class Pipeline:
                 "recalled": sum(len(s.memories) for s in situations),
                 "reconsidered": sum(bool(d.recalled) for d in decisions),
             }
-        return Deliberation(world.time, world.step, situations, decisions, counts, tuple(lines))
+        return ReasonedDeliberation(world.time, world.step, situations, decisions, counts, tuple(lines))
 
     def _remembering(self, situations: Sequence[Situation]) -> tuple[Situation, ...]:
         """Put what is remembered of like situations beside each (paper Algorithm 1)."""

@@ -6,4 +6,5 @@ from codriving.methods.learned.learned import PROBABILITIES, Learned
 class Ppo(Learned):
     """A policy of a single vehicle, on every CAV; others are strangers to it, as they were when it learned."""
 
-    name, shared, meaning = "ppo", False, PROBABILITIES
+    name = "ppo"
+    shared, meaning = False, PROBABILITIES

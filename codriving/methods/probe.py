@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
+from codriving.datatypes.deliberation import Deliberation
 from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.parts import Method
 from codriving.datatypes.situation import Decision, Situation
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.codriving import CoDriving
-from codriving.methods.deliberation import Deliberation
-from codriving.methods.protocol import Method
 from codriving.reasoning.decision.decider import Decider
 from codriving.reasoning.decision.rules import decide_one
 

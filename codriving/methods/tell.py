@@ -19,7 +19,8 @@ class Tell(Learned):
         WeightsError: If the file is missing, damaged, or not of this method.
     """
 
-    name, shared, meaning = "tell", False, PROBABILITIES
+    name = "tell"
+    shared, meaning = False, PROBABILITIES
 
     def __init__(self, weights: Path | None) -> None:
         super().__init__(weights)

@@ -1,6 +1,7 @@
 """The paper authors' own definitions, so that their published rows can be compared with."""
 
 from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.parts import Metric
 from codriving.datatypes.score import Pet, Score, TravelScore
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.errors import ConfigError
@@ -8,7 +9,7 @@ from codriving.geometry.road_map import RoadMap
 from codriving.metrics.encounters import Log, encounters
 
 
-class AuthorsMetrics:
+class AuthorsMetrics(Metric):
     """Success, PET and velocity as recovered from the authors' recordings of the intersection.
 
     Every vehicle counts, human drivers too, and all of the log, second laps too. Positions are taken relative to the

@@ -1,6 +1,7 @@
 """Our own metrics: every quantity by its definition, undefined where it does not apply."""
 
 from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.parts import Metric
 from codriving.datatypes.score import Score
 from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import ConfigError
@@ -9,7 +10,7 @@ from codriving.metrics.pet import post_encroachment_times
 from codriving.metrics.velocity import travels
 
 
-class StandardMetrics:
+class StandardMetrics(Metric):
     """Success, post-encroachment time of the true footprints, and travel velocity of the CAVs (paper Section IV-A).
 
     Args:

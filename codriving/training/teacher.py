@@ -9,11 +9,11 @@ import numpy as np
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.parts import Model
 from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
-from codriving.methods.language_model.ports import Reasoner
 from codriving.methods.single_vehicle.alone import Alone
 from codriving.methods.single_vehicle.protocol import Driver
 from codriving.reasoning.prediction.forecast import HORIZON
@@ -43,7 +43,7 @@ class Guidance:
         ConfigError: If a value is out of range.
     """
 
-    llm: Reasoner
+    llm: Model
     driver: Driver
     every: int
     pull: Linear
@@ -102,7 +102,7 @@ def _weighed(situation: Situation, model: DrivingModel) -> Situation:
     return replace(situation, assessments=tuple(weighed))
 
 
-def _decider(llm: Reasoner) -> "ModelDecider | None":
+def _decider(llm: Model) -> "ModelDecider | None":
     chat = llm.chat()
     if chat is None:
         return None
@@ -110,5 +110,4 @@ def _decider(llm: Reasoner) -> "ModelDecider | None":
     from codriving.llm.prompts.render import load_prompts
     from codriving.methods.language_model.model_decider import ModelDecider
 
-    ask_plain = bool(getattr(llm, "ask_plain", False))
-    return ModelDecider(chat, load_prompts(getattr(llm, "prompts", None)), Ledger(), ask_plain, sees_conflicts=True)
+    return ModelDecider(chat, load_prompts(llm.prompts), Ledger(), llm.ask_plain, sees_conflicts=True)

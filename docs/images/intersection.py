@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from codriving.config.compose import compose
 from codriving.datatypes.conflict import Conflict, Severity
+from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.road import Lane, Line
 from codriving.datatypes.situation import Situation
 from codriving.datatypes.vehicle import Kind, VehicleState
@@ -24,7 +25,6 @@ from codriving.geometry.box import PLANNING, corners
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.path import Path as Way
 from codriving.geometry.road_map import RoadMap
-from codriving.methods.deliberation import Deliberation
 
 SEED, MOMENT = 10003, 5.5
 """The episode, and the time of the decision that is drawn [s]."""
@@ -62,7 +62,7 @@ DANGER = {
 Points = NDArray[np.float64]
 
 
-def look() -> tuple[RoadMap, WorldState, Deliberation]:
+def look() -> tuple[RoadMap, WorldState, ReasonedDeliberation]:
     """Drive the episode up to the moment, and return what there was and what was decided."""
     environment, method, _ = BuildObjects({"picture": compose([])})("picture")
     world = environment.reset(SEED)
@@ -70,7 +70,7 @@ def look() -> tuple[RoadMap, WorldState, Deliberation]:
     while True:
         decided = method.act(world)
         if world.time >= MOMENT:
-            assert isinstance(decided, Deliberation)
+            assert isinstance(decided, ReasonedDeliberation)
             return environment.road_map, world, decided
         world = environment.step(decided.actions)
 
@@ -202,7 +202,7 @@ def severities() -> Iterable[str]:
         yield text(x + 48, y, f"{severity}, {limit}", 18)
 
 
-def order(decided: Deliberation) -> Iterable[str]:
+def order(decided: ReasonedDeliberation) -> Iterable[str]:
     """Write who goes first."""
     x, y = LEFT, SIZE / 2 + 220.0
     agreed = decided.situations[0].order
@@ -217,7 +217,7 @@ def order(decided: Deliberation) -> Iterable[str]:
         yield text(left + 42, y, f"{k + 1}  {vehicle_id}", 17, INK, 'text-anchor="middle"')
 
 
-def reasons(decided: Deliberation) -> Iterable[str]:
+def reasons(decided: ReasonedDeliberation) -> Iterable[str]:
     """Write what every CAV decides, and why."""
     x, y = RIGHT, 60.0
     yield text(x, y, "What each CAV decides", 20, INK, BOLD)

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from codriving.ordering import Instance, JointPlanner, Ordering, Request, in_order, repaired, schedule
+from codriving.ordering import Instance, JointPlanner, Ordering, OrderRule, Request, in_order, repaired, schedule
 
 
-class NearestFirst:
+class NearestFirst(OrderRule):
     """Whoever is nearest goes first; within a step of the same distance, whoever is faster.
 
     Args:

@@ -17,6 +17,7 @@ from codriving.scenarios import (
     Pace,
     Road,
     Route,
+    Scenario,
     Scene,
     Start,
     Straight,
@@ -88,7 +89,7 @@ def _routes(lanes: tuple[Lane, ...], exit_distance: float) -> tuple[Route, ...]:
     return tuple(routes)
 
 
-class TJunction:
+class TJunction(Scenario):
     """Several CAVs among human drivers; leg, destination, place and speed are drawn.
 
     Args:

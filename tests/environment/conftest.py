@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Road
 from codriving.datatypes.scene import Scene, Start
 from codriving.environment.control import ControlGains
@@ -47,13 +48,18 @@ SWITCHES = tuple(field.name for field in fields(Corrections))
 
 
 @dataclass
-class ByHand:
+class ByHand(Scenario):
     """A scenario whose starts are given."""
 
-    road: Road
+    built: Road
     pace: Pace
     starts: tuple[Start, ...]
     name: str = "by hand"
+
+    @property
+    def road(self) -> Road:
+        """The road."""
+        return self.built
 
     def scene(self, seed: int) -> Scene:
         """The starts, whatever the seed."""

@@ -12,6 +12,7 @@ sys.path.insert(0, str(Path(__file__).parent / "episodes"))
 from toy_drive import ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics
 
 from codriving.config.build import build
+from codriving.datatypes.parts import Model
 from codriving.datatypes.world import WorldState
 from codriving.experiment import run
 from codriving.experiment.cells import Cell
@@ -80,7 +81,7 @@ CLIENTS: dict[str, ToyClient] = {}
 """The client of each model, by its name: what a test changes, the model of a config finds."""
 
 
-class ToyModel:
+class ToyModel(Model):
     """What ``llm`` describes."""
 
     def __init__(
@@ -88,6 +89,7 @@ class ToyModel:
     ) -> None:
         self.name, self.max_concurrency, self.failures_in_a_row = name, max_concurrency, failures_in_a_row
         self.cache, self.max_cost = cache, max_cost
+        self.ask_plain, self.prompts = False, None
 
     def chat(self) -> ToyClient:
         """The client that all of this name share."""

@@ -7,9 +7,9 @@ import numpy as np
 
 from codriving.config.build import build
 from codriving.config.compose import compose
+from codriving.datatypes.parts import Method
 from codriving.gym.actions import ACTIONS
 from codriving.gym.parallel import ParallelDriving
-from codriving.methods.protocol import Method
 
 SLOWER, IDLE, FASTER, LANE_LEFT, LANE_RIGHT = range(5)
 

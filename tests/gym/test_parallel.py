@@ -11,11 +11,11 @@ import codriving
 from codriving.config.build import build
 from codriving.config.choices import choices
 from codriving.config.compose import compose
+from codriving.datatypes.parts import Method
 from codriving.datatypes.trajectory import Trajectory
 from codriving.environment.environment import Environment
 from codriving.gym.actions import ACTIONS
 from codriving.gym.parallel import ParallelDriving
-from codriving.methods.protocol import Method
 
 Make = Callable[..., ParallelDriving]
 

@@ -12,11 +12,11 @@ from worlds import FULL, Junction
 from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Experience, Interaction, Memory, Verdict
 from codriving.datatypes.outcome import Ending
+from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.situation import Situation
 from codriving.llm.language_model import Offline
 from codriving.memory.features import Features
 from codriving.memory.online import OnlineMemory
-from codriving.memory.protocol import CaseMemory
 from codriving.memory.recollection import open_recollection
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.sharing.cda import CdaLevel
@@ -37,7 +37,7 @@ def learn(junction: Junction, made: CoDriving, seed: int) -> Episode:
     return episode
 
 
-class Everything:
+class Everything(CaseMemory):
     """A memory that recalls the same for every situation, and keeps what it is given."""
 
     label, learns, reflections = "everything", True, 0

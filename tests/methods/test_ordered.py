@@ -25,7 +25,7 @@ from codriving.environment.environment import Environment
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.ordered import Ordered
 from codriving.reasoning.execution.planned import Planned
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
 from codriving.reasoning.ordering.request import Request, in_order
 from codriving.reasoning.ordering.schedule import repaired, timed
 from codriving.runs.json_files import lines_text
@@ -39,7 +39,7 @@ ROUTES = tuple(
 )
 
 
-class InOrderOfNames:
+class InOrderOfNames(OrderRule):
     """A rule of the simplest kind, which writes down what it was handed."""
 
     name, variant = "names", ""

@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 from worlds import Junction, car
 
+from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Intent, Kind
 from codriving.datatypes.world import WorldState
 from codriving.methods.codriving import CoDriving
-from codriving.methods.deliberation import Deliberation
 
 Make = Callable[..., CoDriving]
 
@@ -28,7 +28,7 @@ def busy(junction: Junction) -> WorldState:
     )
 
 
-def told(deliberation: Deliberation, ego: str) -> dict[str, Any]:
+def told(deliberation: ReasonedDeliberation, ego: str) -> dict[str, Any]:
     (line,) = (cav for cav in deliberation.as_dict()["cavs"] if cav["id"] == ego)
     return {key: value for key, value in line.items() if isinstance(key, str)}
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from asked import Model, sensible
+from asked import Scripted, sensible
 
 from codriving.errors import ConfigError
 from codriving.llm.language_model import Offline
@@ -24,7 +24,7 @@ def test_rules_stand_there_without_a_model() -> None:
 
 
 def test_model_stands_behind_both_with_one_ledger() -> None:
-    model = Model(ScriptedChat(sensible), ask_plain=True)
+    model = Scripted(ScriptedChat(sensible), ask_plain=True)
     coordinator, decider, ledger = ports(model, True, False)
     assert isinstance(coordinator, ModelCoordinator)
     assert isinstance(decider, ModelDecider)
@@ -37,7 +37,7 @@ def test_model_stands_behind_both_with_one_ledger() -> None:
 
 def test_broken_templates_are_found_before_anything_is_driven(tmp_path: Path) -> None:
     check_prompts(Offline())
-    check_prompts(Model(ScriptedChat(sensible)))
+    check_prompts(Scripted(ScriptedChat(sensible)))
     (tmp_path / "negotiate.user.md.j2").write_text("{{ pears }}")
     with pytest.raises(ConfigError, match="no variable 'pears'; there are binding, fixed, pairs, vehicles"):
-        check_prompts(Model(ScriptedChat(sensible), prompts=str(tmp_path)))
+        check_prompts(Scripted(ScriptedChat(sensible), prompts=str(tmp_path)))

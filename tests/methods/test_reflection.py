@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from asked import Model
+from asked import Scripted
 from driven import drive
 from remembered import experience, online
 from worlds import FULL, Junction
@@ -74,7 +74,7 @@ def test_a_server_that_does_not_answer_ends_the_episode() -> None:
 
 def test_a_lesson_of_the_models_is_stored_and_counted(junction: Junction, tmp_path: Path) -> None:
     path = tmp_path / "m.sqlite"
-    model = Model(ScriptedChat(teacher))
+    model = Scripted(ScriptedChat(teacher))
     made = CoDriving(CdaLevel(**{**FULL, "safety_check": False}), model, online(path, reflection="llm"), 1.5)
     episode = drive(junction.environment, made, 10_001)
     assert episode.outcome is not None

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.parts import Metric
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
 from codriving.metrics.authors import AuthorsMetrics
-from codriving.metrics.protocol import Metrics
 
 Drive = Callable[..., Track]
 
@@ -35,7 +35,7 @@ def _crossing(step: float, first_step: int = 0) -> Trajectory:
 @pytest.mark.parametrize("step", [0.05, 0.1, 0.2])
 @pytest.mark.parametrize("first_step", [0, 3, 4])
 def test_rows_of_a_fifth_of_a_second_are_compared(road: RoadMap, step: float, first_step: int) -> None:
-    metrics: Metrics = AuthorsMetrics()
+    metrics: Metric = AuthorsMetrics()
     (pet,) = metrics.score(_crossing(step, first_step), OUTCOME, road).pets
     # Rows are 2 m apart: only the rows in the very middle are less than 1 m apart.
     assert (pet.first, pet.second) == ("a", "b")

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.parts import Metric
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
-from codriving.metrics.protocol import Metrics
 from codriving.metrics.standard import StandardMetrics
 
 Drive = Callable[..., Track]
@@ -19,7 +19,7 @@ TIME = np.arange(0, 20, 0.1)
 
 @pytest.mark.parametrize("ending", list(Ending))
 def test_only_success_is_success(road: RoadMap, drive: Drive, ending: Ending) -> None:
-    metrics: Metrics = StandardMetrics()
+    metrics: Metric = StandardMetrics()
     trajectory = Trajectory(0.1, (drive("a", "east", 6 * TIME, arrived=15.0),))
     score = metrics.score(trajectory, Outcome(ending, 15.0, {"a": 15.0}), road)
     assert score.success == (ending is Ending.SUCCESS)

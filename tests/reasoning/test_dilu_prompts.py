@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from asked import Model
+from asked import Scripted
 from shown import GOLDEN, WORLDS, WRITE
 from worlds import Junction
 
@@ -52,7 +52,7 @@ def questions(world: Junction, scenario: str) -> list[Question]:
 
     chat = ScriptedChat(script)
     rule = build(compose(["method=dilu"])["method"]["rule"], (), "method")
-    made = DiLu(Model(chat), Book(), 1.0, 3, rule)
+    made = DiLu(Scripted(chat), Book(), 1.0, 3, rule)
     made.reset(world.road_map, world.model, 0)
     cars = [replace(one, place=one.place + NEARER.get(scenario, 0.0)) for one in WORLDS[scenario]]
     moment = world.world(*cars)

@@ -11,6 +11,7 @@ from worlds import Junction, car
 from codriving.config.build import build
 from codriving.config.training import compose_training
 from codriving.datatypes.action import Action
+from codriving.datatypes.parts import Model, RuleModel
 from codriving.errors import ConfigError
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
@@ -29,10 +30,10 @@ DRIVER = compose_training("tell_junction", (), smoke=False)["guidance"]["driver"
 EGO, NEAR = car("CAV1", "south-north", 60.0, 6.0, 9.0), car("HDV1", "south-north", 82.0, 6.0)
 
 
-class Model:
+class Scripted(Model):
     """A language model that answers by a script."""
 
-    name = "scripted"
+    name, ask_plain, prompts = "scripted", False, None
 
     def __init__(self, script: Callable[[Question], str]) -> None:
         self.asked = ScriptedChat(script)
@@ -42,13 +43,8 @@ class Model:
         return self.asked
 
 
-class Rules:
+class Rules(RuleModel):
     """No model."""
-
-    name = "rules"
-
-    def chat(self) -> None:
-        """Nobody to ask."""
 
 
 def guidance(llm: object, every: int = 1) -> Guidance:
@@ -71,7 +67,7 @@ def test_the_rule_teaches_offline(junction: Junction) -> None:
 
 
 def test_a_model_is_told_what_one_vehicle_sees_and_its_word_counts(junction: Junction) -> None:
-    model = Model(says("IDLE"))
+    model = Scripted(says("IDLE"))
     made = advisor(junction, model)
     world = junction.world(car("CAV1", "south-north", 77.0, 3.0, 3.0), car("CAV2", "west-south", 77.0, 3.0, 0.0))
     assert made.advise(world) == {"CAV1": Action.IDLE, "CAV2": Action.FASTER}, (
@@ -86,7 +82,7 @@ def test_a_model_is_told_what_one_vehicle_sees_and_its_word_counts(junction: Jun
 
 
 def test_what_a_model_may_choose_is_what_the_rule_leaves(junction: Junction) -> None:
-    model = Model(says("FASTER"))
+    model = Scripted(says("FASTER"))
     advice = advisor(junction, model).advise(junction.world(EGO, car("HDV1", "south-north", 67.0, 3.0)))
     assert len(model.asked.questions) == 2, "asked again"
     assert "too close to" in model.asked.questions[1].messages[-1].content
@@ -94,7 +90,7 @@ def test_what_a_model_may_choose_is_what_the_rule_leaves(junction: Junction) -> 
 
 
 def test_it_is_asked_now_and_then_only(junction: Junction) -> None:
-    model = Model(says("SLOWER"))
+    model = Scripted(says("SLOWER"))
     made = advisor(junction, model, every=3)
     found = [bool(made.advise(junction.world(EGO, NEAR, time=k / 2, step=k))) for k in range(7)]
     assert found == [True, False, False, True, False, False, True]
@@ -104,7 +100,7 @@ def test_it_is_asked_now_and_then_only(junction: Junction) -> None:
 
 
 def test_a_model_is_not_asked_what_is_plain(junction: Junction) -> None:
-    model = Model(says("IDLE"))
+    model = Scripted(says("IDLE"))
     assert advisor(junction, model).advise(junction.world(EGO)) == {"CAV1": Action.FASTER}
     assert not model.asked.questions
 

@@ -4,6 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
+from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Lane, Line, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
@@ -25,7 +26,7 @@ def _lines(index: int, lanes: int) -> tuple[Line, Line]:
     return left, Line.CONTINUOUS_LINE if index == lanes - 1 else Line.STRIPED
 
 
-class Highway:
+class Highway(Scenario):
     """Several CAVs and human drivers on parallel lanes; everybody may change lanes.
 
     Args:

@@ -4,6 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
+from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Arc, Lane, LaneId, Line, Point, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
@@ -88,7 +89,7 @@ def _routes(lanes: tuple[Lane, ...], exit_distance: float) -> tuple[Route, ...]:
     return tuple(routes)
 
 
-class Intersection:
+class Intersection(Scenario):
     """Several CAVs among human drivers, each with a random leg, destination, place and speed.
 
     Args:

@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Block, Lane, LaneId, LaneShape, Line, Road, Route, Sine, Straight, Turn
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
@@ -27,7 +28,7 @@ PAST_MERGE = 80.0
 """Distance past the end of the ramp lane at which a vehicle has arrived [m]."""
 
 
-class Merge:
+class Merge(Scenario):
     """Several CAVs on the main road and on the ramp, among human drivers.
 
     Args:

@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Arc, Lane, LaneId, LaneShape, Line, Point, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
@@ -118,7 +119,7 @@ class Ring:
         return Arc((0.0, 0.0), self.radius, start, end, clockwise=False)
 
 
-class Roundabout:
+class Roundabout(Scenario):
     """Several CAVs among human drivers, some of whom are on the ring already.
 
     Args:

@@ -8,11 +8,11 @@ from time import perf_counter, thread_time
 from typing import Any
 
 from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.parts import Method, Metric, Simulator
 from codriving.datatypes.record import EpisodeRecord, Participant
 from codriving.datatypes.score import Score
 from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import ModelError, ModelUnavailableError
-from codriving.experiment.episodes.protocols import Environment, Method, Metrics
 from codriving.experiment.episodes.unit import Labels
 
 
@@ -59,9 +59,9 @@ class _Log:
 
 
 def run_episode(
-    environment: Environment,
+    environment: Simulator,
     method: Method,
-    metrics: Metrics,
+    metrics: Metric,
     seed: int,
     labels: Labels,
     go_on: Callable[[], None] = lambda: None,
@@ -121,7 +121,7 @@ def run_episode(
     )
 
 
-def _drive(environment: Environment, method: Method, seed: int, log: _Log, go_on: Callable[[], None]) -> Outcome:
+def _drive(environment: Simulator, method: Method, seed: int, log: _Log, go_on: Callable[[], None]) -> Outcome:
     """The loop itself."""
     world = environment.reset(seed)
     log.begun = True
@@ -134,11 +134,9 @@ def _drive(environment: Environment, method: Method, seed: int, log: _Log, go_on
         log.cpu.append(thread_time() - cpu_before)
         log.seconds.append(perf_counter() - before)
         log.decisions.append(deliberation.as_dict())
-        log.add(deliberation.counts, getattr(deliberation, "transcript", ()))
+        log.add(deliberation.counts, deliberation.transcript)
         world = environment.step(deliberation.actions)
-    conclude = getattr(method, "conclude", None)
-    if conclude is not None:
-        log.add(*conclude(world, outcome))
+    log.add(*method.conclude(world, outcome))
     return outcome
 
 
@@ -176,14 +174,13 @@ def failed_result(labels: Labels, seed: int, error: BaseException, trace: str = 
 
 
 def _note_unfinished(method: Method, log: _Log) -> None:
-    """Note what was asked in the step that broke off: it has been paid for. Only methods that ask a model have it."""
-    unfinished = getattr(method, "unfinished_step", None)
-    if unfinished is not None and log.begun:
+    """Note what was asked in the step that broke off: it has been paid for."""
+    if log.begun:
         with suppress(Exception):
-            log.add(*unfinished(log.time))
+            log.add(*method.unfinished_step(log.time))
 
 
-def _salvage(environment: Environment) -> Trajectory | None:
+def _salvage(environment: Simulator) -> Trajectory | None:
     """What was driven before it went wrong, for whoever looks for the cause; the broken world may refuse."""
     try:
         return environment.trajectory()

@@ -1,7 +1,7 @@
 """Where episodes are driven: here one after another, or in several processes of this machine."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Generator, Sequence
-from typing import Protocol
 
 from codriving.experiment.episodes.job import Job, Report
 from codriving.experiment.episodes.pool import available_cores, run_parallel, run_serial
@@ -9,7 +9,7 @@ from codriving.experiment.episodes.process import warm
 from codriving.experiment.episodes.unit import Unit
 
 
-class Launcher(Protocol):
+class Launcher(ABC):
     """Drives units somewhere; results are kept by the job, so they do not depend on where."""
 
     def prepare(self, workers: int | str, units: int, preload: Sequence[str]) -> None:
@@ -18,8 +18,9 @@ class Launcher(Protocol):
         Args:
             workers: A number, or ``auto`` for one a core.
         """
-        ...
+        return None
 
+    @abstractmethod
     def launch(
         self, units: Sequence[Unit], job: Job, workers: int | str, preload: Sequence[str]
     ) -> Generator[Report, None, None]:
@@ -31,14 +32,10 @@ class Launcher(Protocol):
         Raises:
             UserError: If the batch has to stop.
         """
-        ...
 
 
-class Serial:
+class Serial(Launcher):
     """One after another in this process, for debugging and profiling."""
-
-    def prepare(self, workers: int | str, units: int, preload: Sequence[str]) -> None:
-        """Do nothing; there is nobody to get ready."""
 
     def launch(
         self, units: Sequence[Unit], job: Job, workers: int | str, preload: Sequence[str]
@@ -51,7 +48,7 @@ class Serial:
         yield from run_serial(units, job)
 
 
-class Processes:
+class Processes(Launcher):
     """In several processes of this machine; a single one is this process itself."""
 
     def prepare(self, workers: int | str, units: int, preload: Sequence[str]) -> None:

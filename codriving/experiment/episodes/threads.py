@@ -8,18 +8,15 @@ from threading import Event, Lock, Thread
 
 from codriving.experiment.episodes.episode import EpisodeResult
 from codriving.experiment.episodes.job import Job, Report, Worker
-from codriving.experiment.episodes.launcher import worker_count
+from codriving.experiment.episodes.launcher import Launcher, worker_count
 from codriving.experiment.episodes.unit import Objects, Unit
 
 POLL = 0.5
 """How long to wait before looking again [s]; where Ctrl-C does not end a wait, it is noticed after this."""
 
 
-class Threads:
+class Threads(Launcher):
     """In several threads of this process, which share one client of the language model and its limits."""
-
-    def prepare(self, workers: int | str, units: int, preload: Sequence[str]) -> None:
-        """Do nothing; what is imported is imported here."""
 
     def launch(
         self, units: Sequence[Unit], job: Job, workers: int | str, preload: Sequence[str]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from codriving.experiment.episodes.protocols import Environment, Method, Metrics
+from codriving.datatypes.parts import Method, Metric, Simulator
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +32,6 @@ class Unit:
 class Objects(NamedTuple):
     """What the episodes of one cell are driven with, built once a worker."""
 
-    environment: Environment
+    environment: Simulator
     method: Method
-    metrics: Metrics
+    metrics: Metric

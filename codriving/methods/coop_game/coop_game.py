@@ -8,13 +8,13 @@ from codriving.errors import require, require_range
 from codriving.methods.coop_game.coalition import Agreement, Coalition
 from codriving.methods.coop_game.levels import Levels, Streams, find_streams, levels_of
 from codriving.methods.coop_game.payoff import Goal, Payoff, Scale
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
 from codriving.reasoning.ordering.request import Request, best_subset
 from codriving.reasoning.ordering.schedule import timed
 from codriving.reasoning.ordering.tickets import TicketBook, by_ticket, reasons
 
 
-class CoopGame:
+class CoopGame(OrderRule):
     """All CAVs form a coalition, and their streams take the levels that are worth most to all together.
 
     Without an agreement all would go first come, first served; that order is always among those evaluated.

@@ -11,7 +11,7 @@ from codriving.methods.coop_game_fuzzy.joint_costs import Weights, joint_costs
 from codriving.methods.ordered import Ordered
 from codriving.reasoning.execution.executor import Drive, Executor, humans_expected
 from codriving.reasoning.moment import Moment
-from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering
+from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering, OrderRule
 from codriving.reasoning.ordering.request import Request, best_subset
 from codriving.reasoning.ordering.schedule import timed
 from codriving.reasoning.ordering.tickets import TicketBook, by_ticket, reasons
@@ -77,7 +77,7 @@ class CoopGameFuzzy(Ordered):
         super().__init__(Arrival(control_radius), JointActions(gap, participation, weights, hold, horizon, shares))
 
 
-class Arrival:
+class Arrival(OrderRule):
     """The order of tickets, by which no CAV drives; lane changes are granted by what they gain."""
 
     name, variant = "coop_game", ""

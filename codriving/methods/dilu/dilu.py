@@ -3,30 +3,29 @@
 from collections import Counter
 from dataclasses import replace
 from math import ceil
-from typing import Any
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.experience import Interaction
 from codriving.datatypes.outcome import Outcome
+from codriving.datatypes.parts import Account, CaseMemory, Method, Model
 from codriving.datatypes.situation import Decision
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
-from codriving.memory.protocol import CaseMemory
-from codriving.methods.deliberation import Deliberation
 from codriving.methods.dilu.diary import Diary
 from codriving.methods.dilu.ports import dilu_ports
 from codriving.methods.dilu.thinker import Thought
 from codriving.methods.dilu.told import Told, tell
-from codriving.methods.language_model.ports import Reasoner, check_prompts
+from codriving.methods.language_model.ports import check_prompts
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
 from codriving.methods.single_vehicle.protocol import Driver, View
 from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
 
-class DiLu:
+class DiLu(Method):
     """The method; with ``llm=offline`` a rule stands in for its language model, and it is called ``dilu-rule``.
 
     Args:
@@ -38,9 +37,7 @@ class DiLu:
         ConfigError: If a setting is out of range, or a template cannot be used.
     """
 
-    variant = ""
-
-    def __init__(self, llm: Reasoner, memory: CaseMemory | None, hold: float, shots: int, rule: Driver) -> None:
+    def __init__(self, llm: Model, memory: CaseMemory | None, hold: float, shots: int, rule: Driver) -> None:
         if not 0.1 <= hold <= 10:
             raise ConfigError(f"hold must be 0.1 to 10 s, got {hold:g}")
         if not 1 <= shots <= 50:
@@ -63,7 +60,7 @@ class DiLu:
         held = replace(model, decision_interval=self._steps * model.decision_interval)
         self._perception = single_vehicle_perception(road_map, Forecast(held, CONSTANT))
         self._thinker, self._reflector, self._ledger = dilu_ports(
-            self.llm.chat(), getattr(self.llm, "prompts", None), self.rule, held.decision_interval
+            self.llm.chat(), self.llm.prompts, self.rule, held.decision_interval
         )
         self._thoughts: dict[str, Thought] = {}
         self._decided = 0
@@ -72,13 +69,13 @@ class DiLu:
         if self.memory is not None:
             self.memory.begin(seed)
 
-    def act(self, world: WorldState) -> Deliberation:
+    def act(self, world: WorldState) -> ReasonedDeliberation:
         """Decide for every CAV on the road, one by one; between decisions hold what was decided."""
         names = [cav.id for cav in world.cavs]
         if all(name in self._thoughts for name in names) and world.step < self._decided + self._steps:
             kept = [self._thoughts[name] for name in names]
             situations = tuple(thought.situation for thought in kept)
-            return Deliberation(world.time, world.step, situations, tuple(_holds(t.decision) for t in kept), {})
+            return ReasonedDeliberation(world.time, world.step, situations, tuple(_holds(t.decision) for t in kept), {})
         told = self._recall([tell(view) for view in self._views(world)])
         thoughts = self._thinker.decide(told)
         self._thoughts = {thought.decision.ego: thought for thought in thoughts}
@@ -92,7 +89,7 @@ class DiLu:
         if self.memory is not None:
             counts["recalled"] += sum(len(one.situation.memories) for one in told)
             counts["reconsidered"] += sum(bool(thought.decision.recalled) for thought in thoughts)
-        return Deliberation(
+        return ReasonedDeliberation(
             world.time,
             world.step,
             tuple(thought.situation for thought in thoughts),
@@ -101,12 +98,7 @@ class DiLu:
             tuple(lines),
         )
 
-    def conclude(self, world: WorldState, outcome: Outcome) -> tuple[dict[str, float], list[dict[str, Any]]]:
-        """Reflect on an episode that has come to its end, if there is a memory that learns.
-
-        Returns:
-            Counters by column, and lines of the transcript.
-        """
+    def conclude(self, world: WorldState, outcome: Outcome) -> Account:
         if self._diary is None or self.memory is None:
             return {}, []
         experiences = self._diary.conclude(outcome, self._reflector)
@@ -115,15 +107,7 @@ class DiLu:
         asked, lines = self._ledger.close_step(world.time) if self._ledger is not None else ({}, [])
         return {**asked, "experiences": len(experiences), "experiences_new": new}, lines
 
-    def unfinished_step(self, time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:
-        """Return what was asked in a step that broke off, so that its cost is not lost.
-
-        Args:
-            time: Simulated time of the step [s].
-
-        Returns:
-            Counters by column, and the lines of the transcript.
-        """
+    def unfinished_step(self, time: float) -> Account:
         return self._ledger.close_step(time) if self._ledger is not None else ({}, [])
 
     def _views(self, world: WorldState) -> list[View]:

@@ -8,7 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.deliberation import Deliberation
 from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.parts import Method
 from codriving.datatypes.road import Road
 from codriving.datatypes.world import WorldState
 from codriving.errors import WeightsError
@@ -22,7 +24,7 @@ VALUES, PROBABILITIES = "values", "probabilities"
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class Judged(Deliberation):
     """One decision step of a learned method.
 
     Attributes:
@@ -36,16 +38,19 @@ class Judged:
     routes: Mapping[str, str]
     observations: Mapping[str, Observation]
     values: Mapping[str, Mapping[Action, float]]
-    actions: Mapping[str, Action]
+    chosen: Mapping[str, Action]
     counts: Mapping[str, float]
     meaning: str = VALUES
 
+    @property
+    def actions(self) -> dict[str, Action]:
+        return dict(self.chosen)
+
     def as_dict(self) -> dict[str, Any]:
-        """Return the step as one JSON-ready line: what each CAV observed, by name, and what is said of each action."""
         return {
             "time": self.time,
             "step": self.step,
-            "cavs": [self._entry(name, action) for name, action in self.actions.items()],
+            "cavs": [self._entry(name, action) for name, action in self.chosen.items()],
         }
 
     def _entry(self, name: str, action: Action) -> dict[str, Any]:
@@ -76,7 +81,7 @@ def _prefers(action: Action, shares: Mapping[Action, float]) -> str:
 REASONS: dict[str, Callable[[Action, Mapping[Action, float]], str]] = {VALUES: _expects, PROBABILITIES: _prefers}
 
 
-class Learned:
+class Learned(Method):
     """Drives with trained weights, those of the family of the road; the best action is taken, and nothing is drawn.
 
     Attributes:
@@ -89,10 +94,8 @@ class Learned:
         WeightsError: If the file is missing, damaged, or not of this method.
     """
 
-    name: ClassVar[str]
     shared: ClassVar[bool]
     meaning: ClassVar[str]
-    reasoner = "none"
 
     def __init__(self, weights: Path | None) -> None:
         self._trained: dict[str, Trained] = {}
@@ -106,15 +109,6 @@ class Learned:
             self._trained[self._own] = trained
 
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
-        """Refuse a road that no weights are for, before anything is driven.
-
-        Args:
-            target_speeds: Target speeds of its CAVs [m/s].
-            decision_interval: Time between two decisions [s].
-
-        Raises:
-            WeightsError: If something does not fit.
-        """
         family = family_of_road(road)
         self._weights(family).purpose.check(family, target_speeds, decision_interval)
 

@@ -17,14 +17,14 @@ from codriving.methods.single_vehicle.encounters import Encounter
 from codriving.methods.single_vehicle.expected_first import goes_first
 from codriving.methods.single_vehicle.lane_choice import Side
 from codriving.methods.single_vehicle.patience import Patience
-from codriving.methods.single_vehicle.protocol import Choice, View
+from codriving.methods.single_vehicle.protocol import Choice, Driver, View
 from codriving.reasoning.prediction.idm import IntelligentDriver
 
 UNBRAKED = int(np.sum(ACCELERATIONS >= 0))
 """Number of accelerations without braking; they are the first ones."""
 
 
-class NonCooperativeGame:
+class NonCooperativeGame(Driver):
     """A simultaneous game of two players with a private type, replanned each decision (after Fang et al., 2024).
 
     The partner is whoever meets the vehicle most urgently. Everybody else is minded as projected IDM minds them.

@@ -2,24 +2,23 @@
 
 from collections import Counter
 
+from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.parts import Method
 from codriving.datatypes.situation import Decision
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
-from codriving.methods.deliberation import Deliberation
 from codriving.methods.single_vehicle.account import account
 from codriving.methods.single_vehicle.protocol import Driver, View
 from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
 
-class Alone:
+class Alone(Method):
     """A method by which every CAV decides alone.
 
     Nothing is shared or negotiated: a CAV knows position, speed and heading of those around it, and the map.
     """
-
-    reasoner = "none"
 
     def __init__(self, driver: Driver) -> None:
         self.driver = driver
@@ -30,7 +29,7 @@ class Alone:
         self._perception = single_vehicle_perception(road_map, Forecast(model))
         self.driver.reset()
 
-    def act(self, world: WorldState) -> Deliberation:
+    def act(self, world: WorldState) -> ReasonedDeliberation:
         """Decide for every CAV on the road, one by one."""
         perception = self._perception
         perceived = perception.perceive(world)
@@ -48,4 +47,4 @@ class Alone:
             situations.append(account(view, choice))
             decisions.append(Decision(name, choice.action, choice.reason))
             counts.update(choice.counts)
-        return Deliberation(world.time, world.step, tuple(situations), tuple(decisions), dict(counts))
+        return ReasonedDeliberation(world.time, world.step, tuple(situations), tuple(decisions), dict(counts))

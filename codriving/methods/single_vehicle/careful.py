@@ -11,7 +11,7 @@ from codriving.errors import ConfigError
 from codriving.methods.single_vehicle.encounters import Encounter, encounters
 from codriving.methods.single_vehicle.lane_choice import LaneChoice
 from codriving.methods.single_vehicle.leaders import leaders
-from codriving.methods.single_vehicle.protocol import Choice, View
+from codriving.methods.single_vehicle.protocol import Choice, Driver, View
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.prediction.rollout import rollout
 
@@ -48,7 +48,7 @@ class _Motion:
         return float(self.times[-1]) + (distance - float(self.travelled[-1])) / last if last > 0.1 else float("inf")
 
 
-class Careful:
+class Careful(Driver):
     """Tries FASTER, IDLE and SLOWER in this order, each held for a while, and takes the first that is free of danger.
 
     It is the rule that stands in for a language model where none is asked: it teaches TeLL (Xu et al., 2025), whose

@@ -8,7 +8,7 @@ from codriving.methods.single_vehicle.encounters import Encounter, encounters
 from codriving.methods.single_vehicle.expected_first import goes_first
 from codriving.methods.single_vehicle.lane_choice import LaneChoice, Side
 from codriving.methods.single_vehicle.patience import Patience
-from codriving.methods.single_vehicle.protocol import Choice, View
+from codriving.methods.single_vehicle.protocol import Choice, Driver, View
 from codriving.methods.single_vehicle.starting import may_start
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.prediction.rollout import Plan
@@ -34,7 +34,7 @@ LIMITS = {
 """Least and largest value of each setting."""
 
 
-class Demonstrated:
+class Demonstrated(Driver):
     """A driver that takes the first acceptable action (after the reasoning shown in Wen et al., 2024).
 
     Args:

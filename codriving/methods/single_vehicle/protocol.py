@@ -1,8 +1,8 @@
 """What a driver on its own is: it is handed one CAV's view and says what that CAV does now."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
@@ -44,16 +44,16 @@ class Choice:
     counts: Mapping[str, int] = field(default_factory=dict)
 
 
-class Driver(Protocol):
+class Driver(ABC):
     """Drives CAVs of which each is on its own; the same rules for all of them."""
 
-    name: str
-    variant: str
+    name: str = ""
+    variant: str = ""
 
     def reset(self) -> None:
         """Begin an episode; nothing is remembered from the one before."""
-        ...
+        return None
 
+    @abstractmethod
     def decide(self, view: View) -> Choice:
         """Decide for one CAV."""
-        ...

@@ -36,7 +36,7 @@ class Executor(ABC):
         library: Plans that it uses besides those that all methods predict.
     """
 
-    name: str
+    name: str = ""
     gap: float
     margin: float
     library: tuple[Plan, ...] = ()

@@ -1,5 +1,6 @@
 """What an ordering rule is: it is handed an instance and says in which order vehicles pass."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -63,20 +64,20 @@ class JointPlanner(Protocol):
         ...
 
 
-class OrderRule(Protocol):
+class OrderRule(ABC):
     """Chooses the order of an instance, step after step of one episode."""
 
-    name: str
-    variant: str
+    name: str = ""
+    variant: str = ""
 
     def reset(self, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
-        ...
+        return None
 
+    @abstractmethod
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
         """Return the passing order."""
-        ...
 
+    @abstractmethod
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
         """Return the CAVs that may change lanes now, by id."""
-        ...

@@ -6,9 +6,9 @@ from typing import Any
 
 from codriving.config.compose import compose
 from codriving.config.target import find_class
+from codriving.datatypes.parts import Scenario
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
-from codriving.environment.scenarios.protocol import Scenario
 
 LENGTH = 5.0
 

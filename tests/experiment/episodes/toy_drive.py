@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.deliberation import Deliberation
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.datatypes.parts import Method, Metric, Simulator
 from codriving.datatypes.score import Pet, Score, TravelScore
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Intent, Kind, VehicleState
@@ -21,24 +23,29 @@ LABELS = Labels("toy", "steady", "full", "rules")
 LANE = ("a", "b", 0)
 
 
-class ToyEnvironment:
+class ToyEnvironment(Simulator):
     """Success past 20 m; every seventh seed collides."""
 
     road_map = "the map"
     driving_model = DrivingModel((0.0, 5.0), 1.6, 1.0, 1.0, 50.0)
 
     def __init__(self) -> None:
-        self.outcome: Outcome | None = None
+        self._outcome: Outcome | None = None
         self._rows: list[float] = []
         self._speed = 0.0
         self._seed = 0
+
+    @property
+    def outcome(self) -> Outcome | None:
+        """How it ended."""
+        return self._outcome
 
     def reset(self, seed: int) -> WorldState:
         """Begin."""
         if seed < 0:
             raise ValueError("seeds are not negative")
         self._seed = seed
-        self.outcome = None
+        self._outcome = None
         self._rows = [0.0]
         self._speed = float(np.random.default_rng(seed).uniform(3.0, 6.0))
         return self._world()
@@ -50,9 +57,9 @@ class ToyEnvironment:
         time = float(len(self._rows) - 1)
         if self._seed % 7 == 6 and time >= 2:
             hit = Collision(time, "CAV1", "HDV1", "CAV-HDV")
-            self.outcome = Outcome(Ending.COLLISION, time, {}, collision=hit)
+            self._outcome = Outcome(Ending.COLLISION, time, {}, collision=hit)
         elif self._rows[-1] > 20.0:
-            self.outcome = Outcome(Ending.SUCCESS, time, {"CAV1": time})
+            self._outcome = Outcome(Ending.SUCCESS, time, {"CAV1": time})
         return self._world()
 
     def trajectory(self) -> Trajectory:
@@ -71,12 +78,17 @@ class ToyEnvironment:
 
 
 @dataclass(frozen=True)
-class ToyDeliberation:
+class ToyDeliberation(Deliberation):
     """Stay as you are."""
 
-    actions: Mapping[str, Action]
+    chosen: Mapping[str, Action]
     step: int
     counts: Mapping[str, int] = field(default_factory=lambda: {"fallbacks": 1})
+
+    @property
+    def actions(self) -> dict[str, Action]:
+        """What was chosen."""
+        return dict(self.chosen)
 
     def as_dict(self) -> dict[str, Any]:
         """One line, with a number that JSON does not know."""
@@ -84,7 +96,7 @@ class ToyDeliberation:
 
 
 @dataclass
-class ToyMethod:
+class ToyMethod(Method):
     """Drives on; breaks, dies or waits where it is told to."""
 
     raises: tuple[int, ...] = ()
@@ -120,7 +132,7 @@ class ToyMethod:
             (gate / "fifo").open().close()
 
 
-class ToyMetrics:
+class ToyMetrics(Metric):
     """A PET per seed, the speed of the CAV; NaN where it is told to."""
 
     name = "toy"

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from asked import Model
+from asked import Scripted
 from dilu_driven import NEVER_HELD, Notebook, always, modelled, rule, ruled
 from driven import drive
 from hypothesis import HealthCheck, given, settings
@@ -48,7 +48,7 @@ def test_templates_of_a_folder_are_used_and_broken_ones_refused(junction: Juncti
     template = tmp_path / "dilu.user.md.j2"
     template.write_text("You drive {{ speed|mps }}. Allowed actions: {{ allowed|join(', ') }}")
     chat = ScriptedChat(always("IDLE"))
-    made = DiLu(Model(chat, prompts=str(tmp_path)), None, 1.0, 3, rule())
+    made = DiLu(Scripted(chat, prompts=str(tmp_path)), None, 1.0, 3, rule())
     made.reset(junction.road_map, junction.model, 0)
     made.act(junction.world(CARS[0]))
     assert chat.questions[0].messages[1].content == "You drive 8.0 m/s. Allowed actions: SLOWER, IDLE, FASTER"
@@ -56,7 +56,7 @@ def test_templates_of_a_folder_are_used_and_broken_ones_refused(junction: Juncti
     broken.mkdir()
     (broken / template.name).write_text("{{ routes_of_others }}")
     with pytest.raises(ConfigError, match="no variable 'routes_of_others'"):
-        DiLu(Model(chat, prompts=str(broken)), None, 1.0, 3, rule())
+        DiLu(Scripted(chat, prompts=str(broken)), None, 1.0, 3, rule())
 
 
 def test_a_model_that_is_to_reflect_has_to_be_there() -> None:

@@ -9,14 +9,14 @@ from typing import Any
 import pytest
 from worlds import Junction, car
 
+from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.methods.codriving import CoDriving
-from codriving.methods.deliberation import Deliberation
 
 Make = Callable[..., CoDriving]
 
 
 @pytest.fixture(scope="module")
-def step(method: Make, junction: Junction) -> Deliberation:
+def step(method: Make, junction: Junction) -> ReasonedDeliberation:
     """A step in which somebody stands in the way, so that a clear time is infinite, and actions are removed."""
     world = junction.world(
         car("CAV1", "south-north", 93.0, 6.0),
@@ -28,13 +28,13 @@ def step(method: Make, junction: Junction) -> Deliberation:
     return method().act(world)
 
 
-def test_a_line_is_strict_json(step: Deliberation) -> None:
+def test_a_line_is_strict_json(step: ReasonedDeliberation) -> None:
     line = step.as_dict()
     assert json.loads(json.dumps(line, allow_nan=False)) == line
     assert any(c["clear_time"] is None for cav in line["cavs"] for c in cav["conflicts"])
 
 
-def test_a_line_holds_what_was_told_removed_ordered_and_decided(step: Deliberation) -> None:
+def test_a_line_holds_what_was_told_removed_ordered_and_decided(step: ReasonedDeliberation) -> None:
     line = step.as_dict()
     assert (line["time"], line["step"]) == (1.5, 3)
     assert [cav["id"] for cav in line["cavs"]] == ["CAV1", "CAV2"]
@@ -68,7 +68,7 @@ def as_plain(value: Any) -> Any:
     return str(value) if isinstance(value, str) else value
 
 
-def test_a_line_is_what_asdict_would_make_of_it(step: Deliberation) -> None:
+def test_a_line_is_what_asdict_would_make_of_it(step: ReasonedDeliberation) -> None:
     for cav, situation in zip(step.as_dict()["cavs"], step.situations, strict=True):
         told = [
             {**as_plain(c), "clear_time": as_plain(t)}
@@ -81,7 +81,7 @@ def test_a_line_is_what_asdict_would_make_of_it(step: Deliberation) -> None:
 
 
 @pytest.mark.parametrize("odd", [math.nan, math.inf, -math.inf])
-def test_what_is_no_number_is_written_as_null(odd: float, step: Deliberation) -> None:
+def test_what_is_no_number_is_written_as_null(odd: float, step: ReasonedDeliberation) -> None:
     first, *others = step.situations
     told = replace(first, clear_times=(odd,) * len(first.conflicts), scene=replace(first.scene, place=odd))
     line = replace(step, situations=(told, *others)).as_dict()
@@ -98,7 +98,7 @@ def test_a_forced_action_keeps_its_reasons(method: Make, junction: Junction) -> 
     assert any("least dangerous" in reason for reason in forced["reasons"])
 
 
-def test_actions_are_by_vehicle(step: Deliberation) -> None:
+def test_actions_are_by_vehicle(step: ReasonedDeliberation) -> None:
     assert step.actions == {d.ego: d.action for d in step.decisions}
 
 

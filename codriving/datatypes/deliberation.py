@@ -1,5 +1,6 @@
 """Everything that was said and decided in one decision step."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from functools import lru_cache
@@ -12,9 +13,30 @@ from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.situation import Decision, Situation
 
 
-@dataclass(frozen=True, slots=True)
-class Deliberation:
+class Deliberation(ABC):
     """One decision step of a method.
+
+    Attributes:
+        counts: Counters of this step (fallbacks, repaired orders, cost, ...), summed over the episode.
+        transcript: What a language model was asked, one line of ``transcript.jsonl`` a question.
+    """
+
+    counts: Mapping[str, float]
+    transcript: tuple[dict[str, Any], ...] = ()
+
+    @property
+    @abstractmethod
+    def actions(self) -> dict[str, Action]:
+        """The action of each CAV, by id."""
+
+    @abstractmethod
+    def as_dict(self) -> dict[str, Any]:
+        """Return the step as one JSON-ready line of ``decisions.jsonl``."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReasonedDeliberation(Deliberation):
+    """A decision step in which the situation of each CAV is described.
 
     Attributes:
         time: Simulated time [s].
@@ -29,11 +51,9 @@ class Deliberation:
 
     @property
     def actions(self) -> dict[str, Action]:
-        """The action of each CAV, by id."""
         return {d.ego: d.action for d in self.decisions}
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the step as one JSON-ready line: what each CAV was told, what was removed, the order, the decision."""
         # Whoever goes by the same order shares its entry.
         written = {key: _order(order) for key, order in {id(s.order): s.order for s in self.situations}.items()}
         return {

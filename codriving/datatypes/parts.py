@@ -1,0 +1,221 @@
+"""The parts that a run is put together from, as base classes: what is built from a config is one of these."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeAlias
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.deliberation import Deliberation
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.experience import Experience, Interaction, Memory
+from codriving.datatypes.outcome import Outcome
+from codriving.datatypes.road import Road
+from codriving.datatypes.scene import Scene
+from codriving.datatypes.score import Score
+from codriving.datatypes.situation import Situation
+from codriving.datatypes.trajectory import Trajectory
+from codriving.datatypes.world import WorldState
+
+RoadMap: TypeAlias = Any
+"""The precomputed road, of which this room may not know: ``codriving.geometry.road_map.RoadMap``."""
+
+Pace: TypeAlias = Any
+"""The settings that all scenarios share, likewise: ``codriving.scenarios.Pace``."""
+
+Chat: TypeAlias = Any
+"""The client of a language model, likewise: ``codriving.llm.question.Chat``."""
+
+Account: TypeAlias = tuple[dict[str, float], list[dict[str, Any]]]
+"""Counters by column, and lines of ``transcript.jsonl``."""
+
+
+class Scenario(ABC):
+    """A road, the vehicles that a seed puts on it, and the pace of the simulation.
+
+    Attributes:
+        name: Name in tables and folders.
+        pace: Frequencies, target speeds, time limit and perception.
+    """
+
+    name: str = ""
+    pace: Pace
+
+    @property
+    @abstractmethod
+    def road(self) -> Road:
+        """The road; the same object for every seed."""
+
+    @abstractmethod
+    def scene(self, seed: int) -> Scene:
+        """Draw where each vehicle starts, how fast, and with which destination.
+
+        Raises:
+            ScenarioError: If the vehicles cannot be placed.
+        """
+
+
+class Simulator(ABC):
+    """A world that takes actions, from a seed to an outcome.
+
+    Attributes:
+        driving_model: How a CAV answers to actions.
+    """
+
+    road_map: RoadMap
+    driving_model: DrivingModel
+
+    @property
+    @abstractmethod
+    def outcome(self) -> Outcome | None:
+        """How the episode ended; None while it goes on."""
+
+    @abstractmethod
+    def reset(self, seed: int) -> WorldState:
+        """Begin the episode of a seed."""
+
+    @abstractmethod
+    def step(self, actions: Mapping[str, Action]) -> WorldState:
+        """Drive until the next decision."""
+
+    @abstractmethod
+    def trajectory(self) -> Trajectory:
+        """Return what was driven since the last reset."""
+
+
+class Model(ABC):
+    """What ``llm=`` chooses; a method that has a parameter with this annotation is handed it.
+
+    Attributes:
+        name: Name in tables.
+        max_concurrency: Most episodes that are worth driving at once.
+        failures_in_a_row: The batch stops after so many episodes without an answer.
+        cache: ``off``, ``use`` or ``replay``.
+        ask_plain: Whether it is asked even where no other vehicle is near and the best action is plain.
+        prompts: Folder with templates that replace ours; None takes ours.
+    """
+
+    name: str
+    max_concurrency: int
+    failures_in_a_row: int
+    cache: str
+    ask_plain: bool
+    prompts: str | None
+
+    @abstractmethod
+    def chat(self) -> Chat | None:
+        """Return the client, one for all methods with the same settings; None for the built-in rules."""
+
+
+class RuleModel(Model):
+    """The built-in rules: no network, no key, deterministic."""
+
+    name = "rules"
+    max_concurrency = 1
+    failures_in_a_row = 1
+    cache = "off"
+    ask_plain = False
+    prompts = None
+
+    def chat(self) -> None:
+        """Return nothing: there is no model to ask."""
+
+
+class CaseMemory(ABC):
+    """What ``memory=`` chooses; a method that has a parameter with this annotation is handed it.
+
+    Attributes:
+        label: What it is called in tables.
+        digest: SHA-256 of the contents of a snapshot; empty where there is none.
+        learns: Whether episodes learn from one another, so that they have to be driven in order.
+        reflections: Mistakes of an episode whose lessons a language model writes at most.
+    """
+
+    label: str = ""
+    digest: str = ""
+    learns: bool = False
+    reflections: int = 0
+
+    def begin(self, seed: int) -> None:
+        """Begin an episode."""
+        return None
+
+    @abstractmethod
+    def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
+        """Find experiences similar to each situation, most similar first."""
+
+    def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
+        """Keep what was learnt in an episode.
+
+        Returns:
+            How many of the experiences are new.
+        """
+        return 0
+
+
+class Method(ABC):
+    """Decides for all CAVs, one decision step after another.
+
+    A method that needs a language model or a memory has a parameter of its constructor annotated with ``Model`` or
+    ``CaseMemory``, and is handed what ``llm=`` and ``memory=`` choose.
+
+    Attributes:
+        name: Name in tables.
+        variant: Its variant in tables; empty if there is only one.
+        reasoner: What reasons: ``rules``, the name of a language model, or ``none``.
+        remembers: Its memory in tables; empty without one.
+    """
+
+    name: str = ""
+    variant: str = ""
+    reasoner: str = "none"
+    remembers: str = ""
+
+    def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
+        """Refuse a road that the method was not made for, before anything is driven.
+
+        Args:
+            target_speeds: Speeds that FASTER and SLOWER step through [m/s].
+            decision_interval: Time between two decisions [s].
+
+        Raises:
+            UserError: With the reason.
+        """
+        return None
+
+    @abstractmethod
+    def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
+        """Begin an episode; nothing of the one before is left."""
+
+    @abstractmethod
+    def act(self, world: WorldState) -> Deliberation:
+        """Decide for every CAV on the road."""
+
+    def ask_once(self, world: WorldState) -> Deliberation:
+        """Decide as ``act`` does, with as few questions to a language model as show each kind of them."""
+        return self.act(world)
+
+    def conclude(self, world: WorldState, outcome: Outcome) -> Account:
+        """Learn from an episode that has come to its end."""
+        return {}, []
+
+    def unfinished_step(self, time: float) -> Account:
+        """Return what was asked in a step that an error broke off, so that its cost is not lost.
+
+        Args:
+            time: Simulated time of the step [s].
+        """
+        return {}, []
+
+
+class Metric(ABC):
+    """Scores one driven episode.
+
+    Attributes:
+        name: Name of the definitions, for instance ``standard``.
+    """
+
+    name: str = ""
+
+    @abstractmethod
+    def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
+        """Return the score of an episode."""
