@@ -28,7 +28,7 @@ class EpisodeRecord:
     Attributes:
         variant: Name of the CDA variant, for instance ``full`` or ``no_negotiation/own_view``.
         reasoner: Who reasoned: ``rules`` or the name of a model.
-        score: What it is judged by; None for ``error``.
+        scores: Its score by the name of the metric; none for ``error``.
     """
 
     scenario: str
@@ -37,7 +37,7 @@ class EpisodeRecord:
     reasoner: str
     seed: int
     outcome: Outcome
-    score: Score | None
+    scores: dict[str, Score]
     participants: tuple[Participant, ...]
     decisions: int
     counts: dict[str, int | float]

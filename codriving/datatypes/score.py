@@ -1,6 +1,7 @@
 """What an episode is judged by; undefined is not zero."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +36,37 @@ class TravelScore:
 
 
 @dataclass(frozen=True, slots=True)
+class NamedNumber:
+    """A number that a metric measures besides; a column of its own in the tables.
+
+    Attributes:
+        name: Name of the column, for instance ``waiting_time``.
+        value: None where it is not defined, which is not zero.
+        unit: Its unit, for instance ``s``; empty without one.
+        better: Whether a higher or a lower number is better; None where neither is.
+        shown: Whether its mean is a column on the screen and in Markdown, too.
+    """
+
+    name: str
+    value: float | None
+    unit: str = ""
+    better: Literal["higher", "lower"] | None = None
+    shown: bool = False
+
+
+Setting: TypeAlias = str | int | float | bool | None
+
+
+@dataclass(frozen=True, slots=True)
 class Score:
-    """The measured quality of one episode."""
+    """The measured quality of one episode.
+
+    Attributes:
+        settings: Those of the metric that gave it, by key; filled in by what calls the metric.
+    """
 
     success: bool
-    pets: tuple[Pet, ...]
-    travels: tuple[TravelScore, ...]
+    pets: tuple[Pet, ...] = ()
+    travels: tuple[TravelScore, ...] = ()
+    numbers: tuple[NamedNumber, ...] = ()
+    settings: dict[str, Setting] = field(default_factory=dict)

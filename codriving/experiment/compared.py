@@ -67,7 +67,7 @@ def _results(driven: Driven, without: str = "") -> Iterator[tuple[Cell, CellResu
         dropped.add(METHOD_CHOICE)
     for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True):
         swept = {key: value for key, value in cell.swept.items() if key not in dropped}
-        yield cell, CellResults(records, swept, cpu=cpu_per_decision(timings))
+        yield cell, CellResults(records, swept, cpu=cpu_per_decision(timings), metric=cell.metrics)
 
 
 def _told(cell: Cell) -> tuple[object, ...]:

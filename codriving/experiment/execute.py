@@ -168,7 +168,7 @@ def _records(
 
 def _tables(plan: Plan, driven: Driven, paper: Paper) -> RunTables:
     cells = [
-        CellResults(records, cell.swept, seconds_per_decision(timings))
+        CellResults(records, cell.swept, seconds_per_decision(timings), metric=cell.metrics)
         for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True)
     ]
     return run_tables(cells, paper, driven.metrics, plan.notes)

@@ -144,7 +144,9 @@ def learned(driven: Driven, settings: int) -> Further:
     each = len(driven.cells) // settings
     cells = [
         LearningRow(
-            CellResults(records, {k: v for k, v in cell.swept.items() if k not in (KEY, "scenario", "cda")}),
+            CellResults(
+                records, {k: v for k, v in cell.swept.items() if k not in (KEY, "scenario", "cda")}, metric=cell.metrics
+            ),
             interactions=int(cell.resolved["memory"]["interactions"]),
             setting=index // each,
             shots=int(cell.resolved["memory"]["shots"]),

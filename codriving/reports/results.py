@@ -11,6 +11,7 @@ from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.score import Score
 from codriving.metrics.wilson import wilson_interval
 from codriving.reports.columns import Value, share
+from codriving.runs.episode_folder import UNNAMED
 
 COST = "cost_usd"
 
@@ -46,12 +47,14 @@ class CellResults:
     Attributes:
         seconds: Wall-clock time of a decision step [s], or None where that is lost.
         cpu: CPU time of a decision [s], or None where that is lost; it goes into no file that has to repeat.
+        metric: Name of the metric whose scores are shown.
     """
 
     records: Sequence[EpisodeRecord]
     swept: Mapping[str, str] = field(default_factory=dict)
     seconds: float | None = None
     cpu: float | None = None
+    metric: str = "standard"
 
     @property
     def first(self) -> EpisodeRecord:
@@ -66,7 +69,10 @@ class CellResults:
     @cached_property
     def episodes(self) -> "list[ScoredEpisode]":
         """Each episode with its score."""
-        return [ScoredEpisode(record, record.score, self.swept) for record in self.records]
+        return [
+            ScoredEpisode(record, record.scores.get(self.metric) or record.scores.get(UNNAMED), self.swept)
+            for record in self.records
+        ]
 
     @cached_property
     def completed(self) -> "list[ScoredEpisode]":

@@ -1,5 +1,6 @@
 """The folder of one episode: record, trajectory, decisions, transcript, timing; written whole or not at all."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,6 +25,9 @@ TIMING = "timing.json"
 """What an episode cost in time, kept apart from all that must repeat to the byte."""
 
 ERROR = "error.txt"
+
+UNNAMED = ""
+"""Name of the metric of a record that release 0.1 wrote."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,9 +121,18 @@ def read_record(folder: Path) -> EpisodeRecord:
     """
     path = folder / RECORD
     try:
-        return decode(EpisodeRecord, read_episode_text(path))
+        return decode(EpisodeRecord, _with_scores(read_episode_text(path)))
     except ValueError as error:
         raise damaged(path, str(error)) from error
+
+
+def _with_scores(text: str) -> str:
+    """Give a record as it is written today; release 0.1 wrote a single score, and not of which metric."""
+    if '\n  "score": ' not in text:
+        return text
+    fields = json.loads(text)
+    score = fields.pop("score")
+    return json.dumps({**fields, "scores": {} if score is None else {UNNAMED: score}})
 
 
 def read_decisions(folder: Path) -> tuple[dict[str, Any], ...]:

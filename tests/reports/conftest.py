@@ -39,7 +39,7 @@ def make() -> Make:
             reasoner=reasoner,
             seed=seed,
             outcome=Outcome(ending, 12.0, {}, hit, message="RuntimeError: x" if ending is Ending.ERROR else ""),
-            score=None if ending is Ending.ERROR else score,
+            scores={} if ending is Ending.ERROR else {"standard": score},
             participants=(Participant("CAV0", "CAV", "a", None), Participant("HDV0", "HDV", "b", None)),
             decisions=12,
             counts=counts or {},

@@ -36,6 +36,7 @@ def record(
     faster: float = 0.0,
     counts: dict[str, Any] | None = None,
     memory: str = "",
+    metric: str = "standard",
 ) -> EpisodeRecord:
     """One episode; pets and velocities go by the seed."""
     hit = Collision(3.25, "CAV0", "HDV0", "CAV-HDV") if ending is Ending.COLLISION else None
@@ -60,7 +61,7 @@ def record(
         reasoner,
         seed,
         outcome,
-        None if ending is Ending.ERROR else Score(ending is Ending.SUCCESS, pets, travels),
+        {} if ending is Ending.ERROR else {metric: Score(ending is Ending.SUCCESS, pets, travels)},
         (
             Participant("CAV0", "CAV", "a", None),
             Participant("CAV1", "CAV", "b", 9.0),

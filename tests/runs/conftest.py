@@ -24,7 +24,9 @@ def record() -> EpisodeRecord:
         reasoner="rules",
         seed=7,
         outcome=Outcome(Ending.COLLISION, 4.2, {"CAV0": 3.0}, hit, (hit,), ("HDV3",), ""),
-        score=Score(False, (Pet("CAV0", "CAV1", "crossing", 1.25),), (TravelScore("CAV0", 7.1, 3.0, None),)),
+        scores={
+            "standard": Score(False, (Pet("CAV0", "CAV1", "crossing", 1.25),), (TravelScore("CAV0", 7.1, 3.0, None),))
+        },
         participants=(Participant("CAV0", "CAV", "south-north", 3.0), Participant("HDV2", "HDV", "west-east", None)),
         decisions=5,
         counts={"fallbacks": 2},

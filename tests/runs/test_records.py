@@ -13,12 +13,13 @@ from hypothesis import strategies as st
 
 from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.datatypes.record import EpisodeRecord, Participant
-from codriving.datatypes.score import Pet, Score, TravelScore
+from codriving.datatypes.score import NamedNumber, Pet, Score, TravelScore
 from codriving.errors import RunFolderError
 from codriving.runs.episode_folder import RECORD, read_record
 from codriving.runs.json_files import decode, encode
 
 NUMBER = st.floats(allow_nan=False, allow_infinity=False)
+BETTER = st.sampled_from(["higher", "lower", None])
 WORD = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
 COLLISION = st.builds(Collision, NUMBER, WORD, WORD, WORD)
 RECORDS = st.builds(
@@ -35,12 +36,17 @@ RECORDS = st.builds(
         st.lists(WORD, max_size=2).map(tuple),
         WORD,
     ),
-    score=st.none()
-    | st.builds(
-        Score,
-        st.booleans(),
-        st.lists(st.builds(Pet, WORD, WORD, WORD, NUMBER), max_size=2).map(tuple),
-        st.lists(st.builds(TravelScore, WORD, NUMBER, NUMBER, st.none() | NUMBER), max_size=2).map(tuple),
+    scores=st.dictionaries(
+        WORD,
+        st.builds(
+            Score,
+            st.booleans(),
+            st.lists(st.builds(Pet, WORD, WORD, WORD, NUMBER), max_size=2).map(tuple),
+            st.lists(st.builds(TravelScore, WORD, NUMBER, NUMBER, st.none() | NUMBER), max_size=2).map(tuple),
+            st.lists(st.builds(NamedNumber, WORD, st.none() | NUMBER, WORD, BETTER), max_size=2).map(tuple),
+            st.dictionaries(WORD, st.none() | NUMBER | st.integers() | WORD | st.booleans(), max_size=2),
+        ),
+        max_size=2,
     ),
     participants=st.lists(st.builds(Participant, WORD, WORD, WORD, st.none() | NUMBER), max_size=2).map(tuple),
     decisions=st.integers(0, 1000),
@@ -55,6 +61,18 @@ def test_what_is_read_is_what_was_written(record: EpisodeRecord) -> None:
     text = encode(record)
     assert decode(EpisodeRecord, text) == record
     assert encode(record) == text
+
+
+def test_a_record_of_release_01_has_one_score_without_the_name_of_its_metric(
+    record: EpisodeRecord, tmp_path: Path
+) -> None:
+    fields = json.loads(encode(record))
+    score = fields.pop("scores")["standard"]
+    old = {name: score[name] for name in ("success", "pets", "travels")}
+    (tmp_path / "record.json").write_text(json.dumps({**fields, "score": old}, indent=2))
+    assert read_record(tmp_path) == dataclasses.replace(record, scores={"": record.scores["standard"]})
+    (tmp_path / "record.json").write_text(json.dumps({**fields, "score": None}, indent=2))
+    assert read_record(tmp_path) == dataclasses.replace(record, scores={})
 
 
 def test_a_record_from_before_there_was_a_memory_can_be_read(record: EpisodeRecord) -> None:
@@ -115,7 +133,7 @@ DAMAGE = {
     "NaN": (change(["outcome", "time"], math.nan), r"outcome\.time: Input should be a finite number, got nan"),
     "too large": (
         lambda plain: json.dumps(plain).replace("1.25", "1e999"),
-        r"score\.pets\.0\.value: Input should be a finite number, got inf",
+        r"scores\.standard\.pets\.0\.value: Input should be a finite number, got inf",
     ),
 }
 

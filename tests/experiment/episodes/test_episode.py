@@ -17,8 +17,7 @@ def test_a_success_is_recorded_with_all_that_tables_need() -> None:
     record = result.record
     assert (record.scenario, record.method, record.variant, record.reasoner) == ("toy", "steady", "full", "rules")
     assert record.outcome.ending is Ending.SUCCESS
-    assert record.score is not None
-    assert record.score.success
+    assert record.scores["toy"].success
     assert record.decisions == len(result.decisions) == len(result.decision_seconds) == int(record.outcome.time)
     assert len(result.decision_cpu) == record.decisions
     assert all(cpu >= 0 for cpu in result.decision_cpu)
@@ -46,7 +45,7 @@ def test_an_exception_becomes_a_record_on_one_line_with_what_was_driven() -> Non
     assert result.record.outcome.ending is Ending.ERROR
     assert result.record.outcome.message == "RuntimeError: seed 1 broke"
     assert result.record.outcome.time == 1.0
-    assert result.record.score is None
+    assert result.record.scores == {}
     assert result.record.decisions == 1
     assert result.trajectory is not None
     assert len(result.trajectory.tracks[0].x) == 2

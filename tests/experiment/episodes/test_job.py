@@ -68,7 +68,7 @@ def test_a_result_that_cannot_be_written_is_a_failed_episode() -> None:
     saved: list[EpisodeResult] = []
 
     def save(unit: Unit, result: EpisodeResult) -> None:
-        if result.record.score is not None:
+        if result.record.scores:
             raise ValueError("NaN is not a number")
         saved.append(result)
 
