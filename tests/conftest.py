@@ -58,3 +58,16 @@ def merge(configured: Callable[..., Environment]) -> Junction:
 def roundabout(configured: Callable[..., Environment]) -> Junction:
     """The roundabout of the configuration, and worlds on it made by hand."""
     return Junction(configured("scenario=roundabout"))
+
+
+@pytest.fixture(scope="session")
+def road(configured: Callable[..., Environment]) -> Callable[[str], Junction]:
+    """The road of a scenario, by name, and worlds on it made by hand."""
+    known: dict[str, Junction] = {}
+
+    def named(name: str) -> Junction:
+        if name not in known:
+            known[name] = Junction(configured(f"scenario={name}"))
+        return known[name]
+
+    return named
