@@ -1,0 +1,33 @@
+"""The name of a method stands in its file, its YAML, its docs and its tests, and nowhere else."""
+
+import ast
+
+from source import files
+
+from codriving.config.choices import choices
+
+STILL_NAME = {
+    "codriving.config.choices",
+    "codriving.llm.prompts.example",
+    "codriving.llm.prompts.render",
+    "codriving.llm.prompts.seen_views",
+    "codriving.reports.comparison",
+    "codriving.reports.load_figure",
+    "codriving.reports.stand_in",
+    "codriving.training.command",
+    "codriving.training.settings",
+    "codriving.training.single_settings",
+}
+"""Files elsewhere that still name one; none are added."""
+
+
+def test_methods_are_named_by_themselves_alone() -> None:
+    names = set(choices("method")) - {"codriving"}
+    found = {
+        file.module
+        for file in files()
+        if file.room != "methods"
+        for node in file.nodes
+        if isinstance(node, ast.Constant) and node.value in names
+    }
+    assert found <= STILL_NAME
