@@ -5,7 +5,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from io import StringIO
@@ -266,26 +265,28 @@ def test_how_a_model_is_asked_makes_no_other_cell_and_which_one_does() -> None:
     assert asking_cell("other").fingerprint != cell.fingerprint
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+@pytest.mark.skipif(os.name == "nt", reason="needs process groups")
 def test_ctrl_c_stops_at_once_while_servers_are_waited_for(tmp_path: Path, reference: dict[str, bytes]) -> None:
-    gate = tmp_path / "gate"
-    gate.mkdir()
-    os.mkfifo(gate / "fifo")
+    hears, says = os.pipe()
+    holds, never = os.pipe()
     process = subprocess.Popen(
-        [sys.executable, toy_models.__file__, str(tmp_path / "out"), str(gate)],
+        [sys.executable, toy_models.__file__, str(tmp_path / "out"), str(says), str(holds)],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=TOP, start_new_session=True,
-        env={**os.environ, "PYTHONPATH": str(TOP)},
+        env={**os.environ, "PYTHONPATH": str(TOP)}, pass_fds=(says, holds),
     )  # fmt: skip
+    os.close(says)
+    os.close(holds)
     try:
-        end = time.monotonic() + 30
-        while len(list(gate.glob("waiting-*"))) < 3:
-            assert time.monotonic() < end, "three episodes never waited at the same time"
-            time.sleep(0.005)
+        # Three threads drive: once all of them wait, the four episodes before are finished.
+        for _ in range(3):
+            assert os.read(hears, 1) == b"w", "the batch ended before three episodes waited at the same time"
         os.killpg(process.pid, signal.SIGINT)
-        out, err = process.communicate(timeout=30)
+        out, err = process.communicate()
     finally:
         process.kill()
         process.communicate()
+        os.close(hears)
+        os.close(never)
     assert process.returncode == 130
     assert out == ""
     assert f"Stopped; 4 of {EPISODES} episodes are finished and kept." in err

@@ -1,5 +1,6 @@
-"""Toy language models and methods that ask them; also a batch of its own: ``python toy_models.py OUTPUT GATE``."""
+"""Toy language models and methods that ask them; also a batch of its own: ``toy_models.py OUTPUT SAYS HOLDS``."""
 
+import os
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -148,14 +149,19 @@ def asking_plan(
     return Plan(rows, 0, episodes, launcher or Processes(), workers, output, "run", name)
 
 
-def main(output: Path, gate: Path) -> int:
-    """Drive a batch of which three episodes wait in vain for an answer, from seed 4 on."""
+def main(output: Path, says: int, holds: int) -> int:
+    """Drive a batch of which three episodes wait in vain for an answer, from seed 4 on.
+
+    Args:
+        says: Descriptor of a pipe; one byte is written for each episode that waits.
+        holds: Descriptor of a pipe that nothing is ever written to.
+    """
 
     def wait(seed: int, step: int) -> None:
         if seed >= 4:
-            (gate / f"waiting-{seed}").touch()
-            # Opening a pipe that nobody writes to blocks for ever, as a server does that never answers.
-            (gate / "fifo").open().close()
+            os.write(says, b"w")
+            # Blocks for ever, as a server does that never answers.
+            os.read(holds, 1)
 
     CLIENTS["gpt"] = ToyClient(wait)
     plan = asking_plan(output)
@@ -168,4 +174,4 @@ if __name__ == "__main__":
     # Under its own name, by which the configs call it.
     import toy_models
 
-    sys.exit(toy_models.main(Path(sys.argv[1]), Path(sys.argv[2])))
+    sys.exit(toy_models.main(Path(sys.argv[1]), *map(int, sys.argv[2:])))
