@@ -27,10 +27,17 @@ from worlds import Car, Junction, Thoughts, car, order_of, standing
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
+from codriving.reasoning.ordering.problem import Problem
 from codriving.reasoning.safety.outlook import Outlook
 
 NAMED = re.compile(r"crossing|converging|weaving|[CH][AD]V\d|in the way|lane ends|other side|\d+\.?\d* m(?:/s2)?\b")
 """What of a reason stands in a table."""
+
+REASONS = re.compile(
+    r"earlier|turns|no longer stop|drives ahead|wait less|gives way|no intent|is through|through before|may come|guess"
+    r"|\d+\.\d s(?: against \d+\.\d s)?"
+)
+"""What of the reasons of an order stands in a table."""
 
 
 @dataclass(frozen=True)
@@ -105,4 +112,24 @@ def removals(outlook: Outlook, *layers: Callable[[Outlook], dict[Action, list[st
         for action, reasons in layer(outlook).items():
             found.setdefault(action, []).extend(" ".join(NAMED.findall(reason)) for reason in reasons)
     texts = (f"{a}: {', '.join(dict.fromkeys(found[a]))}" for a in outlook.actions if a in found)
+    return "; ".join(texts) or "-"
+
+
+def orders(order: PassingOrder) -> str:
+    """Write down who goes first, with what the reasons name."""
+    texts = (f"{p.first} before {p.second}: {' '.join(REASONS.findall(p.reason))}" for p in order.precedences)
+    return "; ".join(texts) or "-"
+
+
+def posed(problem: Problem) -> str:
+    """Write down an ordering problem: times [s], distances [m], what must lie between two vehicles [s]."""
+    instance = problem.instance
+    texts = []
+    for e in instance.entrants.values():
+        marks = [" committed"] * e.committed + [" turning"] * e.turning + [f" behind {e.leader}"] * bool(e.leader)
+        shut = "".join(f" not {begin:.2f} to {end:.2f}" for begin, end in e.windows)
+        numbers = f"in {e.eta:.2f} s, {e.distance:.1f} m, across {e.crossing:.2f} s, to go {e.remaining:.1f} m"
+        texts.append(f"{e.id} {numbers}{''.join(marks)}{shut}")
+    texts += [f"{one} then {other} {apart:.2f} s" for (one, other), apart in sorted(instance.separation.items())]
+    texts += [f"{one} has to go before {other}" for one, other in sorted(instance.before)]
     return "; ".join(texts) or "-"

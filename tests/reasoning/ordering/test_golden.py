@@ -1,0 +1,46 @@
+"""The ordering problem of a scene, the coordinator's order and each CAV's own: the tables in ``golden/``."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from golden import Section, orders, posed, sections, setting
+from worlds import Junction, Thoughts
+
+from codriving.reasoning.ordering.own_order import OwnOrders
+from codriving.reasoning.ordering.problem import ProblemMaker
+from codriving.reasoning.sharing.cda import OwnOrder
+
+
+def problem(thoughts: Thoughts) -> str:
+    maker = ProblemMaker(thoughts.junction.road_map, thoughts.forecast)
+    return posed(maker.pose(thoughts.scenes, thoughts.conflicts, 0.0))
+
+
+def coordinator(thoughts: Thoughts) -> str:
+    return orders(thoughts.negotiate())
+
+
+def own(reading: OwnOrder) -> Callable[[Thoughts], str]:
+    def make_up(thoughts: Thoughts) -> str:
+        made = OwnOrders(thoughts.junction.road_map, thoughts.forecast, reading, 0)
+        found = made.orders(thoughts.scenes, thoughts.conflicts)
+        return "; ".join(f"{ego}: {orders(order)}" for ego, order in sorted(found.items()))
+
+    return make_up
+
+
+MADE: dict[str, Callable[[Thoughts], str]] = {
+    "problem": problem,
+    "coordinator": coordinator,
+    "own_view": own("own_view"),
+    "same_rule": own("same_rule"),
+}
+TABLES = [(name, section) for name in MADE for section in sections(Path(__file__).parent / "golden" / f"{name}.md")]
+
+
+@pytest.mark.parametrize(("table", "section"), TABLES, ids=[f"{name}: {s.title}" for name, s in TABLES])
+def test_what_is_ordered_is_what_the_table_says(table: str, section: Section, road: Callable[[str], Junction]) -> None:
+    junction = road(section.road)
+    found = {value: MADE[table](setting(section.scene, value).think(junction)) for value, _ in section.rows}
+    assert found == dict(section.rows)
