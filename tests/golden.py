@@ -27,6 +27,8 @@ from worlds import Car, Junction, Thoughts, car, order_of, standing
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.situation import Situation
+from codriving.reasoning.decision.rules import decide_one
 from codriving.reasoning.ordering.problem import Problem
 from codriving.reasoning.safety.outlook import Outlook
 
@@ -133,3 +135,14 @@ def posed(problem: Problem) -> str:
     texts += [f"{one} then {other} {apart:.2f} s" for (one, other), apart in sorted(instance.separation.items())]
     texts += [f"{one} has to go before {other}" for one, other in sorted(instance.before)]
     return "; ".join(texts) or "-"
+
+
+def decided(situation: Situation) -> str:
+    """Write down how far each action gets the CAV within 10 s [m], which ones stay, and the decision."""
+    texts = []
+    for a in situation.assessments:
+        gains = "does not keep the order" if a.progress is None else f"{a.progress:.1f} m"
+        arrivals = "".join(f" from {time:.2f} s" for time in a.arrivals)
+        mark = "" if a.safe and not a.reasons else " forced" if a.safe else " unsafe"
+        texts.append(f"{a.action} {gains}{arrivals}{mark}")
+    return f"{decide_one(situation).action}; of {', '.join(texts)}"

@@ -97,3 +97,39 @@ def test_limit_is_kept_after_shrinking(most_at_once: int) -> None:
         return most
 
     assert asyncio.run(run()) == max(1, most_at_once // 2)
+
+
+def test_an_answer_lets_in_one_who_waits_for_a_place_that_was_taken_away() -> None:
+    async def run() -> tuple[list[str], list[str]]:
+        limit, inside = ConcurrencyLimit(2), list[str]()
+
+        async def one(name: str) -> None:
+            async with limit.slot():
+                inside.append(name)
+                await asyncio.Event().wait()
+
+        async with limit.slot() as ticket:
+            limit.shrink(ticket)
+            waiting = [asyncio.create_task(one(name)) for name in ("first", "second")]
+            await asyncio.sleep(0)
+            before = list(inside)
+            limit.grow()
+            await asyncio.sleep(0)
+            after = list(inside)
+        for task in waiting:
+            task.cancel()
+        await asyncio.gather(*waiting, return_exceptions=True)
+        return before, after
+
+    # One place of two was left, and taken; an answer makes them two again.
+    assert asyncio.run(run()) == ([], ["first"])
+
+
+def test_it_grows_by_one_a_round_of_answers() -> None:
+    limit = ConcurrencyLimit(8)
+    limit.shrink(0)
+    limits = []
+    for _ in range(20):
+        limit.grow()
+        limits.append(limit.limit)
+    assert limits == [4, 4, 4, 4, 5, 5, 5, 5, 5, 6, 6, 6, 6, 6, 6, 6, 7, 7, 7, 7]

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from asked import reasoned
 from worlds import Junction, car
 
 from codriving.datatypes.action import Action
@@ -11,8 +12,9 @@ from codriving.datatypes.outcome import Ending
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
-from codriving.errors import ConfigError
+from codriving.errors import ConfigError, ModelUnavailableError
 from codriving.llm.language_model import Offline
+from codriving.llm.question import Question
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
 from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
@@ -103,3 +105,20 @@ def test_an_episode_begins_without_memories_of_the_one_before(method: Make, junc
     made.act(near)
     made.reset(junction.road_map, junction.model, 0)
     assert made.act(tied).as_dict() == method().act(tied).as_dict()
+
+
+def test_what_was_asked_in_a_step_that_broke_off_is_accounted_for(junction: Junction) -> None:
+    def script(question: Question) -> str | Exception:
+        if question.purpose == "decide":
+            return ModelUnavailableError("the server said 503, asked 3 times")
+        return "no order"
+
+    asked = reasoned(junction, script)
+    asked.method._ledger = asked.ledger
+    world = junction.world(car("CAV1", "south-north", 70.0, 8.0), car("CAV2", "west-east", 70.0, 8.0))
+    with pytest.raises(ModelUnavailableError):
+        asked.method.act(world)
+    counts, lines = asked.method.unfinished_step(1.5)
+    assert counts["model_calls"] == len(asked.chat.questions) - 1 == 2
+    assert [(line["purpose"], line["time"]) for line in lines] == [("negotiate", 1.5)]
+    assert asked.method.unfinished_step(2.0)[1] == []

@@ -105,3 +105,29 @@ def test_standing_is_timed_and_forgotten_when_it_moves(junction: Junction) -> No
     assert tracking.standing("CAV2", stands, 2.5) == 0
     assert tracking.standing("CAV1", moves, 3.0) == 0
     assert tracking.standing("CAV1", stands, 4.0) == 0
+
+
+@pytest.mark.parametrize(
+    ("route", "place", "full", "possible"),
+    [
+        # Half a metre beside a route or 0.15 rad (9 degrees) off it is one step of misfit; two steps more than the best
+        # route rule a route out.
+        ("south-east", 101.2, True, {"south-east", "south-north", "south-west"}),
+        ("south-east", 101.4, True, {"south-east", "south-north"}),
+        ("south-east", 102.0, True, {"south-east", "south-north"}),
+        ("south-east", 102.2, True, {"south-east"}),
+        ("south-north", 102.0, True, {"south-east", "south-north", "south-west"}),
+        ("south-north", 102.2, True, {"south-north", "south-west"}),
+        ("south-north", 102.6, True, {"south-north", "south-west"}),
+        ("south-north", 102.8, True, {"south-north"}),
+        # Without the heading the place alone tells, later.
+        ("south-east", 103.2, False, {"south-east", "south-north", "south-west"}),
+        ("south-east", 103.4, False, {"south-east", "south-north"}),
+        ("south-east", 104.2, False, {"south-east", "south-north"}),
+        ("south-east", 104.4, False, {"south-east"}),
+    ],
+)
+def test_where_routes_part_the_others_are_ruled_out_at_two_steps_of_misfit(
+    route: str, place: float, full: bool, possible: set[str], junction: Junction
+) -> None:
+    assert routes(Tracking(junction.road_map), seen(junction, route, place, full=full)) == possible

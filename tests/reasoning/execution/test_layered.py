@@ -1,5 +1,6 @@
 """The reference executor: the first group accelerates, everybody else waits for its turn."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -120,3 +121,14 @@ def test_a_driver_who_may_be_there_first_is_waited_for(junction: Junction) -> No
 def test_settings_out_of_range_are_refused(key: str, value: float) -> None:
     with pytest.raises(ConfigError, match=f"{key} must be 0 to"):
         layered(**{key: value})
+
+
+@pytest.mark.parametrize(("later", "action"), [(0.08, Action.FASTER), (0.12, Action.SLOWER)])
+def test_a_difference_of_a_tenth_of_a_second_is_not_waited_for(
+    later: float, action: Action, junction: Junction
+) -> None:
+    stage = stage_of(junction.thoughts(*four()))
+    ordering = ordering_of("CAV1", "CAV2", "CAV3", "CAV4")
+    # CAV1 is 19.4 m before the crossing and can be there in 2.36 s.
+    held = replace(ordering, not_before={"CAV1": 2.36 + later})
+    assert layered().drive(stage, held).actions["CAV1"] is action

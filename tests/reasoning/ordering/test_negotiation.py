@@ -143,3 +143,13 @@ def test_an_own_order_leaves_nobody_out_since_every_pair_has_the_cav_in_it(
     for ego, order in orders(thoughts, reading).items():
         partners = {c.other for c in thoughts.conflicts[ego]}
         assert {frozenset((p.first, p.second)) for p in order.precedences} == {frozenset((ego, k)) for k in partners}
+
+
+@pytest.mark.parametrize(("gain", "share"), [(-9.0, 0.27), (0.0, 0.50), (9.0, 0.73), (18.0, 0.88)])
+def test_a_guess_is_right_the_more_often_the_clearer_the_difference_is(
+    gain: float, share: float, junction: Junction
+) -> None:
+    # At 9 m/s CAV1 is there 1 s earlier for each 9 m that it is nearer: 1 / (1 + exp(-1)) = 0.73.
+    thoughts = crossing(junction, gain, (9.0, 9.0))
+    said = [orders(thoughts, "independent", seed)["CAV1"].first_of("CAV1", "CAV2") for seed in range(1000)]
+    assert said.count("CAV1") / 1000 == pytest.approx(share, abs=0.05)

@@ -10,7 +10,7 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import Role
 from codriving.reasoning.safety.assessment import ThreeLayers
 from codriving.reasoning.safety.outlook import Outlook
-from codriving.reasoning.safety.same_lane import LANE_END_GAP, check_ahead, check_behind, forced_braking
+from codriving.reasoning.safety.same_lane import check_ahead, check_behind, forced_braking
 from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates
 
 
@@ -145,7 +145,7 @@ def test_what_is_left_can_stop_before_the_lane_ends(merge: Junction) -> None:
         assert change is not None
         found = check_ahead(outlook)
         for action, stops in zip(outlook.actions, outlook.stops, strict=True):
-            reaches = stops[-1] - outlook.scene.place > change.room - LANE_END_GAP
+            reaches = stops[-1] - outlook.scene.place > change.room - 2.0
             assert (action in found) is bool(reaches)
         removed.append(set(found) - {Action.LANE_LEFT})
     assert removed[0] == set()
