@@ -103,10 +103,10 @@ def rooms() -> list[str]:
 
 
 @cache
-def targets(file: File) -> frozenset[str]:
-    """Return the full names of the files of ours that a file imports, or names in a text."""
+def targets(file: File, texts: bool = True) -> frozenset[str]:
+    """Return the full names of the files of ours that a file imports, or also names in a text."""
     found = set[str]()
-    for name in (*(f"{module}.{name}".rstrip(".") for module, name in file.imports), *file.named):
+    for name in (*(f"{module}.{name}".rstrip(".") for module, name in file.imports), *(file.named if texts else ())):
         module = name.partition(":")[0]
         while module and module not in modules():
             module = module.rpartition(".")[0]

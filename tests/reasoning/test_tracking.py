@@ -130,4 +130,4 @@ def test_standing_is_timed_and_forgotten_when_it_moves(junction: Junction) -> No
 def test_where_routes_part_the_others_are_ruled_out_at_two_steps_of_misfit(
     route: str, place: float, full: bool, possible: set[str], junction: Junction
 ) -> None:
-    assert routes(Tracking(junction.road_map), seen(junction, route, place, full=full)) == possible
+    assert routes(Tracking(junction.road_map), perceived(junction, route, place, full=full)) == possible
