@@ -16,7 +16,7 @@ help: ## list the targets
 $(READY): requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed: make PYTHON=/path/to/python3.11" >&2; exit 1; }
 	$(PYTHON) -m venv --clear $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 	@touch $(READY)
 
@@ -28,9 +28,25 @@ run: $(READY) ## drive 20 episodes at the intersection and print the table
 test: $(READY) ## run the tests
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
+coverage: $(READY) ## run the tests and measure which lines of codriving/ they run through
+	$(BIN)/python -m pytest -n auto --dist worksteal --cov --cov-report=term:skip-covered $(ARGS)
+
+mutants: $(READY) ## change the reasoning in 300 places, one at a time, and see whether a test notices
+	$(BIN)/python -m tests.mutants $(ARGS)
+
+# What takes too long for .ci/run: all tests with PyTorch, the mutants, a real training.
+check-all: $(TORCH) ## lint, all tests, mutants and a small training; takes an hour
+	$(MAKE) lint
+	$(MAKE) coverage
+	$(MAKE) mutants
+	$(BIN)/codriving train madqn --smoke output=$(VENV)/check
+
+hooks: $(READY) ## let git run the checks of .pre-commit-config.yaml before each commit
+	$(BIN)/pre-commit install
+
 # A stamp of its own: only training needs PyTorch.
 $(TORCH): $(READY) requirements-train.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement requirements-train.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements-train.lock
 	@touch $(TORCH)
 
 torch: $(TORCH) ## add PyTorch to .venv; make test then runs the tests of training, too
@@ -69,14 +85,11 @@ format: $(READY) ## put the code into house style
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-lock: $(READY) ## renew requirements.lock within the ranges of pyproject.toml
-	$(BIN)/pip-compile --quiet --upgrade --extra dev --strip-extras --no-annotate --no-header --no-emit-index-url \
-	    --no-emit-find-links --no-emit-trusted-host --output-file $(VENV)/lock pyproject.toml
-	{ echo '# Exact versions of everything that codriving[dev] needs, for Python 3.11. Made by: make lock'; \
-	    grep -v '^#' $(VENV)/lock | grep .; } > requirements.lock
+lock: $(READY) ## renew both lock files within the ranges of pyproject.toml, with hashes
+	$(BIN)/python .ci/lock.py --upgrade
 
 clean: ## remove .venv and what the tools left behind; outputs/ stays
 	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test torch train ablate compare bench pictures lint types format lock clean
+.PHONY: help install run test coverage mutants check-all hooks torch train ablate compare bench pictures lint types format lock clean

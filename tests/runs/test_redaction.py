@@ -1,7 +1,7 @@
 """Secrets are masked, everything else stays."""
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from codriving.runs.redaction import MASK, flat, nested, redact
@@ -35,10 +35,16 @@ def test_flattening_gives_a_line_a_setting() -> None:
     }
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow])
-@given(st.dictionaries(names, st.recursive(leaves | st.lists(leaves), lambda inner: st.dictionaries(names, inner))))
-def test_nesting_undoes_flattening(settings: dict[str, object]) -> None:
-    assert nested(flat(settings)) == settings
+@settings(max_examples=30)
+@given(
+    st.dictionaries(
+        names,
+        st.recursive(leaves | st.lists(leaves, max_size=3), lambda inner: st.dictionaries(names, inner), max_leaves=6),
+        max_size=4,
+    )
+)
+def test_nesting_undoes_flattening(config: dict[str, object]) -> None:
+    assert nested(flat(config)) == config
 
 
 def test_a_value_that_holds_others_is_refused() -> None:

@@ -127,8 +127,8 @@ def test_settings_out_of_range_are_refused(key: str, value: float) -> None:
 def test_a_difference_of_a_tenth_of_a_second_is_not_waited_for(
     later: float, action: Action, junction: Junction
 ) -> None:
-    stage = stage_of(junction.thoughts(*four()))
+    moment = moment_of(junction.thoughts(*four()))
     ordering = ordering_of("CAV1", "CAV2", "CAV3", "CAV4")
     # CAV1 is 19.4 m before the crossing and can be there in 2.36 s.
     held = replace(ordering, not_before={"CAV1": 2.36 + later})
-    assert layered().drive(stage, held).actions["CAV1"] is action
+    assert layered().drive(moment, held).actions["CAV1"] is action

@@ -7,7 +7,7 @@ import pytest
 from golden import Section, orders, posed, sections, setting
 from worlds import Junction, Thoughts
 
-from codriving.reasoning.ordering.own_order import OwnOrders
+from codriving.reasoning.ordering.negotiation import OwnOrders
 from codriving.reasoning.ordering.problem import ProblemMaker
 from codriving.reasoning.sharing.cda import OwnOrder
 

@@ -144,7 +144,7 @@ def test_behind_somebody_on_the_lane_that_it_leaves_a_change_gets_less_far_the_n
     assert near is None or near < far
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(st.floats(0.0, 25.0), st.floats(0.0, 25.0), st.floats(5.0, 30.0), st.floats(0.0, 30.0))
 def test_a_lane_change_is_never_forced(highway: Junction, ahead: float, behind: float, v: float, w: float) -> None:
     outlook = highway.outlook(

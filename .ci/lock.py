@@ -1,0 +1,80 @@
+"""Write requirements.lock and requirements-train.lock, with hashes: run by ``make lock``.
+
+The hashes are those of every file of a version, so that no other file is installed under its name. Of PyTorch the lock
+holds the wheels for Python 3.11 on the usual platforms, and those for the CPU alone, which come from another index and
+are kept as long as the version stays.
+"""
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+BIN = Path(sys.executable).parent
+COMPILE = [
+    *(str(BIN / "pip-compile"), "--quiet", "--generate-hashes", "--allow-unsafe", "--strip-extras", "--no-annotate"),
+    *("--no-header", "--no-emit-index-url", "--no-emit-find-links", "--no-emit-trusted-host"),
+]
+PLATFORMS = ("manylinux_2_28_x86_64", "manylinux_2_28_aarch64", "macosx_14_0_arm64")
+CUDA = ("nvidia-", "cuda-", "triton")
+"""Beginnings of the packages that only a wheel of PyTorch for GPUs needs."""
+
+LOCK = "# Exact versions of everything that codriving[dev] needs, for Python 3.11. Made by: make lock\n"
+TRAIN = """\
+# Exact versions of what codriving[train] needs beyond requirements.lock, for Python 3.11. Made by: make lock
+# Networks of this size are trained on the CPU. On Linux the wheel without CUDA is meant, from PyTorch's own index:
+#     PIP_EXTRA_INDEX_URL=https://download.pytorch.org/whl/cpu make torch
+"""
+
+
+def compiled(folder: Path, extra: str, *arguments: str) -> dict[str, str]:
+    """Return the locked packages: name to the text of its version and hashes."""
+    target = folder / extra
+    known = {"dev": "requirements.lock", "train": "requirements-train.lock"}[extra]
+    target.write_text((ROOT / known).read_text(encoding="utf-8"), encoding="utf-8")
+    command = [*COMPILE, *arguments, "--extra", extra, "--output-file", str(target), str(ROOT / "pyproject.toml")]
+    subprocess.run(command, check=True, cwd=ROOT)
+    return packages(target.read_text(encoding="utf-8"))
+
+
+def packages(text: str) -> dict[str, str]:
+    """Split a lock file."""
+    lines = "\n".join(line for line in text.splitlines() if line and not line.startswith("#"))
+    return {part.split("==")[0]: part for part in re.split(r"\n(?=\S)", lines) if part}
+
+
+def torch(version: str, entry: str) -> str:
+    """Return the entry of PyTorch: what is known of the version, and the wheels of PyPI."""
+    before = packages((ROOT / "requirements-train.lock").read_text(encoding="utf-8")).get("torch", "")
+    hashes = set(re.findall(r"sha256:\w+", entry))
+    if before.startswith(f"torch=={version} "):
+        hashes |= set(re.findall(r"sha256:\w+", before))
+    for platform in PLATFORMS:
+        asked = ["--no-deps", "--only-binary=:all:", "--platform", platform, "--python-version", "3.11"]
+        with tempfile.TemporaryDirectory() as folder:
+            report = Path(folder) / "report.json"
+            command = [str(BIN / "pip"), "install", "--dry-run", "--quiet", "--ignore-installed", "--target", folder]
+            command += ["--report", str(report), *asked, f"torch=={version}"]
+            subprocess.run(command, check=True, env={"PIP_CONFIG_FILE": "/dev/null", "PIP_FIND_LINKS": ""})
+            (found,) = json.loads(report.read_text(encoding="utf-8"))["install"]
+            hashes.add(f"sha256:{found['download_info']['archive_info']['hashes']['sha256']}")
+    return " \\\n".join([f"torch=={version}", *(f"    --hash={h}" for h in sorted(hashes))])
+
+
+def main() -> None:
+    """Write both files; ``--upgrade`` takes the newest versions within the ranges of pyproject.toml."""
+    with tempfile.TemporaryDirectory() as name:
+        dev = compiled(Path(name), "dev", *sys.argv[1:])
+        (ROOT / "requirements.lock").write_text(LOCK + "\n".join(dev.values()) + "\n", encoding="utf-8")
+        train = compiled(Path(name), "train", "--constraint", str(ROOT / "requirements.lock"), *sys.argv[1:])
+    beyond = {name: text for name, text in train.items() if name not in dev and not name.startswith(CUDA)}
+    version = beyond["torch"].split("==")[1].split()[0].split("+")[0]
+    beyond["torch"] = torch(version, beyond["torch"])
+    (ROOT / "requirements-train.lock").write_text(TRAIN + "\n".join(beyond.values()) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
