@@ -8,13 +8,12 @@ from golden import Section, orders, posed, sections, setting
 from worlds import Junction, Thoughts
 
 from codriving.reasoning.ordering.negotiation import OwnOrders
-from codriving.reasoning.ordering.problem import ProblemMaker
+from codriving.reasoning.ordering.problem import pose
 from codriving.reasoning.sharing.cda import OwnOrder
 
 
 def problem(thoughts: Thoughts) -> str:
-    maker = ProblemMaker(thoughts.junction.road_map, thoughts.forecast)
-    return posed(maker.pose(thoughts.scenes, thoughts.conflicts, 0.0))
+    return posed(pose(thoughts.moment()))
 
 
 def coordinator(thoughts: Thoughts) -> str:
@@ -23,8 +22,7 @@ def coordinator(thoughts: Thoughts) -> str:
 
 def own(reading: OwnOrder) -> Callable[[Thoughts], str]:
     def make_up(thoughts: Thoughts) -> str:
-        made = OwnOrders(thoughts.junction.road_map, thoughts.forecast, reading, 0)
-        found = made.orders(thoughts.scenes, thoughts.conflicts)
+        found = OwnOrders(reading, 0).orders(thoughts.moment())
         return "; ".join(f"{ego}: {orders(order)}" for ego, order in sorted(found.items()))
 
     return make_up
