@@ -73,6 +73,8 @@ def run(root: Path, drawn: Sequence[Change], reached: Reach, workers: int) -> It
             importlib.import_module(name)
         except Exception:  # a module that cannot be imported alone is imported by the tests
             continue
+    # Read once, so that what is edited meanwhile is not mixed up with what was drawn.
+    sources = {change.file: (root / change.file).read_text(encoding="utf-8") for change in drawn}
     waiting, busy = list(reversed(drawn)), dict[int, tuple[Change, float, Path]]()
     with tempfile.TemporaryDirectory() as folder:
         while waiting or busy:
@@ -86,7 +88,7 @@ def run(root: Path, drawn: Sequence[Change], reached: Reach, workers: int) -> It
                 output = Path(folder) / str(len(waiting))
                 child = os.fork()
                 if child == 0:
-                    _in_child(root, output, lambda c=change, t=tests, s=limit: _try(root, c, t, s))
+                    _in_child(root, output, lambda c=change, t=tests, s=limit: _try(root, c, sources[c.file], t, s))
                 busy[child] = change, time.monotonic() + 4 * limit, output
             ended, status = os.waitpid(-1, os.WNOHANG)
             if ended in busy:
@@ -153,12 +155,12 @@ def _in_child(root: Path, output: Path, work: Any) -> None:
         os._exit(code)
 
 
-def _try(root: Path, change: Change, tests: list[str], limit: float) -> int:
+def _try(root: Path, change: Change, source: str, tests: list[str], limit: float) -> int:
     used = resource.getrusage(resource.RUSAGE_SELF)
     soft = int(used.ru_utime + used.ru_stime + limit) + 1
     resource.setrlimit(resource.RLIMIT_CPU, (soft, soft + 5))
     path = root / change.file
-    code = compile(changed(path.read_text(encoding="utf-8"), change, path), path, "exec")
+    code = compile(changed(source, change, path), path, "exec")
     sys.meta_path.insert(0, _Mutant(change.file.removesuffix(".py").replace("/", "."), path, code))
     return _pytest(["-x", *tests], [])
 
