@@ -12,8 +12,8 @@ import numpy as np
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Verdict
-from codriving.memory.features import Features
-from codriving.memory.recollection import open_recollection
+from codriving.memory.features import FeatureEmbedder
+from codriving.memory.snapshot import open_snapshot
 from codriving.memory.store import MemoryStore
 
 SIZES = (1_000, 10_000, 100_000)
@@ -56,9 +56,9 @@ def fill(path: Path, size: int) -> None:
         Experience(d, Action.FASTER, Verdict.INTENSIFIED, Effect(), "A lesson.", k % 100, "CAV1")
         for k, d in enumerate(situations(0, size))
     ]
-    vectors = Features().embed([e.description for e in experiences])
+    vectors = FeatureEmbedder().embed([e.description for e in experiences])
     # With a likeness that is never reached nothing is merged, so that there are as many as were asked for.
-    with MemoryStore(path, Features(), 1.1) as store:
+    with MemoryStore(path, FeatureEmbedder(), 1.1) as store:
         for k in range(0, size, 5_000):
             part = [replace(e, step=j) for j, e in enumerate(experiences[k : k + 5_000])]
             store.add(Interaction("bench", k, "bench", "", "rules"), part, vectors[k : k + 5_000])
@@ -79,14 +79,14 @@ def measure(size: int, folder: Path) -> dict[str, float]:
     opened = []
     for _ in range(ROUNDS):
         before = perf_counter()
-        recollection = open_recollection(path, Features())
+        snapshot = open_snapshot(path, FeatureEmbedder())
         opened.append(perf_counter() - before)
     told, times = situations(1, QUERIES * CAVS), []
     for k in range(QUERIES):
         before = perf_counter()
-        recollection.search(Features().embed(told[k * CAVS : (k + 1) * CAVS]), SHOTS, 0.0)
+        snapshot.search(FeatureEmbedder().embed(told[k * CAVS : (k + 1) * CAVS]), SHOTS, 0.0)
         times.append(1e3 * (perf_counter() - before))
-    assert len(recollection) == size
+    assert len(snapshot) == size
     return {
         "recall_ms": round(float(np.median(times)), 2),
         "open_s": round(min(opened), 3),

@@ -13,12 +13,11 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict, Relation
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Memory, Verdict
 from codriving.datatypes.vehicle import Kind, VehicleState
-from codriving.memory.features import Features
+from codriving.memory.effect import LESSONS, DecisionHistory, HistoryStep, OwnCollision
+from codriving.memory.features import FeatureEmbedder
 from codriving.memory.frozen import FrozenMemory
-from codriving.memory.moments import Crash, Moment, Way
 from codriving.memory.online import OnlineMemory
 from codriving.memory.store import MemoryStore
-from codriving.memory.verdict import LESSONS
 from codriving.reasoning.severity import severity, ttcp
 
 LANE = ("a", "b", 0)
@@ -84,7 +83,7 @@ def memory(
 
 def filled(path: Path, *episodes: Iterable[Experience], duplicates: float = 0.98, first: int = 20_000) -> Path:
     """A file with what was learnt in some episodes."""
-    with MemoryStore(path, Features(), duplicates) as store:
+    with MemoryStore(path, FeatureEmbedder(), duplicates) as store:
         for k, learnt in enumerate(episodes):
             store.add(interaction(first + k), list(learnt))
     return path
@@ -119,9 +118,9 @@ def moment(
     others: tuple[VehicleState, ...] = (),
     lead_gap: float | None = None,
     could_go: bool = True,
-) -> Moment:
+) -> HistoryStep:
     """One decision of CAV1, which drives along x."""
-    return Moment(vehicle("CAV1", x, speed), {o.id: o for o in others}, conflicts, lead_gap, action, could_go)
+    return HistoryStep(vehicle("CAV1", x, speed), {o.id: o for o in others}, conflicts, lead_gap, action, could_go)
 
 
 def crossing_way(
@@ -131,8 +130,8 @@ def crossing_way(
     its_speeds: list[float],
     action: Action,
     interval: float = 0.5,
-    crash: Crash | None = None,
-) -> Way:
+    collision: OwnCollision | None = None,
+) -> DecisionHistory:
     """CAV1 towards a crossing that CAV2 comes to as well; one speed a moment, the first action is the one judged."""
     moments = []
     for k, (v, w) in enumerate(zip(my_speeds, its_speeds, strict=True)):
@@ -140,9 +139,9 @@ def crossing_way(
         others = (vehicle("CAV2", 0.0, w, -its),)
         moments.append(moment(action if k == 0 else Action.IDLE, -mine, v, met, others))
         mine, its = mine - interval * v, its - interval * w
-    return Way(tuple(moments), interval, crash)
+    return DecisionHistory(tuple(moments), interval, collision)
 
 
-def without_conflicts(way: Way) -> Way:
+def without_conflicts(way: DecisionHistory) -> DecisionHistory:
     """The same way, but nobody is met on it."""
-    return replace(way, moments=tuple(replace(m, conflicts=()) for m in way.moments))
+    return replace(way, steps=tuple(replace(m, conflicts=()) for m in way.steps))

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from codriving.datatypes.experience import Interaction
 from codriving.errors import ConfigError, MemoryFileError
-from codriving.memory.merging import merge
 from codriving.memory.reading import Reading, own_embedder, read_memory, search
-from codriving.memory.recollection import Kept
+from codriving.memory.snapshot import StoredExperience
+from codriving.memory.store import merge
 
 WIDTH = 110
 
@@ -24,10 +24,10 @@ def show_page(file: Path | None, most: int) -> str:
         MemoryFileError: If it cannot be read.
     """
     reading = read_memory(_found(file))
-    kept = sorted(reading.recollection.kept, key=lambda entry: (-entry.count, entry.id))
+    kept = sorted(reading.snapshot.experiences, key=lambda entry: (-entry.count, entry.id))
     lines = [
         str(reading.path),
-        f"snapshot      {reading.recollection.digest}",
+        f"snapshot      {reading.snapshot.digest}",
         f"embedder      {reading.embedder}, {reading.dimension} numbers",
         f"experiences   {len(kept)}, made {sum(entry.count for entry in kept)} times",
         *(f"interactions  {text}" for text in _episodes(reading.interactions)),
@@ -52,7 +52,7 @@ def search_page(text: str, file: Path | None, most: int) -> str:
     if not any(c.isalnum() for c in text):
         raise ConfigError(f"there is nothing to search for in {text!r}; give some words")
     reading = read_memory(_found(file))
-    hits = search(reading.recollection, text, most)
+    hits = search(reading.snapshot, text, most)
     if not hits:
         return f"Nothing in {reading.path} speaks of that."
     return "\n".join([str(reading.path), *(t for score, entry in hits for t in _entry(entry, f"{score:.2f}  "))])
@@ -76,10 +76,10 @@ def merge_page(first: Path, second: Path, out: Path | None, duplicates: float) -
     target = out or first.with_name(f"{first.stem}+{second.stem}.sqlite")
     interactions = merge([first, second], target, own_embedder(one), duplicates)
     made = read_memory(target)
-    before = len(one.recollection) + len(other.recollection)
+    before = len(one.snapshot) + len(other.snapshot)
     return (
-        f"{target}: {len(made.recollection)} experiences of {before}, from {interactions} interactions, "
-        f"snapshot {made.recollection.digest[:12]}"
+        f"{target}: {len(made.snapshot)} experiences of {before}, from {interactions} interactions, "
+        f"snapshot {made.snapshot.digest[:12]}"
     )
 
 
@@ -120,7 +120,7 @@ def _verdicts(reading: Reading) -> list[str]:
     ]
 
 
-def _entry(kept: Kept, before: str = "") -> list[str]:
+def _entry(kept: StoredExperience, before: str = "") -> list[str]:
     e = kept.experience
     head = f"{before}#{kept.id}, {kept.count} times, {e.action}: {e.verdict}"
     body = textwrap.wrap(f"{e.description.text} {e.lesson}", WIDTH, initial_indent="    ", subsequent_indent="    ")

@@ -1,19 +1,26 @@
-"""Memory augment: what an action did to the CAV's most urgent conflict, judged by what came of it (Section III-D.1)."""
+"""What an action did to the CAV's most urgent conflict, in numbers and as a verdict (paper Section III-D.1)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from math import cos, sin
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.experience import Effect
-from codriving.memory.moments import Moment, Way
+from codriving.datatypes.experience import Effect, Verdict
+from codriving.datatypes.vehicle import VehicleState
 
 HORIZON = 3.0
 """How far ahead a collision or needless waiting is put down to an action [s]."""
 
-CONCERNS = 8.0
-"""Beyond this difference of the times to the conflict point there is no danger in the paper's bands [s]."""
+BANDS = (2.0, 5.0, 8.0)
+"""Upper limits of the paper's bands of the difference of the TTCPs: serious, general and slight danger [s]."""
+
+CLEARLY = 0.3
+"""A narrower change of the difference of the TTCPs is none [s]."""
+
+HARD = 4.0
+"""From this mean deceleration on braking is hard [m/s2]."""
 
 STANDS = 0.5
 """Below this speed a vehicle stands [m/s]."""
@@ -21,31 +28,87 @@ STANDS = 0.5
 SLOW = 3.0
 """A CAV that keeps a lower speed than this waits [m/s]."""
 
-SIDEWAYS = (Action.LANE_LEFT, Action.LANE_RIGHT)
-
 BEHIND = 2.0
-"""Whoever drives up to this time behind on the same lane is in the way of whoever slows down or cuts in [s]."""
+"""A vehicle up to this time behind on the same lane is affected by a CAV that slows down or cuts in [s]."""
 
 FREE = 2.0
 """A leader this far ahead leaves the way free, but never nearer than ten metres [s]."""
 
+SIDEWAYS = (Action.LANE_LEFT, Action.LANE_RIGHT)
 
-def effect_of(way: Way, k: int) -> Effect:
-    """Judge one action."""
-    now, after = way.moments[k], _at(way, k + 1)
-    collision = _collision(way, k)
-    conflict = _judged(now, None if collision is None or way.crash is None else way.crash.other)
+LESSONS: Mapping[Verdict, str] = {
+    Verdict.INTENSIFIED: "Your action has intensified the conflict; similar actions should be avoided.",
+    Verdict.EASED: "Your action has eased the conflict; similar actions are advisable.",
+    Verdict.TOO_CAUTIOUS: "Your action was too cautious, nobody used the way; similar waiting should be cut short.",
+}
+"""The paper's comment, and its two counterparts; what is neutral is not kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class HistoryStep:
+    """The world when one CAV decided, and what it decided.
+
+    Attributes:
+        lead_gap: Free distance to the vehicle ahead on its lane [m]; None without one.
+        action: What it decided; None at the end of the episode.
+    """
+
+    ego: VehicleState
+    others: Mapping[str, VehicleState]
+    conflicts: tuple[Conflict, ...]
+    lead_gap: float | None
+    action: Action | None
+    could_go: bool
+
+
+@dataclass(frozen=True, slots=True)
+class OwnCollision:
+    """A collision, seen from one of the two.
+
+    Attributes:
+        time: When it was, counted from the first step [s].
+    """
+
+    time: float
+    other: str
+    striker: bool
+
+
+@dataclass(frozen=True, slots=True)
+class DecisionHistory:
+    """The decision steps of one CAV until it arrived or the episode ended.
+
+    Attributes:
+        interval: Time between two of them [s].
+        collision: The collision that it was in; None if in none.
+    """
+
+    steps: tuple[HistoryStep, ...]
+    interval: float
+    collision: OwnCollision | None = None
+
+    def at(self, k: int) -> HistoryStep | None:
+        """Return a step, or None before the first and after the last."""
+        return self.steps[k] if 0 <= k < len(self.steps) else None
+
+
+def effect_of(history: DecisionHistory, k: int) -> Effect:
+    """Work out what one action led to."""
+    now, after = history.steps[k], history.at(k + 1)
+    collision = _time_to_collision(history, k)
+    with_it = None if collision is None or history.collision is None else history.collision.other
+    conflict = _most_urgent(now, with_it)
     later = None if conflict is None or after is None else _same(conflict, after.conflicts)
-    change = 0.0 if conflict is None or later is None else own_change(conflict, later, now.ego.speed * way.interval)
+    change = 0.0 if conflict is None or later is None else own_change(conflict, later, now.ego.speed * history.interval)
     return Effect(
         dttcp_before=None if conflict is None else round(conflict.dttcp, 3),
         dttcp_after=None if later is None else round(later.dttcp, 3),
         own_change=round(change, 3),
-        own_braking=round(_own_braking(way, k), 3),
-        forced_braking=round(_forced_braking(way, k, conflict, change), 3),
+        own_braking=round(_own_braking(history, k), 3),
+        forced_braking=round(_forced_braking(history, k, conflict, change), 3),
         collision=None if collision is None else round(collision, 3),
-        to_blame=collision is not None and _is_to_blame(way, k, conflict, change),
-        needless=_needless(way, k),
+        to_blame=collision is not None and _is_responsible(history, k, conflict, change),
+        needless=_needless(history, k),
     )
 
 
@@ -67,16 +130,48 @@ def own_change(before: Conflict, after: Conflict, kept: float) -> float:
     return abs(after.ttcp[0] - after.ttcp[1]) - abs(left * before.ttcp[0] - after.ttcp[1])
 
 
-def _at(way: Way, k: int) -> Moment | None:
-    return way.moments[k] if 0 <= k < len(way.moments) else None
+def verdict_of(effect: Effect, action: Action) -> Verdict:
+    """Judge an action by what came of it.
+
+    - *intensified*: it led to a collision soon after, and did not itself clearly move the CAV away from it; or it
+      narrowed the difference of the TTCPs and the danger is in a worse band; or another vehicle had to brake hard.
+    - *eased*: it widened that difference in serious or general danger.
+    - *too cautious*: the CAV waited and no vehicle used the way.
+    """
+    if (effect.to_blame and effect.own_change <= CLEARLY) or _intensified(effect, action):
+        return Verdict.INTENSIFIED
+    if effect.needless:
+        return Verdict.TOO_CAUTIOUS
+    dangerous = effect.dttcp_before is not None and band(effect.dttcp_before) <= 1
+    if dangerous and effect.collision is None and effect.own_change > CLEARLY and effect.own_braking < HARD:
+        return Verdict.EASED
+    return Verdict.NEUTRAL
 
 
-def _judged(now: Moment, crashed_with: str | None) -> Conflict | None:
-    """The conflict with whoever it then collided with, or else the most urgent one, if it is in any danger at all."""
-    with_it = next((c for c in now.conflicts if c.other == crashed_with), None)
-    if with_it is not None:
-        return with_it
-    return next((c for c in now.conflicts if c.dttcp <= CONCERNS), None)
+def band(dttcp: float) -> int:
+    """Return the paper's band: 0 serious, 1 general, 2 slight, 3 no danger.
+
+    Args:
+        dttcp: Difference of the times to the conflict point [s].
+    """
+    return sum(dttcp > limit for limit in BANDS)
+
+
+def _intensified(effect: Effect, action: Action) -> bool:
+    before, after = effect.dttcp_before, effect.dttcp_after
+    narrowed = effect.own_change < -CLEARLY
+    if narrowed and before is not None and after is not None and band(after) < min(band(before), 2):
+        return True
+    harsh = max(effect.forced_braking, effect.own_braking if action is not Action.SLOWER else 0.0) >= HARD
+    if narrowed and after is not None and band(after) <= 1 and harsh:
+        return True
+    return action in SIDEWAYS and effect.forced_braking >= HARD
+
+
+def _most_urgent(now: HistoryStep, collided_with: str | None) -> Conflict | None:
+    """The conflict with the vehicle of the collision, or else the most urgent one, if it is in any danger at all."""
+    with_it = next((c for c in now.conflicts if c.other == collided_with), None)
+    return with_it or next((c for c in now.conflicts if c.dttcp <= BANDS[-1]), None)
 
 
 def _same(conflict: Conflict, later: Sequence[Conflict]) -> Conflict | None:
@@ -85,62 +180,55 @@ def _same(conflict: Conflict, later: Sequence[Conflict]) -> Conflict | None:
     return next((c for c in later if (c.other, c.routes, c.zone) == key), None)
 
 
-def _collision(way: Way, k: int) -> float | None:
-    if way.crash is None:
+def _time_to_collision(history: DecisionHistory, k: int) -> float | None:
+    if history.collision is None:
         return None
-    ahead = way.crash.time - k * way.interval
+    ahead = history.collision.time - k * history.interval
     return ahead if 0 <= ahead <= HORIZON else None
 
 
-def _is_to_blame(way: Way, k: int, conflict: Conflict | None, change: float) -> bool:
+def _is_responsible(history: DecisionHistory, k: int, conflict: Conflict | None, change: float) -> bool:
     """Whether an action led to the collision that came soon after."""
-    assert way.crash is not None
-    end = min(len(way.moments), 1 + int(way.crash.time / way.interval))
-    before = way.moments[max(0, end - 1 - round(HORIZON / way.interval)) : end]
-    action = way.moments[k].action
-    if any(m.action in SIDEWAYS for m in before):
+    assert history.collision is not None
+    end = min(len(history.steps), 1 + int(history.collision.time / history.interval))
+    before = history.steps[max(0, end - 1 - round(HORIZON / history.interval)) : end]
+    action = history.steps[k].action
+    if any(step.action in SIDEWAYS for step in before):
         return action in SIDEWAYS
-    met = conflict is not None and conflict.other == way.crash.other
+    met = conflict is not None and conflict.other == history.collision.other
     if action is Action.SLOWER:
         return met and change < 0
-    return met or way.crash.striker
+    return met or history.collision.striker
 
 
-def _deceleration(before: float, after: float, interval: float) -> float:
-    return max(0.0, (before - after) / interval)
+def _deceleration(before: float | None, after: float | None, interval: float) -> float:
+    return 0.0 if before is None or after is None else max(0.0, (before - after) / interval)
 
 
-def _own_braking(way: Way, k: int) -> float:
+def _own_braking(history: DecisionHistory, k: int) -> float:
     """How hard the CAV had to brake in the step after this one; what it did itself now is no consequence."""
-    one, two = _at(way, k + 1), _at(way, k + 2)
-    if one is None or two is None:
-        return 0.0
-    return _deceleration(one.ego.speed, two.ego.speed, way.interval)
+    speeds = [step.ego.speed if step is not None else None for step in (history.at(k + 1), history.at(k + 2))]
+    return _deceleration(speeds[0], speeds[1], history.interval)
 
 
-def _forced_braking(way: Way, k: int, conflict: Conflict | None, change: float) -> float:
-    """How hard those brake whom the action concerns: who drives behind, and whom it has come closer to."""
-    now = way.moments[k]
-    concerned = {name for name in now.others if _is_behind(way, k, name)}
+def _forced_braking(history: DecisionHistory, k: int, conflict: Conflict | None, change: float) -> float:
+    """How hard the affected vehicles brake: those close behind, and the one that the CAV has come closer to."""
+    affected = {name for name in history.steps[k].others if _is_behind(history.at(k + 1), name)}
     if conflict is not None and change < 0:
-        concerned.add(conflict.other)
-    return max((_braking(way, k, name) for name in concerned), default=0.0)
+        affected.add(conflict.other)
+    return max((_braking(history, k, name) for name in affected), default=0.0)
 
 
-def _braking(way: Way, k: int, name: str) -> float:
-    """Hardest mean deceleration in this or the next step of somebody who was not braking as hard before."""
-    speeds = [m.others[name].speed if m is not None and name in m.others else None for m in _four(way, k)]
-    drops = [_deceleration(a, b, way.interval) if a is not None and b is not None else 0.0 for a, b in pairwise(speeds)]
+def _braking(history: DecisionHistory, k: int, name: str) -> float:
+    """Hardest mean deceleration in this or the next step of a vehicle that was not braking as hard before."""
+    steps = [history.at(n) for n in range(k - 1, k + 3)]
+    speeds = [step.others[name].speed if step is not None and name in step.others else None for step in steps]
+    drops = [_deceleration(one, two, history.interval) for one, two in pairwise(speeds)]
     return max(max(drops[1:]) - drops[0], 0.0)
 
 
-def _four(way: Way, k: int) -> list[Moment | None]:
-    return [_at(way, n) for n in range(k - 1, k + 3)]
-
-
-def _is_behind(way: Way, k: int, name: str) -> bool:
-    """Whether somebody drives close behind the CAV on the lane that it is on after the step."""
-    after = _at(way, k + 1)
+def _is_behind(after: HistoryStep | None, name: str) -> bool:
+    """Whether a vehicle drives close behind the CAV on the lane that it is on after the step."""
     if after is None or name not in after.others:
         return False
     ego, other = after.ego, after.others[name]
@@ -150,24 +238,22 @@ def _is_behind(way: Way, k: int, name: str) -> bool:
     return other.lane == ego.lane and 0 < ahead < (ego.length + other.length) / 2 + BEHIND * other.speed and aside < 2.0
 
 
-def _needless(way: Way, k: int) -> bool:
-    """Whether the CAV waited although it could have gone and nobody then used the way."""
-    now = way.moments[k]
+def _needless(history: DecisionHistory, k: int) -> bool:
+    """Whether the CAV waited although it could have gone and no vehicle then used the way."""
+    now, steps = history.steps[k], round(HORIZON / history.interval)
     waits = now.action is Action.SLOWER or (now.action is Action.IDLE and now.ego.speed < SLOW)
-    if not waits or not now.could_go or _collision(way, k) is not None:
+    if not waits or not now.could_go or _time_to_collision(history, k) is not None:
         return False
     if now.lead_gap is not None and now.lead_gap < max(10.0, FREE * now.ego.speed):
         return False
-    window = way.moments[k : k + 1 + round(HORIZON / way.interval)]
-    if len(window) <= round(HORIZON / way.interval):
+    window = history.steps[k : k + 1 + steps]
+    return len(window) > steps and all(_left_free(c, window) for c in now.conflicts)
+
+
+def _left_free(conflict: Conflict, window: Sequence[HistoryStep]) -> bool:
+    """Whether the other vehicle of a conflict was too far away to use the way, or stood all the time."""
+    if conflict.distances[1] <= 0:
         return False
-    for c in now.conflicts:
-        far = c.dttcp > CONCERNS and c.ttcp[1] > HORIZON
-        if c.distances[1] <= 0 or not (far or all(_stands(m, c.other) for m in window)):
-            return False
-    return True
-
-
-def _stands(moment: Moment, name: str) -> bool:
-    other = moment.others.get(name)
-    return other is None or other.speed < STANDS
+    states = [step.others.get(conflict.other) for step in window]
+    far = conflict.dttcp > BANDS[-1] and conflict.ttcp[1] > HORIZON
+    return far or all(state is None or state.speed < STANDS for state in states)

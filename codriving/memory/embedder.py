@@ -1,7 +1,6 @@
-"""What an embedder is: descriptions to vectors whose cosine tells how alike two situations are."""
+"""What an embedder is: descriptions to vectors whose cosine tells how similar two situations are."""
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,19 +10,15 @@ from codriving.datatypes.experience import Description
 Vectors = NDArray[np.float32]
 
 
-class Embedder(Protocol):
-    """Turns descriptions into vectors.
+class Embedder:
+    """Turns descriptions into vectors; this base class only names an embedder whose vectors are there already.
 
     Attributes:
         dimension: Length of the vectors; None if that is known only after the first call.
     """
 
-    name: str
-
-    @property
-    def dimension(self) -> int | None:
-        """Length of the vectors."""
-        ...
+    def __init__(self, name: str, dimension: int | None) -> None:
+        self.name, self.dimension = name, dimension
 
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
         """Return one vector a description, each of length 1.
@@ -31,7 +26,7 @@ class Embedder(Protocol):
         Returns:
             Vectors (n, dimension); a description without anything to go by gives zeros.
         """
-        ...
+        raise NotImplementedError
 
 
 def unit(vectors: NDArray[np.float64]) -> Vectors:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Description
-from codriving.memory.embedder import Vectors, unit
+from codriving.memory.embedder import Embedder, Vectors, unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ ABSENT = 0.2
 """Share of its weight with which a number counts where it is not there: two empty lanes are alike, but not very."""
 
 
-class Features:
+class FeatureEmbedder(Embedder):
     """Works offline, without a download, and gives the same vectors on every call.
 
     A number x becomes cos and sin of k pi u(x) / 2 for each k of its circles, where u runs from -1 to 1 over its span,
@@ -81,20 +81,12 @@ class Features:
     an axis of its own.
     """
 
-    name = "features-1"
-
-    @property
-    def dimension(self) -> int:
-        """Length of the vectors."""
-        return sum(number.width for number in NUMBERS) + sum(len(words) for _, _, words in KINDS) + len(ACTIONS)
+    def __init__(self) -> None:
+        places = sum(number.width for number in NUMBERS) + sum(len(words) for _, _, words in KINDS) + len(ACTIONS)
+        super().__init__("features-1", places)
 
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
-        """Return one vector a description, each of length 1.
-
-        Returns:
-            Vectors (n, dimension).
-        """
-        rows = np.zeros((len(descriptions), self.dimension))
+        rows = np.zeros((len(descriptions), self.dimension or 0))
         for row, description in zip(rows, descriptions, strict=True):
             place = 0
             for number in NUMBERS:

@@ -1,22 +1,18 @@
 """``memory=frozen``: a snapshot that is recalled from and never changed, so that tables depend on no order."""
 
-from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
-from codriving.datatypes.experience import Memory
-from codriving.datatypes.parts import CaseMemory
-from codriving.datatypes.situation import Situation
 from codriving.errors import ConfigError, MemoryFileError
 from codriving.memory.embedders import EmbeddingServer, make_embedder
-from codriving.memory.recall import Recall
-from codriving.memory.recollection import Recollection, open_recollection
+from codriving.memory.recall import RetrievalMemory
+from codriving.memory.snapshot import Snapshot, open_snapshot
 
 AUTO = "auto"
 """The word for the snapshot as it is when a run begins."""
 
 
-class FrozenMemory(CaseMemory):
+class FrozenMemory(RetrievalMemory):
     """A snapshot, as ``codriving memory build`` leaves it.
 
     Args:
@@ -51,38 +47,22 @@ class FrozenMemory(CaseMemory):
         if interactions is not None and interactions < 0:
             raise ConfigError(f"interactions must be 0 or more, or null for all, got {interactions}")
         server = EmbeddingServer(embedding_model, embedding_api_base, embedding_key_env, embedding_deadline)
-        self._recall, self._embedder = Recall(shots, least_similarity), make_embedder(embedder, server)
+        super().__init__(shots, least_similarity, embedder, server)
         path = Path(file).expanduser()
-        self._recollection = _opened(path, embedder, server, interactions, _stamp(path))
-        self.digest = self._recollection.digest
+        # Size and time of the last change tell, without reading a file, that it has changed.
+        stat = path.stat() if path.exists() else None
+        stamp = (stat.st_mtime_ns, stat.st_size) if stat is not None else None
+        found = self._snapshot = _opened(path, embedder, server, interactions, stamp)
+        self.digest = found.digest
         if snapshot not in (AUTO, self.digest):
             raise MemoryFileError(
                 f"{file} does not hold the snapshot {snapshot[:12]} but {self.digest[:12]}: it has changed since; "
                 "restore it, or set memory.snapshot=auto and another run=<name>"
             )
-        self.label = f"frozen {self.digest[:8]}, {self._recollection.interactions} interactions"
-
-    def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
-        """Find what is like each situation.
-
-        Returns:
-            The memories of each, most similar first.
-        """
-        return self._recall.find(self._recollection, self._embedder, situations)
-
-
-def _stamp(path: Path) -> tuple[int, int]:
-    """What tells that a file has changed, without reading it."""
-    try:
-        stat = path.stat()
-    except OSError:
-        return 0, 0
-    return stat.st_mtime_ns, stat.st_size
+        self.label = f"frozen {self.digest[:8]}, {found.interactions} interactions"
 
 
 @lru_cache(maxsize=8)
-def _opened(
-    path: Path, embedder: str, server: EmbeddingServer, interactions: int | None, stamp: tuple[int, int]
-) -> Recollection:
+def _opened(path: Path, embedder: str, server: EmbeddingServer, interactions: int | None, stamp: object) -> Snapshot:
     """Open a file; all cells and episodes of a process share what was read, as long as the file stays as it is."""
-    return open_recollection(path, make_embedder(embedder, server), interactions)
+    return open_snapshot(path, make_embedder(embedder, server), interactions)

@@ -3,19 +3,16 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from codriving.datatypes.experience import Experience, Interaction, Memory
-from codriving.datatypes.parts import CaseMemory
-from codriving.datatypes.situation import Situation
+from codriving.datatypes.experience import Experience, Interaction
 from codriving.errors import ConfigError
-from codriving.memory.embedders import EmbeddingServer, make_embedder
-from codriving.memory.recall import Recall
-from codriving.memory.recollection import Recollection
+from codriving.memory.embedders import EmbeddingServer
+from codriving.memory.recall import RetrievalMemory
 from codriving.memory.store import MemoryStore
 
 REFLECTIONS = ("rules", "llm")
 
 
-class OnlineMemory(CaseMemory):
+class OnlineMemory(RetrievalMemory):
     """A memory that grows by one episode after another.
 
     What an episode recalls is what episodes with smaller seeds have left; so a batch that was interrupted goes on as if
@@ -58,10 +55,9 @@ class OnlineMemory(CaseMemory):
         if not 1 <= reflections <= 1000:
             raise ConfigError(f"reflections must be 1 to 1000, got {reflections}")
         server = EmbeddingServer(embedding_model, embedding_api_base, embedding_key_env, embedding_deadline)
-        self._recall, self._embedder = Recall(shots, least_similarity), make_embedder(embedder, server)
+        super().__init__(shots, least_similarity, embedder, server)
         self.file, self.duplicates = file, duplicates
         self.reflections = reflections if reflection == "llm" else 0
-        self._recollection: Recollection | None = None
 
     def begin(self, seed: int) -> None:
         """Begin an episode: what was learnt with smaller seeds is what can be recalled.
@@ -70,17 +66,7 @@ class OnlineMemory(CaseMemory):
             MemoryFileError: If the file cannot be used.
         """
         with self._store() as store:
-            self._recollection = store.recollection(before=seed)
-
-    def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
-        """Find what is like each situation.
-
-        Returns:
-            The memories of each, most similar first.
-        """
-        if self._recollection is None:
-            return [()] * len(situations)
-        return self._recall.find(self._recollection, self._embedder, situations)
+            self._snapshot = store.snapshot(before=seed)
 
     def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
         """Keep what was learnt in an episode.

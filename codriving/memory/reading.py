@@ -8,10 +8,9 @@ from pathlib import Path
 from codriving.datatypes.experience import Interaction
 from codriving.errors import MemoryFileError
 from codriving.memory.embedder import Embedder
-from codriving.memory.embedders import LITELLM, OWN
-from codriving.memory.recollection import Kept, Recollection, damaged, load
-from codriving.memory.store_file import about, open_file
-from codriving.memory.words import Words
+from codriving.memory.embedders import LITELLM, OWN, WordEmbedder
+from codriving.memory.snapshot import Snapshot, StoredExperience, load
+from codriving.memory.store_file import about, damaged, open_file
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,13 +21,13 @@ class Reading:
     embedder: str
     dimension: int
     interactions: tuple[Interaction, ...]
-    recollection: Recollection
+    snapshot: Snapshot
 
     @property
     def verdicts(self) -> Counter[tuple[str, str]]:
         """How often each action had each effect."""
         counted: Counter[tuple[str, str]] = Counter()
-        for entry in self.recollection.kept:
+        for entry in self.snapshot.experiences:
             counted[str(entry.experience.verdict), str(entry.experience.action)] += entry.count
         return counted
 
@@ -44,10 +43,10 @@ def read_memory(path: Path) -> Reading:
         try:
             name, dimension = told["embedder"], int(told["dimension"])
             rows = connection.execute("SELECT * FROM interactions ORDER BY id").fetchall()
-            recollection = load(connection, dimension, name, [row[0] for row in rows])
+            snapshot = load(connection, dimension, name, [row[0] for row in rows])
         except (KeyError, ValueError) as error:
             raise damaged(path, error) from error
-    return Reading(path, name, dimension, tuple(Interaction(*row[1:]) for row in rows), recollection)
+    return Reading(path, name, dimension, tuple(Interaction(*row[1:]) for row in rows), snapshot)
 
 
 def own_embedder(reading: Reading) -> Embedder:
@@ -56,37 +55,24 @@ def own_embedder(reading: Reading) -> Embedder:
     Raises:
         MemoryFileError: If no such embedder is known.
     """
-    for make in OWN.values():
-        if make().name == reading.embedder:
-            return make()
-    if reading.embedder.startswith(f"{LITELLM} "):
-        return _Named(reading.embedder, reading.dimension)
-    raise MemoryFileError(f"{reading.path} is of an embedder that this version does not know, {reading.embedder}")
+    known = [make().name for make in OWN.values()]
+    if reading.embedder not in known and not reading.embedder.startswith(f"{LITELLM} "):
+        raise MemoryFileError(f"{reading.path} is of an embedder that this version does not know, {reading.embedder}")
+    return Embedder(reading.embedder, reading.dimension)
 
 
-class _Named(Words):
-    """The name and the length of an embedder whose vectors are all there already."""
-
-    def __init__(self, name: str, dimension: int) -> None:
-        super().__init__()
-        self.name, self._dimension = name, dimension
-
-    @property
-    def dimension(self) -> int:
-        """Length of the vectors."""
-        return self._dimension
-
-
-def search(recollection: Recollection, text: str, most: int) -> list[tuple[float, Kept]]:
+def search(snapshot: Snapshot, text: str, most: int) -> list[tuple[float, StoredExperience]]:
     """Find the experiences that speak of some words; numbers count by the band that they lie in.
 
     Returns:
         Similarity and experience, the most similar first, the older first if equal; none that has nothing in common.
     """
-    words = Words()
-    texts = [f"{k.experience.description.text} {k.experience.action} {k.experience.lesson}" for k in recollection.kept]
+    words = WordEmbedder()
+    texts = [
+        f"{k.experience.description.text} {k.experience.action} {k.experience.lesson}" for k in snapshot.experiences
+    ]
     if not texts:
         return []
     scores = (words.embed_texts(texts) @ words.embed_texts([text])[0]).astype(float).round(6)
-    ranked = sorted(zip((-scores).tolist(), (k.id for k in recollection.kept), recollection.kept, strict=True))
+    ranked = sorted(zip((-scores).tolist(), (k.id for k in snapshot.experiences), snapshot.experiences, strict=True))
     return [(-score, kept) for score, _, kept in ranked[:most] if score < 0]

@@ -1,8 +1,8 @@
 """A memory that grows: one SQLite file is the truth, and what is alike is kept once with a count."""
 
 import sqlite3
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, suppress
 from dataclasses import astuple
 from pathlib import Path
 from typing import Self, TypeVar
@@ -10,11 +10,22 @@ from typing import Self, TypeVar
 import numpy as np
 
 from codriving.datatypes.experience import Experience, Interaction
+from codriving.errors import MemoryFileError
 from codriving.memory.embedder import Embedder, Vectors
 from codriving.memory.index import Index
-from codriving.memory.recollection import Recollection, check_embedder, damaged, load
-from codriving.memory.rows import COLUMNS, to_row, vectors_of
-from codriving.memory.store_file import about, create, open_file, unwritable
+from codriving.memory.snapshot import Snapshot, load
+from codriving.memory.store_file import (
+    COLUMNS,
+    about,
+    check_embedder,
+    create,
+    damaged,
+    from_row,
+    open_file,
+    to_row,
+    unwritable,
+    vectors_of,
+)
 
 NEIGHBOURS = 16
 """Nearest experiences among which one with the same action and verdict is looked for."""
@@ -70,7 +81,7 @@ class MemoryStore:
 
         return self._change(change)
 
-    def recollection(self, before: int | None = None) -> Recollection:
+    def snapshot(self, before: int | None = None) -> Snapshot:
         """Return what can be recalled now.
 
         Args:
@@ -81,7 +92,7 @@ class MemoryStore:
         """
         if self._connection is None:
             dimension = self.embedder.dimension or 1
-            return Recollection((), np.zeros((0, dimension), dtype=np.float32), "", 0)
+            return Snapshot((), np.zeros((0, dimension), dtype=np.float32), "", 0)
         try:
             rows = self._connection.execute("SELECT id, seed FROM interactions ORDER BY id").fetchall()
             chosen = [number for number, seed in rows if before is None or seed < before]
@@ -172,3 +183,43 @@ class MemoryStore:
             "INSERT INTO sightings VALUES (?, ?, ?, ?)", (number, interaction, experience.step, experience.ego)
         )
         return known is None
+
+
+def merge(sources: list[Path], target: Path, embedder: Embedder, duplicates: float) -> int:
+    """Merge memories into a new file.
+
+    Raises:
+        MemoryFileError: If a source cannot be used, the embedders differ, or the target is there or cannot be written.
+    """
+    if target.exists():
+        raise MemoryFileError(f"{target} is there already; name a file that is not, with --out")
+    # All are read before anything is written: a damaged one leaves no half of a memory behind.
+    everything = [entry for source in sources for entry in read(source, embedder)]
+    with MemoryStore(target, embedder, duplicates) as store:
+        for interaction, experiences, vectors in everything:
+            store.add(interaction, experiences, vectors)
+        return store.snapshot().interactions
+
+
+def read(path: Path, embedder: Embedder) -> Iterator[tuple[Interaction, list[Experience], Vectors]]:
+    """Read a memory interaction by interaction, with every sighting.
+
+    Yields:
+        An interaction, what was learnt in it, and the vectors of that (n, dimension).
+
+    Raises:
+        MemoryFileError: If the file cannot be used.
+    """
+    with closing(open_file(path, write=False)) as connection:
+        dimension = check_embedder(path, about(connection), embedder)
+        try:
+            for number, *row in connection.execute("SELECT * FROM interactions ORDER BY id").fetchall():
+                seen = connection.execute(
+                    f"SELECT step, ego, {', '.join(COLUMNS)} FROM sightings JOIN experiences ON id = experience "
+                    "WHERE interaction = ? ORDER BY step, ego",
+                    (number,),
+                ).fetchall()
+                experiences = [from_row(tuple(values), step, ego) for step, ego, *values in seen]
+                yield Interaction(*row), experiences, vectors_of([values[2] for values in seen], dimension)
+        except ValueError as error:
+            raise damaged(path, error) from error

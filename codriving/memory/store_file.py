@@ -1,12 +1,21 @@
-"""The SQLite file of a memory: made whole, checked on opening, one transaction a change."""
+"""The SQLite file of a memory: made whole, checked on opening, an experience a row, one transaction a change."""
 
+import json
 import os
 import sqlite3
 import uuid
+from collections.abc import Mapping
 from contextlib import closing, suppress
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+
+from codriving.datatypes.action import Action
+from codriving.datatypes.experience import Description, Effect, Experience, Verdict
 from codriving.errors import MemoryFileError
+from codriving.memory.embedder import Embedder, Vectors
 
 LAYOUT = 1
 """Changes when an older version could not read the file any more."""
@@ -96,6 +105,37 @@ def about(connection: sqlite3.Connection) -> dict[str, str]:
     return {str(key): str(value) for key, value in connection.execute("SELECT key, value FROM about")}
 
 
+def check_embedder(path: Path, said: Mapping[str, str], embedder: Embedder) -> int:
+    """Refuse a file whose vectors are another embedder's.
+
+    Args:
+        said: What the file says of itself.
+
+    Returns:
+        Length of its vectors.
+
+    Raises:
+        MemoryFileError: If the embedder or the length differ.
+    """
+    name, dimension = said.get("embedder", "none"), said.get("dimension", "")
+    if name != embedder.name:
+        raise MemoryFileError(
+            f"{path} was made with the embedder {name}, and {embedder.name} is asked for; set memory.embedder to "
+            "match, or build it again"
+        )
+    if not dimension.isdigit() or (embedder.dimension is not None and int(dimension) != embedder.dimension):
+        raise MemoryFileError(
+            f"{path} holds vectors of {dimension or 'unknown'} numbers, and {embedder.name} makes "
+            f"{embedder.dimension}; build it again"
+        )
+    return int(dimension)
+
+
+def damaged(path: Path, error: Exception) -> MemoryFileError:
+    """The error for a file whose contents cannot be used."""
+    return MemoryFileError(f"{path} is damaged ({error}); build it again, or name another one")
+
+
 def unwritable(path: Path, error: Exception) -> MemoryFileError:
     """The error for a file that cannot be written."""
     return MemoryFileError(f"cannot write the memory {path}: {error}; make room, or name another file")
@@ -114,3 +154,65 @@ def _check(path: Path, connection: sqlite3.Connection) -> None:
         raise MemoryFileError(
             f"{path} was written by another version (layout {layout}, not {LAYOUT}); build it again with this one"
         )
+
+
+COLUMNS = ("vector", "action", "verdict", "scene", "conflict", "passing", "numbers", "kinds", "effect", "lesson")
+"""The columns of ``experiences`` after the number, in their order."""
+
+
+def to_row(experience: Experience, vector: Vectors) -> tuple[Any, ...]:
+    """Write an experience as the values of ``COLUMNS``.
+
+    Raises:
+        ValueError: If a number in it is not finite.
+    """
+    d = experience.description
+    return (
+        vector.astype("<f4").tobytes(),
+        str(experience.action),
+        str(experience.verdict),
+        d.scene,
+        d.conflict,
+        d.order,
+        _json(d.numbers),
+        _json(d.kinds),
+        _json(asdict(experience.effect)),
+        experience.lesson,
+    )
+
+
+def from_row(row: tuple[Any, ...], step: int = 0, ego: str = "") -> Experience:
+    """Read an experience from the values of ``COLUMNS``.
+
+    Raises:
+        ValueError: If something in it cannot be read.
+    """
+    _, action, verdict, scene, conflict, passing, numbers, kinds, effect, lesson = row
+    try:
+        description = Description(scene, conflict, passing, json.loads(numbers), json.loads(kinds))
+        return Experience(
+            description, Action(action), Verdict(verdict), Effect(**json.loads(effect)), lesson, step, ego
+        )
+    except (TypeError, KeyError) as error:
+        raise ValueError(str(error)) from error
+
+
+def vectors_of(blobs: list[bytes], dimension: int) -> Vectors:
+    """Join vectors as they are stored into one array.
+
+    Returns:
+        Vectors (n, dimension).
+
+    Raises:
+        ValueError: If one has another length, or holds what is no finite number.
+    """
+    if any(len(blob) != 4 * dimension for blob in blobs):
+        raise ValueError(f"a vector does not have {dimension} numbers")
+    vectors = np.frombuffer(b"".join(blobs), dtype="<f4").reshape(len(blobs), dimension).astype(np.float32)
+    if not np.isfinite(vectors).all():
+        raise ValueError("a vector holds a number that is not finite")
+    return vectors
+
+
+def _json(values: Mapping[str, Any]) -> str:
+    return json.dumps(dict(values), sort_keys=True, separators=(",", ":"), allow_nan=False, ensure_ascii=False)

@@ -11,9 +11,7 @@ from codriving.datatypes.situation import Decision, Situation
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.memory.describe import describe
-from codriving.memory.effect import effect_of
-from codriving.memory.moments import Crash, Moment, Way
-from codriving.memory.verdict import LESSONS, verdict_of
+from codriving.memory.effect import LESSONS, DecisionHistory, HistoryStep, OwnCollision, effect_of, verdict_of
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.sharing.scenes import describe_scenes
 from codriving.reasoning.sharing.state_sharing import SharedStates
@@ -37,7 +35,7 @@ class ExperienceLog:
     def __init__(self, road_map: RoadMap, model: DrivingModel) -> None:
         self._road_map, self._model = road_map, model
         self._tracking, self._sharing = Tracking(road_map), SharedStates()
-        self._moments: dict[str, list[Moment]] = {}
+        self._steps: dict[str, list[HistoryStep]] = {}
         self._told: dict[str, list[tuple[int, Situation]]] = {}
         self._begun: float | None = None
 
@@ -57,9 +55,9 @@ class ExperienceLog:
         self._look(world, {})
         found = []
         for name, told in self._told.items():
-            way = Way(tuple(self._moments[name]), self._model.decision_interval, self._crash(name, collision))
+            way = DecisionHistory(tuple(self._steps[name]), self._model.decision_interval, self._crash(name, collision))
             for k, (step, situation) in enumerate(told):
-                action = way.moments[k].action
+                action = way.steps[k].action
                 assert action is not None
                 effect = effect_of(way, k)
                 verdict = verdict_of(effect, action)
@@ -75,8 +73,8 @@ class ExperienceLog:
         everybody = {v.id: v for v in world.vehicles}
         for name, scene in scenes.items():
             situation, action = told.get(name, (None, None))
-            self._moments.setdefault(name, []).append(
-                Moment(
+            self._steps.setdefault(name, []).append(
+                HistoryStep(
                     ego=scene.ego,
                     others={other: state for other, state in everybody.items() if other != name},
                     conflicts=find_conflicts(scene, self._road_map),
@@ -86,9 +84,9 @@ class ExperienceLog:
                 )
             )
 
-    def _crash(self, name: str, collision: Collision | None) -> Crash | None:
+    def _crash(self, name: str, collision: Collision | None) -> OwnCollision | None:
         if collision is None or name not in (collision.striker, collision.struck) or self._begun is None:
             return None
         strikes = name == collision.striker
         other = collision.struck if strikes else collision.striker
-        return Crash(collision.time - self._begun, other, strikes)
+        return OwnCollision(collision.time - self._begun, other, strikes)

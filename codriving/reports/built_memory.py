@@ -37,10 +37,10 @@ def print_built(memories: Sequence[BuiltMemory]) -> PrintedTable:
         Column("method", lambda m: m.method, "method", words=True),
         *swept_columns(swept),
         Column("interactions", lambda m: len(m.reading.interactions), "interactions"),
-        Column("experiences", lambda m: len(m.reading.recollection.kept), "experiences"),
-        Column("made", lambda m: sum(entry.count for entry in m.reading.recollection.kept), "made"),
+        Column("experiences", lambda m: len(m.reading.snapshot.experiences), "experiences"),
+        Column("made", lambda m: sum(entry.count for entry in m.reading.snapshot.experiences), "made"),
         *map(_effect, EFFECTS),
-        Column("snapshot", lambda m: m.reading.recollection.digest[:12], "snapshot", words=True),
+        Column("snapshot", lambda m: m.reading.snapshot.digest[:12], "snapshot", words=True),
         Column("file", lambda m: str(m.reading.path), "file", words=True),
     ]
     title = f"memory - reasoner: {', '.join(dict.fromkeys(reasoner_text(memory.reasoner) for memory in memories))}"

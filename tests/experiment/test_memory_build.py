@@ -85,9 +85,9 @@ def test_a_build_can_be_stopped_and_grown(
         read_memory(Path("outputs/memory") / run / "memory/intersection-codriving-full.sqlite")
         for run in ("parts", "whole")
     )
-    assert parts.recollection.digest == whole.recollection.digest
+    assert parts.snapshot.digest == whole.snapshot.digest
     assert [i.seed for i in whole.interactions] == [20_000, 20_001, 20_002, 20_003]
-    assert whole.recollection.digest[:12] in printed
+    assert whole.snapshot.digest[:12] in printed
     assert "online" in Path("outputs/memory/whole/summary.csv").read_text()
     for run in ("parts", "whole"):
         records = [
@@ -118,7 +118,7 @@ def both(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
 
 def test_show_says_what_a_memory_is_of(both: tuple[Path, Path]) -> None:
     page = show_page(both[0], 1)
-    assert read_memory(both[0]).recollection.digest in page
+    assert read_memory(both[0]).snapshot.digest in page
     assert "experiences   2, made 2 times" in page
     assert "1 of intersection, codriving full, reasoner rules, seeds 20000 to 20000" in page
     assert page.count("similar actions should be avoided") == 1
@@ -147,7 +147,7 @@ def test_merging_counts_what_is_alike_once_and_changes_neither(both: tuple[Path,
     said = merge_page(*both, None, 0.98)
     assert said.startswith("a+b.sqlite: 2 experiences of 3, from 2 interactions, snapshot ")
     assert [path.read_bytes() for path in both] == before
-    assert [entry.count for entry in read_memory(Path("a+b.sqlite")).recollection.kept] == [2, 1]
+    assert [entry.count for entry in read_memory(Path("a+b.sqlite")).snapshot.experiences] == [2, 1]
     with pytest.raises(MemoryFileError, match="is there already"):
         merge_page(*both, None, 0.98)
     assert "from 1 interactions" in merge_page(both[0], both[0], Path("same.sqlite"), 0.98)

@@ -9,9 +9,16 @@ from remembered import conflict, crossing_way, moment, vehicle, without_conflict
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Effect, Verdict
-from codriving.memory.effect import HORIZON, effect_of, own_change
-from codriving.memory.moments import Crash, Way
-from codriving.memory.verdict import LESSONS, band, verdict_of
+from codriving.memory.effect import (
+    HORIZON,
+    LESSONS,
+    DecisionHistory,
+    OwnCollision,
+    band,
+    effect_of,
+    own_change,
+    verdict_of,
+)
 
 ALONG = [Action.SLOWER, Action.IDLE, Action.FASTER]
 speeds = st.floats(0.6, 12.0)
@@ -86,16 +93,20 @@ def test_without_a_conflict_nothing_was_done_to_one() -> None:
 
 @pytest.mark.parametrize(("time", "within"), [(0.4, True), (HORIZON, True), (HORIZON + 0.1, False)])
 def test_a_collision_soon_after_is_put_down_to_it(time: float, within: bool) -> None:
-    way = crossing_way(20.0, 20.0, [8.0] * 8, [8.0] * 8, Action.FASTER, crash=Crash(time, "CAV2", True))
+    way = crossing_way(20.0, 20.0, [8.0] * 8, [8.0] * 8, Action.FASTER, collision=OwnCollision(time, "CAV2", True))
     effect = effect_of(way, 0)
     assert (effect.collision is not None) is within
     assert verdict_of(effect, Action.FASTER) is (Verdict.INTENSIFIED if within else Verdict.NEUTRAL)
 
 
 def test_whoever_braked_before_the_collision_is_not_to_blame() -> None:
-    way = crossing_way(20.0, 28.0, [8.0, 5.0, 2.0], [8.0] * 3, Action.SLOWER, crash=Crash(2.0, "CAV2", False))
-    brakes = effect_of(replace(way, moments=(way.moments[0], *way.moments[1:])), 0)
-    late = crossing_way(28.0, 20.0, [8.0, 5.0, 2.0], [8.0] * 3, Action.SLOWER, crash=Crash(2.0, "CAV2", False))
+    way = crossing_way(
+        20.0, 28.0, [8.0, 5.0, 2.0], [8.0] * 3, Action.SLOWER, collision=OwnCollision(2.0, "CAV2", False)
+    )
+    brakes = effect_of(replace(way, steps=way.steps), 0)
+    late = crossing_way(
+        28.0, 20.0, [8.0, 5.0, 2.0], [8.0] * 3, Action.SLOWER, collision=OwnCollision(2.0, "CAV2", False)
+    )
     # Ahead of the other one, braking brings them together; behind it, braking keeps them apart.
     assert brakes.to_blame
     assert not effect_of(late, 0).to_blame
@@ -103,13 +114,17 @@ def test_whoever_braked_before_the_collision_is_not_to_blame() -> None:
 
 @pytest.mark.parametrize("striker", [True, False])
 def test_on_one_lane_only_whoever_runs_into_somebody_is_to_blame(striker: bool) -> None:
-    way = Way(tuple(moment(Action.FASTER, 5.0 * k, 10.0) for k in range(4)), 0.5, Crash(1.5, "HDV1", striker))
+    way = DecisionHistory(
+        tuple(moment(Action.FASTER, 5.0 * k, 10.0) for k in range(4)), 0.5, OwnCollision(1.5, "HDV1", striker)
+    )
     assert effect_of(way, 0).to_blame is striker
 
 
 def test_a_lane_change_before_a_collision_is_what_led_to_it() -> None:
     actions = [Action.IDLE, Action.LANE_LEFT, Action.IDLE, Action.FASTER]
-    way = Way(tuple(moment(a, 5.0 * k, 10.0) for k, a in enumerate(actions)), 0.5, Crash(2.0, "HDV1", True))
+    way = DecisionHistory(
+        tuple(moment(a, 5.0 * k, 10.0) for k, a in enumerate(actions)), 0.5, OwnCollision(2.0, "HDV1", True)
+    )
     assert [effect_of(way, k).to_blame for k in range(4)] == [False, True, False, False]
 
 
@@ -122,19 +137,19 @@ def test_cutting_in_so_that_somebody_has_to_brake_hard_has_intensified_it() -> N
         moment(Action.IDLE, 25.0, 10.0, others=behind(11.0, 12.0)),
         moment(Action.IDLE, 30.0, 10.0, others=behind(16.0, 9.0)),
     )
-    effect = effect_of(Way(moments, 0.5), 0)
+    effect = effect_of(DecisionHistory(moments, 0.5), 0)
     assert effect.forced_braking == pytest.approx(6.0)
     assert verdict_of(effect, Action.LANE_LEFT) is Verdict.INTENSIFIED
     assert verdict_of(effect, Action.IDLE) is Verdict.NEUTRAL
 
 
-def waiting(other_speed: float, could_go: bool = True, lead_gap: float | None = None) -> Way:
+def waiting(other_speed: float, could_go: bool = True, lead_gap: float | None = None) -> DecisionHistory:
     met = (conflict(5.0, 6.0, 0.0, other_speed),)
     moments = tuple(
         moment(Action.IDLE, 0.0, 0.0, met, (vehicle("CAV2", 0.0, other_speed, 9.0),), lead_gap, could_go)
         for _ in range(8)
     )
-    return Way(moments, 0.5)
+    return DecisionHistory(moments, 0.5)
 
 
 def test_waiting_for_somebody_who_does_not_come_is_too_cautious() -> None:
@@ -142,13 +157,13 @@ def test_waiting_for_somebody_who_does_not_come_is_too_cautious() -> None:
 
 
 @pytest.mark.parametrize("way", [waiting(4.0), waiting(0.0, could_go=False), waiting(0.0, lead_gap=4.0)])
-def test_waiting_for_somebody_who_comes_or_because_nothing_else_is_safe_is_not(way: Way) -> None:
+def test_waiting_for_somebody_who_comes_or_because_nothing_else_is_safe_is_not(way: DecisionHistory) -> None:
     assert not effect_of(way, 0).needless
 
 
 def test_what_happens_after_the_end_of_the_episode_is_not_known() -> None:
     way = waiting(0.0)
-    assert not effect_of(replace(way, moments=way.moments[:4]), 0).needless
+    assert not effect_of(replace(way, steps=way.steps[:4]), 0).needless
 
 
 def test_the_comment_is_the_papers() -> None:

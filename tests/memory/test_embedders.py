@@ -10,12 +10,11 @@ from remembered import description
 
 from codriving.errors import ConfigError
 from codriving.memory.embedder import Embedder
-from codriving.memory.embedders import OWN, EmbeddingServer, make_embedder
-from codriving.memory.features import NUMBERS, Features
-from codriving.memory.words import Words
+from codriving.memory.embedders import OWN, EmbeddingServer, WordEmbedder, make_embedder
+from codriving.memory.features import NUMBERS, FeatureEmbedder
 
 SERVER = EmbeddingServer("openai/none", None, None, 1.0)
-EMBEDDERS = [Features(), Words(), Words(banded=False)]
+EMBEDDERS = [FeatureEmbedder(), WordEmbedder(), WordEmbedder(banded=False)]
 
 
 def likeness(embedder: Embedder, **change: float) -> float:
@@ -37,7 +36,7 @@ def test_vectors_have_length_one_and_repeat(embedder: Embedder) -> None:
 @settings(deadline=None)
 @given(st.floats(0, 15), st.floats(0.05, 5), st.floats(0.05, 5))
 def test_a_larger_difference_is_less_alike(dttcp: float, near: float, further: float) -> None:
-    embed = Features().embed
+    embed = FeatureEmbedder().embed
     told = [description(), *(description(mine=20.0, its=20.0, my_ttcp=2.5, its_ttcp=2.5, later=0.0) for _ in range(3))]
     values = (dttcp, dttcp + near, dttcp + near + further)
     told = [replace(d, numbers={**d.numbers, "dttcp": v}) for d, v in zip(told[1:], values, strict=True)]
@@ -47,12 +46,12 @@ def test_a_larger_difference_is_less_alike(dttcp: float, near: float, further: f
 
 @pytest.mark.parametrize("change", [{"relation": "weaving"}, {"order": "first"}, {"speed": 1.0}, {"dttcp": 6.0}])
 def test_what_matters_lowers_the_likeness(change: dict[str, float]) -> None:
-    assert likeness(Features(), **change) < 0.97
-    assert likeness(Features()) == pytest.approx(1.0, abs=1e-6)
+    assert likeness(FeatureEmbedder(), **change) < 0.97
+    assert likeness(FeatureEmbedder()) == pytest.approx(1.0, abs=1e-6)
 
 
 def test_a_number_that_is_not_there_is_no_zero() -> None:
-    alone, led = Features().embed([description(), description(lead_gap=0.0)])
+    alone, led = FeatureEmbedder().embed([description(), description(lead_gap=0.0)])
     assert alone @ led < 1 - 1e-3
 
 
@@ -60,7 +59,7 @@ def test_every_number_of_a_description_has_a_place() -> None:
     names = [number.name for number in NUMBERS]
     assert len(set(names)) == len(names)
     for name in names:
-        one, other = Features().embed([description(**{name: 0.5}), description(**{name: 1.0})])
+        one, other = FeatureEmbedder().embed([description(**{name: 0.5}), description(**{name: 1.0})])
         assert not np.array_equal(one, other), name
 
 
@@ -68,9 +67,9 @@ def test_words_in_bands_do_not_tell_near_numbers_apart_and_plain_ones_do() -> No
     near = [replace(description(), scene=f"Driving {speed:.1f} m/s.") for speed in (8.1, 8.4)]
     far = [replace(description(), scene=f"Driving {speed:.1f} m/s.") for speed in (8.1, 1.4)]
     for told, alike in ((near, True), (far, False)):
-        one, other = Words().embed(told)
+        one, other = WordEmbedder().embed(told)
         assert np.array_equal(one, other) is alike
-    one, other = Words(banded=False).embed(near)
+    one, other = WordEmbedder(banded=False).embed(near)
     assert not np.array_equal(one, other)
 
 

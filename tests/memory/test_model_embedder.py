@@ -11,7 +11,7 @@ from remembered import description, experience, frozen, interaction, online
 
 from codriving.errors import MemoryFileError, ModelError, ModelUnavailableError
 from codriving.llm.embeddings import ATTEMPTS, EmbeddingModel
-from codriving.memory.model import ModelEmbedder
+from codriving.memory.embedders import EmbeddingServer, ModelEmbedder
 
 KEY, SECRET = "TEST_EMBEDDING_KEY", "sk-embedding-canary"
 
@@ -30,7 +30,7 @@ def model(server: Loopback, key_env: str | None = None) -> EmbeddingModel:
 
 
 def test_all_texts_of_a_step_are_one_request_and_each_is_asked_for_once(server: Loopback) -> None:
-    embedder = ModelEmbedder("some-embedder", server.url, None, 10.0)
+    embedder = ModelEmbedder(EmbeddingServer("some-embedder", server.url, None, 10.0))
     told = [description(dttcp=0.5), description(dttcp=6.0), description(dttcp=0.5)]
     vectors = embedder.embed(told)
     again = embedder.embed([*told, description(relation="none")])

@@ -12,9 +12,9 @@ from codriving.datatypes.experience import Description
 from codriving.environment.environment import Environment
 from codriving.llm.language_model import Offline
 from codriving.memory.describe import describe
-from codriving.memory.features import Features
-from codriving.memory.likeness import chance, precision_at, same_kind
-from codriving.memory.words import Words
+from codriving.memory.embedders import WordEmbedder
+from codriving.memory.features import FeatureEmbedder
+from codriving.memory.retrieval_metrics import chance, precision_at, same_kind
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.sharing.cda import CdaLevel
 
@@ -38,8 +38,8 @@ def test_the_default_finds_the_same_kind_far_better_than_chance(
     told: tuple[list[Description], list[Description]],
 ) -> None:
     blind = chance(*told)
-    found = precision_at(Features(), *told, (1, 5))
-    words = precision_at(Words(), *told, (1, 5))
+    found = precision_at(FeatureEmbedder(), *told, (1, 5))
+    words = precision_at(WordEmbedder(), *told, (1, 5))
     assert blind < 0.25
     for k in (1, 5):
         assert found[k] > 0.6
@@ -71,6 +71,9 @@ def test_situations_without_a_conflict_are_of_one_kind() -> None:
 
 def test_precision_of_what_is_there_itself_is_perfect() -> None:
     kept = [description(dttcp=4.0 * k) for k in range(4)]
-    assert precision_at(Features(), kept, kept, (1,)) == {1: 1.0}
+    assert precision_at(FeatureEmbedder(), kept, kept, (1,)) == {1: 1.0}
     assert chance(kept, kept) == 0.25
-    assert precision_at(Features(), kept, [replace(kept[0], kinds={**kept[0].kinds, "order": "none"})], (1, 4))[4] == 0
+    assert (
+        precision_at(FeatureEmbedder(), kept, [replace(kept[0], kinds={**kept[0].kinds, "order": "none"})], (1, 4))[4]
+        == 0
+    )

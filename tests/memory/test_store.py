@@ -14,10 +14,10 @@ from remembered import description, experience, filled, interaction, noise
 from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Verdict
 from codriving.errors import MemoryFileError
-from codriving.memory.features import Features
-from codriving.memory.recollection import Recollection, open_recollection
+from codriving.memory.embedders import WordEmbedder
+from codriving.memory.features import FeatureEmbedder
+from codriving.memory.snapshot import Snapshot, open_snapshot
 from codriving.memory.store import MemoryStore
-from codriving.memory.words import Words
 
 FAR = [description(dttcp=0.5), description(dttcp=7.5, speed=1.0), description(relation="none", speed=3.0)]
 """Situations that are not alike."""
@@ -25,17 +25,17 @@ FAR = [description(dttcp=0.5), description(dttcp=7.5, speed=1.0), description(re
 TESTS = Path(__file__).resolve().parents[1]
 
 
-def opened(path: Path, interactions: int | None = None) -> Recollection:
-    return open_recollection(path, Features(), interactions)
+def opened(path: Path, interactions: int | None = None) -> Snapshot:
+    return open_snapshot(path, FeatureEmbedder(), interactions)
 
 
 def counts(path: Path) -> list[int]:
-    return [entry.count for entry in opened(path).kept]
+    return [entry.count for entry in opened(path).experiences]
 
 
 def test_what_was_kept_is_what_is_read(tmp_path: Path) -> None:
     learnt = [experience(FAR[0]), experience(FAR[1], Action.SLOWER, Verdict.EASED, step=7, ego="CAV2")]
-    kept = opened(filled(tmp_path / "m.sqlite", learnt)).kept
+    kept = opened(filled(tmp_path / "m.sqlite", learnt)).experiences
     assert [entry.experience for entry in kept] == learnt
 
 
@@ -54,11 +54,11 @@ def test_another_action_or_verdict_is_another_experience(change: dict[str, objec
 def test_the_same_episode_driven_again_replaces_itself(tmp_path: Path) -> None:
     path = filled(tmp_path / "m.sqlite", [experience(FAR[0])], [experience(FAR[1])])
     before = opened(path).digest
-    with MemoryStore(path, Features(), 0.98) as store:
+    with MemoryStore(path, FeatureEmbedder(), 0.98) as store:
         store.add(interaction(20_001), [experience(FAR[1])])
         assert store.add(interaction(20_001), [experience(FAR[2])]) == 1
-    assert [entry.experience.description for entry in opened(path).kept] == [FAR[0], FAR[2]]
-    with MemoryStore(path, Features(), 0.98) as store:
+    assert [entry.experience.description for entry in opened(path).experiences] == [FAR[0], FAR[2]]
+    with MemoryStore(path, FeatureEmbedder(), 0.98) as store:
         store.add(interaction(20_001), [experience(FAR[1])])
     assert opened(path).digest == before
 
@@ -73,7 +73,7 @@ def test_the_first_interactions_are_what_the_file_held_then(tmp_path: Path) -> N
         assert len(part) == (len(opened(path)) if path else 0)
         if path:
             assert part.digest == opened(path).digest
-            assert [e.count for e in part.kept] == counts(path)
+            assert [e.count for e in part.experiences] == counts(path)
 
 
 def test_fewer_interactions_than_asked_for_are_refused(tmp_path: Path) -> None:
@@ -84,8 +84,8 @@ def test_fewer_interactions_than_asked_for_are_refused(tmp_path: Path) -> None:
 
 def test_what_is_recalled_before_a_seed_knows_nothing_of_later_ones(tmp_path: Path) -> None:
     path = filled(tmp_path / "m.sqlite", [experience(FAR[0])], [experience(FAR[1])], first=5)
-    with MemoryStore(path, Features(), 0.98) as store:
-        assert [len(store.recollection(before=seed)) for seed in (5, 6, 7)] == [0, 1, 2]
+    with MemoryStore(path, FeatureEmbedder(), 0.98) as store:
+        assert [len(store.snapshot(before=seed)) for seed in (5, 6, 7)] == [0, 1, 2]
 
 
 def test_what_was_opened_does_not_change_when_the_file_grows(tmp_path: Path) -> None:
@@ -106,12 +106,12 @@ def test_the_same_episodes_give_the_same_bytes(tmp_path: Path) -> None:
 @pytest.mark.parametrize("wrong", [float("nan"), float("inf")])
 def test_a_vector_that_is_no_number_is_refused_and_nothing_is_kept(wrong: float, tmp_path: Path) -> None:
     path = filled(tmp_path / "m.sqlite", [experience(FAR[0])])
-    vectors = Features().embed([FAR[1], FAR[2]])
+    vectors = FeatureEmbedder().embed([FAR[1], FAR[2]])
     vectors[1, 0] = wrong
-    with MemoryStore(path, Features(), 0.98) as store:
+    with MemoryStore(path, FeatureEmbedder(), 0.98) as store:
         with pytest.raises(MemoryFileError, match="not finite"):
             store.add(interaction(20_001), [experience(FAR[1]), experience(FAR[2])], vectors)
-        assert len(store.recollection()) == 1
+        assert len(store.snapshot()) == 1
         store.add(interaction(20_001), [experience(FAR[1])])
     assert counts(path) == [1, 1]
 
@@ -119,7 +119,7 @@ def test_a_vector_that_is_no_number_is_refused_and_nothing_is_kept(wrong: float,
 def test_a_vector_of_another_length_is_refused(tmp_path: Path) -> None:
     path = filled(tmp_path / "m.sqlite", [experience(FAR[0])])
     with (
-        MemoryStore(path, Features(), 0.98) as store,
+        MemoryStore(path, FeatureEmbedder(), 0.98) as store,
         pytest.raises(MemoryFileError, match="vectors of 104 numbers expected, got 8"),
     ):
         store.add(interaction(20_001), [experience(FAR[1])], noise(0, 1))
@@ -128,9 +128,9 @@ def test_a_vector_of_another_length_is_refused(tmp_path: Path) -> None:
 def test_a_file_of_another_embedder_is_refused(tmp_path: Path) -> None:
     path = filled(tmp_path / "m.sqlite", [experience()])
     with pytest.raises(MemoryFileError, match=r"made with the embedder features-1, and words-1 is asked for"):
-        open_recollection(path, Words())
+        open_snapshot(path, WordEmbedder())
     with pytest.raises(MemoryFileError, match=r"set memory\.embedder to match"):
-        MemoryStore(path, Words(), 0.98)
+        MemoryStore(path, WordEmbedder(), 0.98)
 
 
 def edit(path: Path, statement: str) -> None:
@@ -164,7 +164,7 @@ def test_what_cannot_be_read_is_said_when_it_is_read(tmp_path: Path) -> None:
     path = filled(tmp_path / "m.sqlite", [experience()])
     edit(path, "UPDATE experiences SET effect = '{\"other\": 1}'")
     with pytest.raises(MemoryFileError, match="experience 1 of the memory is damaged"):
-        _ = opened(path).kept[0].experience
+        _ = opened(path).experiences[0].experience
 
 
 def test_other_files_are_refused(tmp_path: Path) -> None:
@@ -183,7 +183,7 @@ def test_a_place_where_nothing_can_be_written_is_refused(tmp_path: Path) -> None
 
 def test_two_writers_lose_nothing_and_see_each_other(tmp_path: Path) -> None:
     path = tmp_path / "m.sqlite"
-    with MemoryStore(path, Features(), 0.98) as one, MemoryStore(path, Features(), 0.98) as two:
+    with MemoryStore(path, FeatureEmbedder(), 0.98) as one, MemoryStore(path, FeatureEmbedder(), 0.98) as two:
         for k in range(4):
             (one if k % 2 else two).add(
                 interaction(20_000 + k), [experience(FAR[0], step=k), experience(FAR[k % 3], ego="CAV2")]
@@ -200,9 +200,9 @@ import sys
 sys.path.insert(0, sys.argv[1])
 from pathlib import Path
 from remembered import description, experience, interaction
-from codriving.memory.features import Features
+from codriving.memory.features import FeatureEmbedder
 from codriving.memory.store import MemoryStore
-store, first = MemoryStore(Path(sys.argv[2]), Features(), 0.98), int(sys.argv[3])
+store, first = MemoryStore(Path(sys.argv[2]), FeatureEmbedder(), 0.98), int(sys.argv[3])
 for k in range(int(sys.argv[4])):
     told = [description(dttcp=0.5 * (j % 15), speed=0.7 * (j % 11)) for j in range(k, k + 20)]
     store.add(interaction(first + k), [experience(d, step=j) for j, d in enumerate(told)])
@@ -238,7 +238,7 @@ def test_a_killed_writer_leaves_whole_episodes_and_a_file_that_goes_on(after: in
     kept = opened(path)
     assert kept.interactions >= after
     assert sum(counts(path)) == 20 * kept.interactions
-    with MemoryStore(path, Features(), 0.98) as store:
+    with MemoryStore(path, FeatureEmbedder(), 0.98) as store:
         store.add(interaction(1), [experience()])
     assert opened(path).interactions == kept.interactions + 1
 
@@ -266,11 +266,11 @@ def test_a_change_that_was_cut_off_in_the_middle_is_undone(tmp_path: Path) -> No
 def test_recall_gives_the_text_and_the_numbers_of_what_was_kept(tmp_path: Path) -> None:
     path = filled(tmp_path / "m.sqlite", [experience(FAR[0]), experience(FAR[0], step=9)], [experience(FAR[1])])
     kept = opened(path)
-    ((memory, *others),) = kept.search(Features().embed([FAR[0]]), 2, -1.0)
+    ((memory, *others),) = kept.search(FeatureEmbedder().embed([FAR[0]]), 2, -1.0)
     assert (memory.id, memory.action, memory.verdict, memory.count) == (1, Action.FASTER, Verdict.INTENSIFIED, 2)
     assert memory.similarity == pytest.approx(1.0, abs=1e-5)
     assert "dTTCP 0.5 s, second: FASTER. Your action has intensified the conflict" in memory.text
     assert len(memory.text) <= 400
     assert others[0].similarity < memory.similarity
-    assert kept.search(Features().embed([FAR[0]]), 5, 0.999) == [(memory,)]
+    assert kept.search(FeatureEmbedder().embed([FAR[0]]), 5, 0.999) == [(memory,)]
     assert np.isfinite(memory.similarity)

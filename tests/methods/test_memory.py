@@ -15,9 +15,9 @@ from codriving.datatypes.outcome import Ending
 from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.situation import Situation
 from codriving.llm.language_model import Offline
-from codriving.memory.features import Features
+from codriving.memory.features import FeatureEmbedder
 from codriving.memory.online import OnlineMemory
-from codriving.memory.recollection import open_recollection
+from codriving.memory.snapshot import open_snapshot
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.sharing.cda import CdaLevel
 
@@ -74,7 +74,7 @@ class Practice(OnlineMemory):
     def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
         """Keep it beside what the drives before have left."""
         with self._store() as store:
-            done = store.recollection().interactions
+            done = store.snapshot().interactions
         return super().learn(replace(interaction, seed=interaction.seed + done), experiences)
 
 
@@ -89,7 +89,7 @@ def test_a_remembered_mistake_is_not_repeated(merge: Junction, tmp_path: Path) -
     drives = [learn(merge, made, seed)]
     assert ending(drives[0]) is Ending.COLLISION
     assert drives[0].actions == before.actions
-    kept = [entry.experience for entry in open_recollection(path, Features()).kept]
+    kept = [entry.experience for entry in open_snapshot(path, FeatureEmbedder()).experiences]
     mistake = next(e for e in kept if e.effect.to_blame)
     while ending(drives[-1]) is Ending.COLLISION and len(drives) < 5:
         drives.append(learn(merge, made, seed))
@@ -184,16 +184,16 @@ def test_online_an_episode_recalls_what_smaller_seeds_have_left(junction: Juncti
     first, second = (learn(junction, made, seed) for seed in (10_004, 10_005))
     assert sum(s.counts["recalled"] for s in first.steps) == 0
     assert sum(s.counts["recalled"] for s in second.steps) > 0
-    whole = open_recollection(path, Features()).digest
+    whole = open_snapshot(path, FeatureEmbedder()).digest
     # Driven again, as after an interruption between the two: the same, as if nothing had happened.
     again = learn(junction, method(online(path)), 10_005)
     assert again.actions == second.actions
-    assert open_recollection(path, Features()).digest == whole
+    assert open_snapshot(path, FeatureEmbedder()).digest == whole
 
 
 def test_labels_for_tables(tmp_path: Path) -> None:
     path = filled(tmp_path / "m.sqlite", [experience(description())])
-    digest = open_recollection(path, Features()).digest
+    digest = open_snapshot(path, FeatureEmbedder()).digest
     assert method(None).remembers == ""
     assert method(online(path)).remembers == "online"
     assert method(frozen(path)).remembers == f"frozen {digest[:8]}, 1 interactions"

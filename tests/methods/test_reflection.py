@@ -17,9 +17,9 @@ from codriving.llm.ledger import Ledger
 from codriving.llm.prompts.render import Prompts
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
-from codriving.memory.features import Features
-from codriving.memory.recollection import open_recollection
-from codriving.memory.verdict import LESSONS
+from codriving.memory.effect import LESSONS
+from codriving.memory.features import FeatureEmbedder
+from codriving.memory.snapshot import open_snapshot
 from codriving.methods.codriving import CoDriving
 from codriving.methods.language_model.reflection import Reflection
 from codriving.reasoning.sharing.cda import CdaLevel
@@ -79,7 +79,7 @@ def test_a_lesson_of_the_models_is_stored_and_counted(junction: Junction, tmp_pa
     episode = drive(junction.environment, made, 10_001)
     assert episode.outcome is not None
     counts, lines = made.conclude(episode.worlds[-1], episode.outcome)
-    mistakes = [k.experience for k in open_recollection(path, Features()).kept]
+    mistakes = [k.experience for k in open_snapshot(path, FeatureEmbedder()).experiences]
     taught = [e for e in mistakes if e.lesson.endswith("Yield earlier.")]
     assert len(taught) >= 1
     assert counts["model_calls"] == len(lines) >= len(taught)

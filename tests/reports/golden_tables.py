@@ -138,7 +138,7 @@ def tables() -> dict[str, str]:
     found["timing.csv"] = table(timing_columns(["scenario.cavs"]), timed).csv()
     kept = [SimpleNamespace(count=count) for count in (2, 1, 1)]
     reading = SimpleNamespace(
-        recollection=SimpleNamespace(kept=kept, digest="0123456789abcdef"),
+        snapshot=SimpleNamespace(experiences=kept, digest="0123456789abcdef"),
         verdicts={("eased", "SLOWER"): 3, ("intensified", "FASTER"): 1},
         interactions=(1, 2),
         path=Path("outputs/memory/a.sqlite"),
