@@ -17,7 +17,7 @@ def order(*said: tuple[str, str]) -> dict[str, tuple[str, str]]:
 
 
 def test_decision_asks_for_the_allowed_actions_and_a_reason_first() -> None:
-    properties = schema_of(decision_reply(["SLOWER", "IDLE"]))["properties"]
+    properties = schema_of(decision_reply(("SLOWER", "IDLE")))["properties"]
     assert list(properties) == ["reason", "action"]
     assert properties["action"] == {"enum": ["SLOWER", "IDLE"], "type": "string"}
 
@@ -30,7 +30,7 @@ def test_order_asks_for_the_pairs_and_the_vehicles() -> None:
 
 
 def test_decision_puts_up_with_case_and_long_reasons() -> None:
-    said = decision_reply(["IDLE"]).model_validate({"action": " idle\n", "reason": "a\n\x1b[31m" + "b" * 5000})
+    said = decision_reply(("IDLE",)).model_validate({"action": " idle\n", "reason": "a\n\x1b[31m" + "b" * 5000})
     assert said.action == "IDLE"
     assert said.reason.startswith("a [31mb")
     assert len(said.reason) == 160
@@ -39,12 +39,12 @@ def test_decision_puts_up_with_case_and_long_reasons() -> None:
 @pytest.mark.parametrize("said", [{}, {"action": None}, {"action": 3}, {"action": ["IDLE"]}])
 def test_decision_without_an_action_is_none(said: dict[str, object]) -> None:
     with pytest.raises(ValidationError):
-        decision_reply(["IDLE"]).model_validate(said)
+        decision_reply(("IDLE",)).model_validate(said)
 
 
 def test_reason_may_be_missing() -> None:
-    assert decision_reply(["IDLE"]).model_validate({"action": "IDLE", "reason": None}).reason == ""
-    assert decision_reply(["IDLE"]).model_validate({"action": "IDLE"}).reason == ""
+    assert decision_reply(("IDLE",)).model_validate({"action": "IDLE", "reason": None}).reason == ""
+    assert decision_reply(("IDLE",)).model_validate({"action": "IDLE"}).reason == ""
 
 
 @pytest.mark.parametrize(

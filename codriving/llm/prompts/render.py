@@ -1,6 +1,6 @@
 """Templates in files, filled in by Jinja2; a user's folder replaces ours file by file."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from math import isfinite
 from pathlib import Path
@@ -19,6 +19,13 @@ PURPOSES = ("negotiate", "decide", "reflect", "dilu", "dilu_reflect")
 FILES = tuple(f"{purpose}.{role}.md.j2" for purpose in PURPOSES for role in ROLES)
 """The templates that there are."""
 
+_FILTERS: dict[str, Callable[[float], str]] = {
+    "m": lambda metres: f"{round(metres)} m",
+    "s": lambda seconds: f"{seconds:.1f} s" if isfinite(seconds) and seconds < 100 else "never",
+    "mps": lambda speed: f"{abs(speed):.1f} m/s",
+    "after": lambda seconds: f"in {seconds:.1f} s" if isfinite(seconds) else "not within 10 s",
+}
+
 
 class Prompts:
     """The templates of one folder, checked and compiled.
@@ -31,19 +38,17 @@ class Prompts:
     """
 
     def __init__(self, folder: str | None = None) -> None:
-        from jinja2 import TemplateError
+        from jinja2 import Environment, StrictUndefined
 
-        environment = _environment()
+        environment = Environment(undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, autoescape=False)
+        environment.filters.update(_FILTERS)
         self._templates: dict[str, Template] = {}
         for name, path in _paths(folder).items():
             values = example(name.split(".")[0])
             self._templates[name] = _compiled(environment, path, values)
-            try:
-                self._templates[name].render(values)
-            except (TemplateError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
-                raise ConfigError(
-                    f"{path}: it cannot be filled in: {error}; see docs/change-the-prompts.md for what there is"
-                ) from error
+            self._render(
+                name, values, f"{path}: it cannot be filled in", "; see docs/change-the-prompts.md for what there is"
+            )
 
     def messages(self, purpose: str, values: Mapping[str, Any]) -> tuple[Message, ...]:
         """Return the system and the user message of a question.
@@ -54,26 +59,23 @@ class Prompts:
         Raises:
             ConfigError: If a template cannot be filled in.
         """
+        problem = f"the template of {purpose} cannot be filled in"
+        return tuple(
+            Message(role, self._render(f"{purpose}.{role}.md.j2", values, problem, "").strip()) for role in ROLES
+        )
+
+    def _render(self, name: str, values: Mapping[str, Any], problem: str, cure: str) -> str:
         from jinja2 import TemplateError
 
         try:
-            return tuple(
-                Message(role, self._templates[f"{purpose}.{role}.md.j2"].render(values).strip()) for role in ROLES
-            )
+            return self._templates[name].render(values)
         except (TemplateError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
-            raise ConfigError(f"the template of {purpose} cannot be filled in: {error}") from error
+            raise ConfigError(f"{problem}: {error}{cure}") from error
 
 
 @lru_cache(maxsize=8)
 def load_prompts(folder: str | None) -> Prompts:
-    """Return the templates of a folder; they are read once.
-
-    Args:
-        folder: Folder of the user's templates, or None.
-
-    Raises:
-        ConfigError: If a template cannot be used.
-    """
+    """Return the templates of a folder, see ``Prompts``; they are read once."""
     return Prompts(folder)
 
 
@@ -92,14 +94,6 @@ def _paths(folder: str | None) -> dict[str, Path]:
     return {name: theirs / name if (theirs / name).is_file() else OURS / name for name in FILES}
 
 
-def _environment() -> "Environment":
-    from jinja2 import Environment, StrictUndefined
-
-    made = Environment(undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, autoescape=False)
-    made.filters.update({"m": _metres, "s": _seconds, "mps": _speed, "after": _after})
-    return made
-
-
 def _compiled(environment: "Environment", path: Path, values: Mapping[str, Any]) -> "Template":
     from jinja2 import TemplateSyntaxError
     from jinja2.meta import find_undeclared_variables
@@ -114,19 +108,3 @@ def _compiled(environment: "Environment", path: Path, values: Mapping[str, Any])
     if unknown:
         raise ConfigError(f"{path}: there is no variable {unknown[0]!r}; there are {', '.join(sorted(values))}")
     return environment.from_string(source)
-
-
-def _metres(value: float) -> str:
-    return f"{round(value)} m"
-
-
-def _speed(value: float) -> str:
-    return f"{abs(value):.1f} m/s"
-
-
-def _seconds(value: float) -> str:
-    return f"{value:.1f} s" if isfinite(value) and value < 100 else "never"
-
-
-def _after(value: float) -> str:
-    return f"in {value:.1f} s" if isfinite(value) else "not within 10 s"

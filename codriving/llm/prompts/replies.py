@@ -1,7 +1,7 @@
 """The forms of the answers, made for each question: what may be said is part of the form.
 
 They take in a little more than they ask for, so that an answer which only names a vehicle wrongly is not lost as a
-whole; whoever reads them says what is wrong.
+whole; the check of each question says what is wrong.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,12 +13,23 @@ from pydantic import BaseModel, BeforeValidator, Field, create_model
 from codriving.llm.prompts.free_text import one_line
 
 
-def _short(value: Any) -> Any:  # noqa: ANN401 - whatever the model put there
+def _short(value: Any) -> Any:  # noqa: ANN401 - anything that the model put there
     return one_line(value) if isinstance(value, str) else "" if value is None else value
+
+
+def _upper(value: Any) -> Any:  # noqa: ANN401 - anything that the model put there
+    return value.strip().upper() if isinstance(value, str) else value
+
+
+def _one_of(words: Sequence[str]) -> Any:  # noqa: ANN401 - pydantic's own type is not public
+    """Ask for one of some words; that it is one of them is checked later, see above."""
+    return Field(json_schema_extra={"enum": list(words)})
 
 
 Reason = Annotated[str, BeforeValidator(_short)]
 """A reason: on one line, and capped."""
+
+ActionWord = Annotated[str, BeforeValidator(_upper)]
 
 
 class DecisionReply(BaseModel):
@@ -29,7 +40,7 @@ class DecisionReply(BaseModel):
 
 
 class PairReply(BaseModel):
-    """Who goes first in one pair."""
+    """Which vehicle goes first in one pair."""
 
     pair: str
     first: str
@@ -37,7 +48,7 @@ class PairReply(BaseModel):
 
 
 class OrderReply(BaseModel):
-    """Who goes first in every pair."""
+    """Which vehicle goes first in every pair."""
 
     orders: Sequence[PairReply]
 
@@ -48,15 +59,26 @@ class LessonReply(BaseModel):
     lesson: Reason = ""
 
 
-def decision_reply(allowed: Sequence[str]) -> type[DecisionReply]:
-    """Return the form of a decision."""
-    return _decision_reply(tuple(allowed))
+class CorrectionReply(BaseModel):
+    """A correction: the mistake first, since what is written first shapes what follows."""
+
+    mistake: Reason = ""
+    lesson: Reason = ""
+    action: str
 
 
 @lru_cache(maxsize=64)
-def _decision_reply(allowed: tuple[str, ...]) -> type[DecisionReply]:
-    made: type[DecisionReply] = create_model(
-        "Decision", __base__=DecisionReply, action=(Annotated[str, BeforeValidator(_upper)], _one_of(allowed))
+def decision_reply(allowed: tuple[str, ...]) -> type[DecisionReply]:
+    """Return the form of a decision."""
+    made: type[DecisionReply] = create_model("Decision", __base__=DecisionReply, action=(ActionWord, _one_of(allowed)))
+    return made
+
+
+@lru_cache(maxsize=64)
+def correction_reply(allowed: tuple[str, ...]) -> type[CorrectionReply]:
+    """Return the form of a correction."""
+    made: type[CorrectionReply] = create_model(
+        "Reflection", __base__=CorrectionReply, action=(ActionWord, _one_of(allowed))
     )
     return made
 
@@ -75,7 +97,7 @@ def first_of_pairs(reply: OrderReply, pairs: Mapping[str, tuple[str, str]]) -> d
     A pair that is named twice with different answers is left out.
 
     Returns:
-        Who goes first and why, by the name of the pair.
+        Which vehicle goes first and why, by the name of the pair.
     """
     found: dict[str, tuple[str, str]] = {}
     torn: set[str] = set()
@@ -86,13 +108,4 @@ def first_of_pairs(reply: OrderReply, pairs: Mapping[str, tuple[str, str]]) -> d
         if name in found and found[name][0] != first:
             torn.add(name)
         found.setdefault(name, (first, entry.reason))
-    return {name: said for name, said in found.items() if name not in torn}
-
-
-def _one_of(words: Sequence[str]) -> Any:  # noqa: ANN401 - pydantic's own type is not public
-    """Ask for one of some words; that it is one of them is checked by whoever reads the answer."""
-    return Field(json_schema_extra={"enum": list(words)})
-
-
-def _upper(value: Any) -> Any:  # noqa: ANN401 - whatever the model put there
-    return value.strip().upper() if isinstance(value, str) else value
+    return {name: answer for name, answer in found.items() if name not in torn}

@@ -1,17 +1,14 @@
-"""What a prompt is made of: facts in plain numbers and words, which the templates turn into sentences."""
+"""What a prompt is made of: facts in plain numbers and words, which the templates turn into sentences.
+
+Distances are in metres, times in seconds, speeds in m/s; ``driver`` is ``CAV``, ``human`` or ``unknown driver``.
+"""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class VehicleView:
-    """A vehicle beside or on the lane of the CAV.
-
-    Attributes:
-        driver: ``CAV``, ``human`` or ``unknown driver``.
-        gap: Free distance along the road [m].
-        speed: Speed [m/s].
-    """
+    """A vehicle beside or on the lane of the CAV; ``gap`` is the free distance along the road."""
 
     id: str
     driver: str
@@ -21,12 +18,10 @@ class VehicleView:
 
 @dataclass(frozen=True, slots=True)
 class LaneView:
-    """A lane that runs the CAV's way.
+    """A lane that runs the CAV's way, with the next vehicles ahead and behind there.
 
     Attributes:
         name: ``ego lane``, ``left lane`` or ``right lane``.
-        leading: The next vehicle ahead there, or None.
-        rear: The next vehicle behind there, or None.
     """
 
     name: str
@@ -36,14 +31,7 @@ class LaneView:
 
 @dataclass(frozen=True, slots=True)
 class OtherView:
-    """A vehicle of which the CAV does not know the lane.
-
-    Attributes:
-        driver: ``CAV``, ``human`` or ``unknown driver``.
-        ahead: Distance ahead, negative behind [m].
-        right: Distance to the right, negative to the left [m].
-        speed: Speed [m/s].
-    """
+    """A vehicle of which the CAV does not know the lane; ``ahead`` is negative behind, ``right`` to the left."""
 
     id: str
     driver: str
@@ -57,14 +45,9 @@ class ConflictView:
     """Everything that one other vehicle may get in the CAV's way; of several zones the most urgent one.
 
     Attributes:
-        driver: ``CAV``, ``human`` or ``unknown driver``.
-        speed: Its speed [m/s].
-        mine: The CAV's distance to the zone [m].
-        its: The other's distance to the zone [m].
-        my_ttcp: The CAV's time to the conflict zone [s].
-        its_ttcp: The other's time to the conflict zone [s].
-        dttcp: Difference of the two [s].
-        free: When the CAV's way through all of them is expected to be free [s]; 0 if the CAV goes first.
+        mine: The CAV's distance to the zone.
+        its: The other's distance to the zone.
+        free: When the CAV's way through all of them is expected to be free; 0 if the CAV goes first.
     """
 
     id: str
@@ -84,11 +67,7 @@ class ConflictView:
 
 @dataclass(frozen=True, slots=True)
 class IntentView:
-    """What another CAV means to do.
-
-    Attributes:
-        target_speed: The speed that it aims at [m/s].
-    """
+    """What another CAV means to do."""
 
     id: str
     route: str
@@ -108,8 +87,8 @@ class ActionView:
     """Actions of which the safety check says the same.
 
     Attributes:
-        progress: How far the CAV gets within 10 s if it then keeps the order [m]; None if it cannot keep it.
-        arrivals: Earliest arrival at the zones of each conflict, in the order of the conflicts [s].
+        progress: How far the CAV gets within 10 s if it then keeps the order; None if it cannot keep it.
+        arrivals: Earliest arrival at the zones of each conflict, in the order of the conflicts.
     """
 
     names: tuple[str, ...]
@@ -124,11 +103,9 @@ class EntrantView:
     """A CAV that is to be ordered.
 
     Attributes:
-        speed: Speed [m/s].
-        target_speed: The speed that it aims at [m/s].
-        distance: Distance to its first conflict zone [m].
-        earliest: Earliest time at which it can be there [s].
-        blocked: Intervals in which human drivers may be in its way there [s].
+        distance: Distance to its first conflict zone.
+        earliest: Earliest time at which it can be there.
+        blocked: Intervals in which human drivers may be in its way there.
     """
 
     id: str
@@ -145,14 +122,7 @@ class EntrantView:
 
 @dataclass(frozen=True, slots=True)
 class PairView:
-    """Two CAVs of which the order is open.
-
-    Attributes:
-        name: ``p1``, ``p2``, ..., most urgent first.
-        distances: Distance of each to the zone [m].
-        ttcp: Time of each to the conflict zone [s].
-        dttcp: Difference of the two [s].
-    """
+    """Two CAVs of which the order is open; ``name`` is ``p1``, ``p2``, ..., most urgent first."""
 
     name: str
     one: str
@@ -175,15 +145,7 @@ class FixedView:
 
 @dataclass(frozen=True, slots=True)
 class WayView:
-    """One way that a vehicle may take, where it meets that of the CAV.
-
-    Attributes:
-        mine: The CAV's distance to the place where they meet [m].
-        its: The other's distance to it [m].
-        my_ttcp: The CAV's time to it at its present speed [s].
-        its_ttcp: The other's time to it [s].
-        dttcp: Difference of the two [s].
-    """
+    """One way that a vehicle may take, and where it meets that of the CAV: both distances to it and times to it."""
 
     relation: str
     mine: float
@@ -200,9 +162,8 @@ class SeenView:
 
     Attributes:
         where: Where it is seen from the CAV, for instance ``ahead left``.
-        distance: Distance of the centres [m].
-        speed: Its speed [m/s].
-        standing: How long it has been standing [s].
+        distance: Distance of the centres.
+        standing: How long it has been standing.
     """
 
     id: str
@@ -216,11 +177,7 @@ class SeenView:
 
 @dataclass(frozen=True, slots=True)
 class MeaningView:
-    """An action that the road allows.
-
-    Attributes:
-        target: Target speed after it [m/s]; None for a lane change.
-    """
+    """An action that the road allows, and the target speed after it; None for a lane change."""
 
     name: str
     target: float | None

@@ -1,27 +1,16 @@
 """Reflection by a language model: what the mistake was, what it teaches, and what would have been right."""
 
 from collections.abc import Sequence
-from functools import lru_cache
-from typing import Annotated, Any, cast
-
-from pydantic import BaseModel, BeforeValidator, Field, create_model
+from typing import cast
 
 from codriving.datatypes.action import Action
 from codriving.llm.ledger import Ledger
 from codriving.llm.prompts.free_text import one_line, seen_names
 from codriving.llm.prompts.render import Prompts
-from codriving.llm.prompts.replies import Reason
+from codriving.llm.prompts.replies import CorrectionReply, correction_reply
 from codriving.llm.question import Answer, Chat, Question
 from codriving.methods.dilu.prompt_view import seen_view
 from codriving.methods.dilu.reflection import Correction, Mistake, correct_one
-
-
-class ReflectionReply(BaseModel):
-    """A correction: the mistake first, since what is written first shapes what follows."""
-
-    mistake: Reason = ""
-    lesson: Reason = ""
-    action: str
 
 
 class ModelReflector:
@@ -58,7 +47,7 @@ class ModelReflector:
         }
 
         def check(reply: object) -> str:
-            said = cast(ReflectionReply, reply)
+            said = cast(CorrectionReply, reply)
             if said.action not in right:
                 return f"{one_line(said.action)} cannot have been right; choose one of: {', '.join(right)}"
             return "" if said.lesson else "the lesson is missing"
@@ -67,26 +56,13 @@ class ModelReflector:
             purpose="reflect",
             subject=situation.scene.ego.id,
             messages=self.prompts.messages("dilu_reflect", values),
-            schema=_reply(tuple(right)),
+            schema=correction_reply(tuple(right)),
             check=check,
         )
-
-
-@lru_cache(maxsize=64)
-def _reply(right: tuple[str, ...]) -> type[ReflectionReply]:
-    words: Any = Field(json_schema_extra={"enum": list(right)})
-    made: type[ReflectionReply] = create_model(
-        "Reflection", __base__=ReflectionReply, action=(Annotated[str, BeforeValidator(_upper)], words)
-    )
-    return made
-
-
-def _upper(value: object) -> object:
-    return value.strip().upper() if isinstance(value, str) else value
 
 
 def _correction(mistake: Mistake, answer: Answer) -> Correction:
     if answer.value is None:
         return correct_one(mistake)
-    said = cast(ReflectionReply, answer.value)
+    said = cast(CorrectionReply, answer.value)
     return Correction(Action(said.action), said.mistake or correct_one(mistake).mistake, said.lesson)

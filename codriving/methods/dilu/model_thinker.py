@@ -70,7 +70,7 @@ class ModelThinker:
             purpose="decide",
             subject=told.situation.scene.ego.id,
             messages=self.prompts.messages("dilu", values),
-            schema=decision_reply(allowed),
+            schema=decision_reply(tuple(allowed)),
             check=check,
             shorter=shorter,
         )

@@ -82,7 +82,7 @@ class ModelDecider:
             purpose="decide",
             subject=situation.scene.ego.id,
             messages=self.prompts.messages("decide", decision_view(situation, nearest, with_memories)),
-            schema=decision_reply(allowed),
+            schema=decision_reply(tuple(allowed)),
             check=check,
             shorter=shorter,
         )

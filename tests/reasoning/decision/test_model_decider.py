@@ -118,7 +118,7 @@ def test_chat_that_checks_nothing_can_do_nothing_forbidden(told: tuple[Situation
         name = "careless"
 
         def ask(self, questions: list[Question]) -> list[Answer]:
-            return [Answer(decision_reply(["FASTER"]).model_validate({"action": "FASTER"}), ()) for _ in questions]
+            return [Answer(decision_reply(("FASTER",)).model_validate({"action": "FASTER"}), ()) for _ in questions]
 
     ledger = Ledger()
     [decision] = ModelDecider(Careless(), load_prompts(None), ledger, False, True).decide(told[2:])
