@@ -5,13 +5,14 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from codriving.metrics.paired import FEWEST, RESAMPLES
+from codriving.metrics.intervals import FEWEST, RESAMPLES
 from codriving.reports.columns import Column, Row, Table, swept_columns, table
+from codriving.reports.episodes import number_columns
 from codriving.reports.pairs import PAIRED, PairedCells
 from codriving.reports.paper import Paper, PaperRow
 from codriving.reports.printed import PrintedTable, printed
-from codriving.reports.results import CellResults
-from codriving.reports.summary import BY_KEY, FALLBACK_NOTE, FALLBACKS, MEASURED, NOTE, paper_row
+from codriving.reports.results import CellResults, named_numbers
+from codriving.reports.summary import BY_KEY, FALLBACK_NOTE, FALLBACKS, MEASURED, NOTE, number_notes, paper_row
 from codriving.reports.wording import STANDS_IN, metrics_text, milliseconds, reasoner_text, stand_in_notes, title
 
 REFERENCE = "codriving"
@@ -81,6 +82,10 @@ def setting_of(swept: Mapping[str, str]) -> Mapping[str, str]:
     return {key: value for key, value in swept.items() if key != METHOD_CHOICE}
 
 
+def _cells(rows: Iterable[Compared]) -> list[CellResults]:
+    return [row.cell for row in rows if row.cell]
+
+
 def _cell(row: Compared) -> CellResults | None:
     return row.cell
 
@@ -118,6 +123,7 @@ def comparison_table(rows: Sequence[Compared], swept: Sequence[str] = ()) -> Tab
         *swept_columns(swept),
         REASONER,
         *(column.of(_cell) for column in MEASURED if column.key not in rates),
+        *(column.of(_cell) for column in number_columns(named_numbers(_cells(rows)), MEASURED)),
         *([FALLBACKS.of(_cell)] if model else []),
         Column("cpu", lambda r: milliseconds(r.cell.cpu) if r.cell else "", CPU, csv=False, page=False),
         *(replace(column, head="").of(lambda r: r.pairs) for column in PAIRED if column.csv),
@@ -175,7 +181,7 @@ def print_comparison(
     reasoners = [row.cell.first.reasoner for row in rows if row.cell]
     heading = title("comparison of methods", [row.scenario for row in rows], reasoners, metrics)
     cells = [(row.method, row.status, row.cell) for row in rows]
-    return printed(heading, made.columns, groups, (NOTE, *notes_of(cells, screen)), screen)
+    return printed(heading, made.columns, groups, (NOTE, *number_notes(_cells(rows)), *notes_of(cells, screen)), screen)
 
 
 def notes_of(rows: Iterable[tuple[str, str, CellResults | None]], screen: bool) -> list[str]:

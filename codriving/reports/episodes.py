@@ -5,8 +5,10 @@ from typing import Any
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.score import NamedNumber
 from codriving.reports.columns import Column, mean, swept_columns
-from codriving.reports.results import ScoredEpisode, counter_names
+from codriving.reports.results import CellResults, ScoredEpisode, counter_names, named_numbers
+from codriving.reports.wording import two_digits
 
 LABELS: tuple[Column[ScoredEpisode], ...] = (
     Column("scenario", lambda e: e.record.scenario, words=True),
@@ -47,11 +49,30 @@ MEMORY: Column[ScoredEpisode] = Column("memory", lambda e: e.record.memory or No
 """What was recalled from; only where something was."""
 
 
-def episode_columns(records: Sequence[EpisodeRecord], swept: Iterable[str] = ()) -> list[Column[Any]]:
-    """Give the columns of ``episodes.csv``: fixed ones, swept keys, and the counters of methods."""
+def episode_columns(cells: Sequence[CellResults], swept: Iterable[str] = ()) -> list[Column[Any]]:
+    """Give the columns of ``episodes.csv``: fixed ones, swept keys, numbers of metrics, and the counters of methods."""
+    records = [record for cell in cells for record in cell.records]
     memory = [MEMORY] if any(record.memory for record in records) else []
     known: list[Column[Any]] = [*LEADING, *swept_columns(swept), *FURTHER, *memory]
+    known += number_columns(named_numbers(cells), known)
     return [*known, *counter_columns(records, known)]
+
+
+def number_columns(numbers: Iterable[NamedNumber], known: Iterable[Column[Any]]) -> list[Column[Any]]:
+    """Give the columns of further numbers of metrics, of what has a mapping `numbers`."""
+    taken = {column.key for column in known}
+
+    def column(number: NamedNumber) -> Column[Any]:
+        key = f"metric_{number.name}" if number.name in taken else number.name
+        head = number_head(number) if number.shown else ""
+        return Column(key, lambda item: item.numbers.get(number.name), head, two_digits)
+
+    return [column(number) for number in numbers]
+
+
+def number_head(number: NamedNumber) -> str:
+    """Name a number with its unit."""
+    return number.name.replace("_", " ") + (f" [{number.unit}]" if number.unit else "")
 
 
 def counter_columns(records: Sequence[EpisodeRecord], known: Iterable[Column[Any]]) -> list[Column[Any]]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from codriving.datatypes.outcome import Ending
-from codriving.metrics.paired import FEWEST, mcnemar, mean_interval
+from codriving.metrics.intervals import FEWEST, mcnemar, mean_interval
 from codriving.reports.columns import Column, Value, mean
 from codriving.reports.results import CellResults, ScoredEpisode
 from codriving.reports.wording import signed

@@ -2,15 +2,15 @@
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
-from codriving.datatypes.score import Score
-from codriving.metrics.wilson import wilson_interval
-from codriving.reports.columns import Value, share
+from codriving.datatypes.score import NamedNumber, Score
+from codriving.metrics.intervals import wilson_interval
+from codriving.reports.columns import Value, mean, share
 from codriving.runs.episode_folder import UNNAMED
 
 COST = "cost_usd"
@@ -109,6 +109,14 @@ class CellResults:
         return Counter(c.pair for episode in self.completed if (c := episode.record.outcome.collision) is not None)
 
     @cached_property
+    def numbers(self) -> dict[str, float | None]:
+        """Mean of each further number of the metric, over the completed episodes in which it is defined."""
+        values: dict[str, list[float]] = {}
+        for name, value in (pair for episode in self.completed for pair in episode.numbers.items()):
+            values.setdefault(name, []).extend([] if value is None else [value])
+        return {name: mean(found) for name, found in values.items()}
+
+    @cached_property
     def counters(self) -> dict[str, Value]:
         """What the method counted in all episodes, failed ones included: they have been paid for."""
         return counted(self.records)
@@ -163,10 +171,21 @@ class ScoredEpisode:
         """Delay of every vehicle of which it is defined [s]."""
         return [travel.delay for travel in self.score.travels if travel.delay is not None] if self.score else []
 
+    @property
+    def numbers(self) -> dict[str, float | None]:
+        """Further numbers of the metric by name."""
+        return {number.name: number.value for number in self.score.numbers} if self.score else {}
+
     @cached_property
     def counters(self) -> dict[str, Value]:
         """What the method counted."""
         return counted([self.record])
+
+
+def named_numbers(cells: Iterable[CellResults]) -> list[NamedNumber]:
+    """List the further numbers of the metrics of some cells, each once."""
+    scores = (episode.score for cell in cells for episode in cell.episodes if episode.score)
+    return list({number.name: number for score in scores for number in score.numbers}.values())
 
 
 def success_interval(successes: int, episodes: int) -> tuple[float | None, float | None]:

@@ -43,10 +43,9 @@ def run_tables(
 ) -> RunTables:
     """Make all tables of a run."""
     swept = tuple(dict.fromkeys(key for cell in cells for key in cell.swept))
-    records = [record for cell in cells for record in cell.records]
     notes = tuple(notes)
     return RunTables(
-        table(episode_columns(records, swept), [episode for cell in cells for episode in cell.episodes]),
+        table(episode_columns(cells, swept), [episode for cell in cells for episode in cell.episodes]),
         summary_table(cells, swept),
         print_summary(cells, paper, metrics, swept, notes),
         print_summary(cells, paper, metrics, swept, notes, screen=True),

@@ -8,10 +8,10 @@ from typing import Any
 
 from codriving.datatypes.outcome import Ending
 from codriving.reports.columns import Column, Row, Table, Value, mean, share, swept_columns, table
-from codriving.reports.episodes import counter_columns
+from codriving.reports.episodes import counter_columns, number_columns, number_head
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.printed import PrintedTable, printed
-from codriving.reports.results import ASKED, COST, CellResults, success_interval
+from codriving.reports.results import ASKED, COST, CellResults, named_numbers, success_interval
 from codriving.reports.wording import interval_text, percent, stand_in_notes, three, title, two_digits
 
 SEVERE_PET = 1.5
@@ -119,6 +119,7 @@ def summary_columns(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> 
         *FURTHER,
         *memory,
     ]
+    known += number_columns(named_numbers(cells), known)
     counters = counter_columns(records, known)
     rate = len([column for column in counters if column.key in ASKED]) if model else 0
     rest = [*counters[:rate], *([replace(FALLBACKS, head="")] if model else []), *counters[rate:]]
@@ -160,8 +161,19 @@ def print_summary(
         for index, (row, claim) in enumerate(zip(made.rows, claims, strict=True))
     ]
     scenarios, reasoners = ([row[key] for row in made.rows] for key in ("scenario", "reasoner"))
-    said = (NOTE, *stand_in_notes(row["method"] for row in made.rows), *_model_notes(cells, screen), *notes)
+    models = stand_in_notes(row["method"] for row in made.rows)
+    said = (NOTE, *number_notes(cells), *models, *_model_notes(cells, screen), *notes)
     return printed(title("", scenarios, reasoners, metrics), (*made.columns, *claimed), groups, said, screen)
+
+
+def number_notes(cells: Iterable[CellResults]) -> list[str]:
+    """Say what the further numbers of metrics are that are shown, and what is better."""
+    return [
+        f"{number_head(number)}: mean over completed episodes"
+        + (f"; {number.better} is better." if number.better else ".")
+        for number in named_numbers(cells)
+        if number.shown
+    ]
 
 
 def paper_row(paper: PaperRow) -> Row:

@@ -14,7 +14,8 @@ from codriving.reports.summary import print_summary, summary_table
 
 def episodes_of(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | None = None) -> Table:
     """The table of the episodes of one cell."""
-    return table(episode_columns(records, swept or {}), CellResults(records, swept or {}).episodes)
+    cell = CellResults(records, swept or {})
+    return table(episode_columns([cell], swept or {}), cell.episodes)
 
 
 def summary_of(records: Sequence[EpisodeRecord], swept: Mapping[str, str] | None = None) -> Table:

@@ -1,11 +1,13 @@
 """What a language model was asked is in every table of its runs, and in no table of any other."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.score import NamedNumber
 from codriving.reports.comparison import comparison_rows, comparison_table, print_comparison
 from codriving.reports.load import load_rows, load_table, print_loads
 from codriving.reports.paper import Paper
@@ -145,3 +147,25 @@ def test_so_do_loads(make: Make, asked: Make) -> None:
     assert not any(
         "fallback" in name for name in (*print_loads(rules, [2], "standard").columns, *load_table(rules, [2]).keys)
     )
+
+
+def test_numbers_of_a_metric_are_columns_and_undefined_is_not_zero(make: Make) -> None:
+    def waited(seed: int, seconds: float | None, shown: bool = True) -> EpisodeRecord:
+        numbers = (
+            NamedNumber("waiting_time", seconds, "s", "lower", shown),
+            NamedNumber("decisions", 4.0),
+        )
+        record = make(seed)
+        return replace(record, scores={"standard": replace(record.scores["standard"], numbers=numbers)})
+
+    cell = [waited(0, 3.0), waited(1, None), waited(2, 4.0), make(3, Ending.ERROR)]
+    assert [row["waiting_time"] for row in episodes_of(cell).rows] == [3.0, None, 4.0, None]
+    assert episodes_of(cell).keys[-2:] == summary_of(cell).keys[-2:] == ("waiting_time", "metric_decisions")
+    assert (summary_row(cell)["waiting_time"], summary_row(cell)["metric_decisions"]) == (3.5, 4.0)
+    table = print_cells(cell)
+    assert column_of(table, "waiting time [s]") == ["3.50"]
+    assert "waiting time [s]: mean over completed episodes; lower is better." in table.notes
+    assert "waiting time [s]" not in print_cells([waited(0, 3.0, shown=False)]).columns
+    rows = comparison_rows([CellResults(cell)], ["codriving"], Paper())
+    assert comparison_table(rows).rows[0]["waiting_time"] == 3.5
+    assert column_of(print_comparison(rows, "standard"), "waiting time [s]") == ["3.50"]
