@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from codriving.datatypes.ordering_problem import Entrant, Instance, Pair
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance, Pair
 from codriving.methods.coop_game.payoff import Goal, Payoff, Scale
 from codriving.reasoning.ordering.protocol import JointPlan
 from codriving.reasoning.ordering.schedule import schedule, timed
@@ -18,20 +18,26 @@ SAMPLE, STEPS = 0.2, 60
 """Time between two samples of a plan [s], and their number."""
 
 
-def entrant(name: str, eta: float, **more: Any) -> Entrant:
+def vehicle(name: str, eta: float, **more: Any) -> ApproachingVehicle:
     """A vehicle that has a way of 60 m behind its reference point."""
     distance = more.pop("distance", max(eta, 0.0) * TOP)
     remaining = more.pop("remaining", distance + 60.0)
-    return Entrant(name, 100.0, eta, distance=distance, remaining=remaining, **{"stream": name, "speed": TOP, **more})
+    return ApproachingVehicle(
+        name, 100.0, eta, distance=distance, remaining=remaining, **{"stream": name, "speed": TOP, **more}
+    )
 
 
 def instance(
-    *entrants: Entrant, conflicts: Iterable[Pair] = (), before: Iterable[Pair] = (), apart: float = 2.0, time: float = 0
+    *vehicles: ApproachingVehicle,
+    conflicts: Iterable[Pair] = (),
+    before: Iterable[Pair] = (),
+    apart: float = 2.0,
+    time: float = 0,
 ) -> Instance:
     """A moment in which pairs in conflict must be some seconds apart."""
     before = set(before)
     pairs = {pair for a, b in (*conflicts, *before) for pair in ((a, b), (b, a))}
-    return Instance(time, {e.id: e for e in entrants}, dict.fromkeys(sorted(pairs), apart), before)
+    return Instance(time, {e.id: e for e in vehicles}, dict.fromkeys(sorted(pairs), apart), before)
 
 
 def everybody(names: Sequence[str]) -> list[Pair]:
@@ -54,7 +60,7 @@ class Scheduled:
         travels = {}
         for name, passes in timed(self.problem, order).items():
             passes = max(passes, 1e-3)
-            distance = self.problem.entrants[name].distance
+            distance = self.problem.vehicles[name].distance
             early = times * distance / passes
             travels[name] = np.where(times < passes, early, distance + (times - passes) * TOP)
         return JointPlan(feasible, travels, SAMPLE, int(not feasible))
@@ -63,7 +69,7 @@ class Scheduled:
         """The time between the two at their reference points."""
         if not self.problem.conflict(one, other):
             return float("inf")
-        distances = [self.problem.entrants[name].distance for name in (one, other)]
+        distances = [self.problem.vehicles[name].distance for name in (one, other)]
         passes = [
             float(np.searchsorted(plan.travels[n], d)) * SAMPLE for n, d in zip((one, other), distances, strict=True)
         ]
@@ -78,7 +84,7 @@ def problems(draw: st.DrawFn, most: int = 6) -> Instance:
     etas = draw(st.lists(st.floats(0.5, 12.0), min_size=number, max_size=number))
     turning = draw(st.lists(st.booleans(), min_size=number, max_size=number))
     cars = [
-        entrant(f"v{k}", etas[k], stream=streams[k], turning=turning[k], speed=draw(st.sampled_from([0.0, 4.0, TOP])))
+        vehicle(f"v{k}", etas[k], stream=streams[k], turning=turning[k], speed=draw(st.sampled_from([0.0, 4.0, TOP])))
         for k in range(number)
     ]
     meets = {(a, b): draw(st.booleans()) for a in sorted(set(streams)) for b in sorted(set(streams)) if a < b}

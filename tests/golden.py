@@ -30,7 +30,7 @@ from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.situation import Situation
 from codriving.reasoning.decision.rules import decide_one
 from codriving.reasoning.ordering.problem import Problem
-from codriving.reasoning.safety.outlook import Outlook
+from codriving.reasoning.safety.safety_input import SafetyInput
 
 NAMED = re.compile(r"crossing|converging|weaving|[CH][AD]V\d|in the way|lane ends|other side|\d+\.?\d* m(?:/s2)?\b")
 """What of a reason stands in a table."""
@@ -80,9 +80,9 @@ class Setting:
         """States, intents and conflicts."""
         return junction.thoughts(*self.cars)
 
-    def outlook(self, junction: Junction) -> Outlook:
+    def safety_input(self, junction: Junction) -> SafetyInput:
         """What one CAV sees; the order is the coordinator's if none is given."""
-        seen = self.think(junction).outlook(self.ego, self.order)
+        seen = self.think(junction).safety_input(self.ego, self.order)
         for name, time in self.stood.items():
             seen = standing(seen, name, time)
         return seen
@@ -107,13 +107,13 @@ def setting(scene: str, value: str) -> Setting:
     return Setting(tuple(cars), order_of(*pairs, binding=binding) if pairs else None, stood, ego)
 
 
-def removals(outlook: Outlook, *layers: Callable[[Outlook], dict[Action, list[str]]]) -> str:
+def removals(given: SafetyInput, *layers: Callable[[SafetyInput], dict[Action, list[str]]]) -> str:
     """Write down the actions that some layers remove, each with what the reasons name: relations, vehicles, numbers."""
     found: dict[Action, list[str]] = {}
     for layer in layers:
-        for action, reasons in layer(outlook).items():
+        for action, reasons in layer(given).items():
             found.setdefault(action, []).extend(" ".join(NAMED.findall(reason)) for reason in reasons)
-    texts = (f"{a}: {', '.join(dict.fromkeys(found[a]))}" for a in outlook.actions if a in found)
+    texts = (f"{a}: {', '.join(dict.fromkeys(found[a]))}" for a in given.actions if a in found)
     return "; ".join(texts) or "-"
 
 
@@ -127,7 +127,7 @@ def posed(problem: Problem) -> str:
     """Write down an ordering problem: times [s], distances [m], what must lie between two vehicles [s]."""
     instance = problem.instance
     texts = []
-    for e in instance.entrants.values():
+    for e in instance.vehicles.values():
         marks = [" committed"] * e.committed + [" turning"] * e.turning + [f" behind {e.leader}"] * bool(e.leader)
         shut = "".join(f" not {begin:.2f} to {end:.2f}" for begin, end in e.windows)
         numbers = f"in {e.eta:.2f} s, {e.distance:.1f} m, across {e.crossing:.2f} s, to go {e.remaining:.1f} m"

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from random import Random
 
-from codriving.datatypes.ordering_problem import Entrant, Instance
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
 from codriving.reasoning.ordering.protocol import JointPlan
 from codriving.reasoning.ordering.schedule import schedule
 
@@ -43,11 +43,11 @@ def instance(
     **changes: dict[str, object],
 ) -> Instance:
     """Return a problem by hand; ``changes`` are attributes of single vehicles, by id."""
-    entrants = {name: Entrant(name, 100.0, eta, crossing=2.0) for name, eta in etas.items()}
+    vehicles = {name: ApproachingVehicle(name, 100.0, eta, crossing=2.0) for name, eta in etas.items()}
     for name, attributes in changes.items():
         for key, value in attributes.items():
-            setattr(entrants[name], key, value)
-    return Instance(time, entrants, separation or {}, frozenset(before))
+            setattr(vehicles[name], key, value)
+    return Instance(time, vehicles, separation or {}, frozenset(before))
 
 
 def both(one: str, other: str, apart: float) -> dict[tuple[str, str], float]:
@@ -58,7 +58,7 @@ def both(one: str, other: str, apart: float) -> dict[tuple[str, str], float]:
 def crossroads(seed: int, n: int, windows: bool = False) -> Instance:
     """Return a random problem: vehicles on four legs, one behind another where they share one."""
     draw = Random(seed)
-    entrants: dict[str, Entrant] = {}
+    vehicles: dict[str, ApproachingVehicle] = {}
     movement: dict[str, tuple[int, str]] = {}
     separation: dict[tuple[str, str], float] = {}
     before: set[tuple[str, str]] = set()
@@ -66,8 +66,8 @@ def crossroads(seed: int, n: int, windows: bool = False) -> Instance:
     for name in [f"CAV{k}" for k in range(n)]:
         leg, turn = draw.randrange(4), draw.choice(TURNS)
         ahead = last[leg]
-        earliest = entrants[ahead[-1]].eta + draw.uniform(0.8, 3.0) if ahead else draw.uniform(0.0, 5.0)
-        entrants[name] = Entrant(
+        earliest = vehicles[ahead[-1]].eta + draw.uniform(0.8, 3.0) if ahead else draw.uniform(0.0, 5.0)
+        vehicles[name] = ApproachingVehicle(
             name,
             100.0,
             earliest,
@@ -88,19 +88,19 @@ def crossroads(seed: int, n: int, windows: bool = False) -> Instance:
                 separation[name, other] = draw.uniform(0.8, 3.0)
         if windows and draw.random() < 0.5:
             begin = earliest + draw.uniform(-2.0, 4.0)
-            entrants[name].windows = [(begin, begin + draw.uniform(0.5, 3.0))]
+            vehicles[name].windows = [(begin, begin + draw.uniform(0.5, 3.0))]
         movement[name] = leg, turn
         ahead.append(name)
-    return Instance(0.0, entrants, separation, frozenset(before))
+    return Instance(0.0, vehicles, separation, frozenset(before))
 
 
 def is_valid(problem: Instance, order: Sequence[str], times: dict[str, float]) -> bool:
     """Whether an order with its times keeps what is fixed, all separations and all windows, early arrivals included."""
     place = {name: k for k, name in enumerate(order)}
     return (
-        sorted(order) == sorted(problem.entrants)
+        sorted(order) == sorted(problem.vehicles)
         and schedule(problem, order) is not None
-        and all(times[n] >= e.eta for n, e in problem.entrants.items())
-        and all(not b < times[n] < e for n, v in problem.entrants.items() for b, e in v.windows)
+        and all(times[n] >= e.eta for n, e in problem.vehicles.items())
+        and all(not b < times[n] < e for n, v in problem.vehicles.items() for b, e in v.windows)
         and all(times[j] >= times[i] + w - 1e-9 for (i, j), w in problem.separation.items() if place[i] < place[j])
     )

@@ -18,7 +18,7 @@ from codriving.memory.features import FeatureEmbedder
 from codriving.memory.frozen import FrozenMemory
 from codriving.memory.online import OnlineMemory
 from codriving.memory.store import MemoryStore
-from codriving.reasoning.severity import severity, ttcp
+from codriving.reasoning.conflicts import severity, ttcp
 
 LANE = ("a", "b", 0)
 

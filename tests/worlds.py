@@ -22,9 +22,9 @@ from codriving.reasoning.ordering.coordinator import RuleCoordinator
 from codriving.reasoning.prediction.expectation import expect
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.plans import PLANS
-from codriving.reasoning.safety.outlook import CONTINUATIONS, LONGITUDINAL, Outlook, motions
+from codriving.reasoning.safety.safety_input import CONTINUATIONS, LONGITUDINAL, SafetyInput, safety_input
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
-from codriving.reasoning.sharing.state_sharing import SharedStates, StateSharing
+from codriving.reasoning.sharing.sharing import SharedStates, StateSharing
 from codriving.reasoning.sharing.tracking import Tracking
 
 LAG = 5
@@ -120,18 +120,15 @@ class Thoughts:
         """The order of the built-in coordinator."""
         return (coordinator or RuleCoordinator(False)).negotiate(self.moment())
 
-    def outlook(
+    def safety_input(
         self, ego: str, order: PassingOrder | None = None, actions: tuple[Action, ...] | None = None
-    ) -> Outlook:
-        """The view of one CAV that goes by an order: the coordinator's, or the one given."""
-        order, actions = order or self.negotiate(), actions or self.available[ego]
-        scene, road_map = self.scenes[ego], self.junction.road_map
-        known = scene.vehicles()
-        expected = expect(known, order, road_map, self.forecast, LAG, minds_conflicts=True)
-        stops, goes = motions(scene, actions, self.forecast)
-        return Outlook(
-            scene, self.conflicts[ego], order, known, expected, actions, stops, goes, road_map, self.forecast, LAG, True
-        )
+    ) -> SafetyInput:
+        """What one CAV is checked by that goes by an order: the coordinator's, or the one given."""
+        moment = self.moment()
+        if actions is not None:
+            moment = replace(moment, available={**moment.available, ego: actions})
+        order = order or self.negotiate()
+        return safety_input(moment, ego, order, expect(moment, ego, order, LAG), LAG)
 
 
 @dataclass
@@ -179,8 +176,8 @@ class Junction:
         """Share states and intents, and find the conflicts."""
         forecast = self.forecast()
         forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
-        views = (sharing or SharedStates()).views(world, self.model)
-        scenes = describe_scenes(world, views, world.intents, tracking or Tracking(self.road_map))
+        detections = (sharing or SharedStates()).detections(world, self.model)
+        scenes = describe_scenes(world, detections, world.intents, tracking or Tracking(self.road_map))
         conflicts = {ego: find_conflicts(scene, self.road_map) for ego, scene in scenes.items()}
         scenes = {ego: with_conflicts(scene, conflicts[ego], self.road_map) for ego, scene in scenes.items()}
         return Thoughts(self, forecast, scenes, conflicts, world.available)
@@ -189,9 +186,9 @@ class Junction:
         """What is thought of some vehicles."""
         return self.think(self.world(*cars))
 
-    def outlook(self, *cars: Car, ego: str = "CAV1", order: PassingOrder | None = None) -> Outlook:
+    def safety_input(self, *cars: Car, ego: str = "CAV1", order: PassingOrder | None = None) -> SafetyInput:
         """What one CAV sees of some vehicles."""
-        return self.thoughts(*cars).outlook(ego, order)
+        return self.thoughts(*cars).safety_input(ego, order)
 
     def forecast(self) -> Forecast:
         """Predictions with every plan that the reasoning asks for."""
@@ -203,7 +200,7 @@ class Junction:
         return Environment(ByHand(e, starts), e.control, e.drivers, e.corrections)
 
 
-def standing(outlook: Outlook, name: str, time: float) -> Outlook:
-    """The same view, but of somebody who has been standing for some time."""
-    others = {**outlook.others, name: replace(outlook.others[name], standing=time)}
-    return replace(outlook, others=others)
+def standing(given: SafetyInput, name: str, time: float) -> SafetyInput:
+    """The same, but with a vehicle that has been standing for some time."""
+    vehicles = {**given.vehicles, name: replace(given.vehicles[name], standing=time)}
+    return replace(given, moment=replace(given.moment, vehicles={**given.moment.vehicles, given.ego: vehicles}))

@@ -25,26 +25,17 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """Two vehicles whose ways ahead share a zone, seen from one of them.
-
-    Attributes:
-        places: Arc length of each along its route [m].
-        distances: Distance of each to the zone [m]; 0 inside it.
-        exits: Distance of each to the end of the zone [m].
-        ttcp: Time of each to the conflict zone at its present speed [s].
-        dttcp: Difference of the two times [s].
-        severity: The paper's band of ``dttcp``.
-    """
+    """Two vehicles whose ways ahead share a zone, seen from one of them."""
 
     ego: str
     other: str
     relation: Relation
     routes: tuple[str, str]
     zone: int
-    places: tuple[float, float]
-    distances: tuple[float, float]
-    exits: tuple[float, float]
-    ttcp: tuple[float, float]
-    dttcp: float
-    severity: Severity
+    places: tuple[float, float]  # Arc length of each along its route [m]
+    distances: tuple[float, float]  # Distance of each to the zone [m]; 0 inside it
+    exits: tuple[float, float]  # Distance of each to the end of the zone [m]
+    ttcp: tuple[float, float]  # Time of each to the conflict zone at its present speed [s]
+    dttcp: float  # Difference of the two times [s]
+    severity: Severity  # The paper's band of ``dttcp``
     certain: bool

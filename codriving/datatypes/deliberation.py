@@ -36,13 +36,9 @@ class Deliberation(ABC):
 
 @dataclass(frozen=True, slots=True)
 class ReasonedDeliberation(Deliberation):
-    """A decision step in which the situation of each CAV is described.
+    """A decision step in which the situation of each CAV is described."""
 
-    Attributes:
-        time: Simulated time [s].
-    """
-
-    time: float
+    time: float  # Simulated time [s]
     step: int
     situations: tuple[Situation, ...]
     decisions: tuple[Decision, ...]
@@ -54,7 +50,7 @@ class ReasonedDeliberation(Deliberation):
         return {d.ego: d.action for d in self.decisions}
 
     def as_dict(self) -> dict[str, Any]:
-        # Whoever goes by the same order shares its entry.
+        # CAVs that go by the same order share its entry.
         written = {key: _order(order) for key, order in {id(s.order): s.order for s in self.situations}.items()}
         return {
             "time": self.time,

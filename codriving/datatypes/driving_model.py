@@ -5,21 +5,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class DrivingModel:
-    """The vehicle model seen through the five actions (paper Eq. 1).
+    """The vehicle model seen through the five actions (paper Eq. 1)."""
 
-    Attributes:
-        target_speeds: Allowed target speeds, uniformly spaced and rising [m/s].
-        speed_gain: Proportional gain K_a of the speed law a = K_a (v_r - v) [1/s].
-        step: Simulation step [s].
-        decision_interval: Time between two decisions, a multiple of the step [s].
-        detection_range: Radius within which a CAV perceives other vehicles [m].
-    """
-
-    target_speeds: tuple[float, ...]
-    speed_gain: float
-    step: float
-    decision_interval: float
-    detection_range: float
+    target_speeds: tuple[float, ...]  # Allowed target speeds, uniformly spaced and rising [m/s]
+    speed_gain: float  # Proportional gain K_a of the speed law a = K_a (v_r - v) [1/s]
+    step: float  # Simulation step [s]
+    decision_interval: float  # Time between two decisions, a multiple of the step [s]
+    detection_range: float  # Radius within which a CAV perceives other vehicles [m]
 
     @property
     def top_speed(self) -> float:

@@ -21,16 +21,13 @@ class Description:
     """A situation as it is stored and searched for: in words, and the numbers and kinds that the words are made of.
 
     Nothing in it names a vehicle, a place or a route, so that situations of the same kind read alike.
-
-    Attributes:
-        kinds: Words of a fixed set by name, for instance ``relation``.
     """
 
     scene: str
     conflict: str
     order: str
     numbers: Mapping[str, float]
-    kinds: Mapping[str, str]
+    kinds: Mapping[str, str]  # Words of a fixed set by name, for instance ``relation``
 
     @property
     def text(self) -> str:

@@ -8,32 +8,27 @@ Pair = tuple[str, str]
 
 
 @dataclass(slots=True)
-class Entrant:
+class ApproachingVehicle:
     """What an order has to know of one CAV that still has a conflict ahead.
 
     Attributes:
-        reference: Arc length of its first conflict zone [m].
-        eta: Earliest time at which it can be there [s]; negative if it is past it.
         windows: Intervals in which it must not pass the reference point, because of human drivers [s].
-        distance: Distance to the reference point [m]; 0 past it.
         crossing: Time from the reference point until it has left its last conflict zone, at top speed [s].
-        remaining: Distance to the end of its route [m].
-        speed: Speed [m/s].
     """
 
     id: str
-    reference: float
-    eta: float
+    reference: float  # Arc length of its first conflict zone [m]
+    eta: float  # Earliest time at which it can be there [s]; negative if it is past it
     committed: bool = False
     turning: bool = False
     leader: str | None = None
     windows: list[tuple[float, float]] = field(default_factory=list)
     lane: str = ""
     stream: str = ""
-    distance: float = 0.0
+    distance: float = 0.0  # Distance to the reference point [m]; 0 past it
     crossing: float = 0.0
-    remaining: float = 0.0
-    speed: float = 0.0
+    remaining: float = 0.0  # Distance to the end of its route [m]
+    speed: float = 0.0  # [m/s]
     priority: int = 0
 
 
@@ -42,13 +37,12 @@ class Instance:
     """The ordering problem of one moment.
 
     Attributes:
-        time: Simulated time [s].
         separation: Time that must lie between two vehicles at their reference points, by (first, second), for every
             pair that shares a zone or a lane [s].
     """
 
-    time: float
-    entrants: Mapping[str, Entrant]
+    time: float  # Simulated time [s]
+    vehicles: Mapping[str, ApproachingVehicle]
     separation: Mapping[Pair, float]
     before: Set[Pair]
 

@@ -16,33 +16,22 @@ class Ending(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Collision:
-    """A true overlap of two footprints.
+    """A true overlap of two footprints."""
 
-    Attributes:
-        time: When the footprints first overlapped [s].
-        pair: ``CAV-CAV``, ``CAV-HDV``, ``HDV-HDV``, ``CAV-block`` or ``HDV-block``.
-    """
-
-    time: float
+    time: float  # When the footprints first overlapped [s]
     striker: str
     struck: str
-    pair: str
+    pair: str  # ``CAV-CAV``, ``CAV-HDV``, ``HDV-HDV``, ``CAV-block`` or ``HDV-block``
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """The one end of an episode.
-
-    Attributes:
-        time: Simulated time at the end [s].
-        arrivals: Arrival time of each CAV that arrived [s], by id.
-        message: What went wrong, for ``error``.
-    """
+    """The one end of an episode."""
 
     ending: Ending
-    time: float
-    arrivals: dict[str, float]
+    time: float  # Simulated time at the end [s]
+    arrivals: dict[str, float]  # Arrival time of each CAV that arrived [s], by id
     collision: Collision | None = None
     bystander_collisions: tuple[Collision, ...] = ()
     off_road: tuple[str, ...] = ()
-    message: str = ""
+    message: str = ""  # What went wrong, for ``error``

@@ -8,17 +8,12 @@ from codriving.datatypes.score import Score
 
 @dataclass(frozen=True, slots=True)
 class Participant:
-    """A vehicle that took part in an episode.
-
-    Attributes:
-        kind: ``CAV`` or ``HDV``.
-        arrived: Time of arrival [s], or None.
-    """
+    """A vehicle that took part in an episode."""
 
     id: str
-    kind: str
+    kind: str  # ``CAV`` or ``HDV``
     route: str
-    arrived: float | None
+    arrived: float | None  # Time of arrival [s], or None
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,15 +21,13 @@ class EpisodeRecord:
     """The result of one episode; free of anything that depends on the machine or its clock.
 
     Attributes:
-        variant: Name of the CDA variant, for instance ``full`` or ``no_negotiation/own_view``.
-        reasoner: Who reasoned: ``rules`` or the name of a model.
         scores: Its score by the name of the metric; none for ``error``.
     """
 
     scenario: str
     method: str
-    variant: str
-    reasoner: str
+    variant: str  # Name of the CDA variant, for instance ``full`` or ``no_negotiation/own_view``
+    reasoner: str  # Who reasoned: ``rules`` or the name of a model
     seed: int
     outcome: Outcome
     scores: dict[str, Score]

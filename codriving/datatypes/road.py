@@ -20,52 +20,32 @@ class Turn(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Straight:
-    """A straight centre line.
+    """A straight centre line."""
 
-    Attributes:
-        start: First point of the centre line [m].
-        end: Last point of the centre line [m].
-    """
-
-    start: Point
-    end: Point
+    start: Point  # First point of the centre line [m]
+    end: Point  # Last point of the centre line [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Arc:
-    """A circular centre line.
+    """A circular centre line."""
 
-    Attributes:
-        center: Centre of the circle [m].
-        radius: Radius of the centre line [m].
-        start_phase: Angle of the first point seen from the centre [rad].
-        end_phase: Angle of the last point seen from the centre [rad].
-    """
-
-    center: Point
-    radius: float
-    start_phase: float
-    end_phase: float
+    center: Point  # Centre of the circle [m]
+    radius: float  # Radius of the centre line [m]
+    start_phase: float  # Angle of the first point seen from the centre [rad]
+    end_phase: float  # Angle of the last point seen from the centre [rad]
     clockwise: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class Sine:
-    """A straight line plus a sinusoidal lateral offset, for tapers.
+    """A straight line plus a sinusoidal lateral offset, for tapers."""
 
-    Attributes:
-        start: First point of the base line [m].
-        end: Last point of the base line [m].
-        amplitude: Lateral amplitude [m].
-        pulsation: Spatial frequency [rad/m].
-        phase: Phase at the start [rad].
-    """
-
-    start: Point
-    end: Point
-    amplitude: float
-    pulsation: float
-    phase: float
+    start: Point  # First point of the base line [m]
+    end: Point  # Last point of the base line [m]
+    amplitude: float  # Lateral amplitude [m]
+    pulsation: float  # Spatial frequency [rad/m]
+    phase: float  # Phase at the start [rad]
 
 
 LaneShape = Straight | Arc | Sine
@@ -82,17 +62,12 @@ class Line(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Lane:
-    """One directed lane between two nodes of the road network.
-
-    Attributes:
-        width: Lane width [m].
-        speed_limit: Highest legal speed [m/s].
-    """
+    """One directed lane between two nodes of the road network."""
 
     id: LaneId
     shape: LaneShape
-    width: float = 4.0
-    speed_limit: float = 10.0
+    width: float = 4.0  # Lane width [m]
+    speed_limit: float = 10.0  # Highest legal speed [m/s]
     priority: int = 0
     lines: tuple[Line, Line] = (Line.STRIPED, Line.STRIPED)
     forbidden: bool = False
@@ -100,19 +75,12 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Something solid that stands on the road, for instance where a lane ends.
+    """Something solid that stands on the road, for instance where a lane ends."""
 
-    Attributes:
-        position: Its centre [m].
-        length: Length along the heading [m].
-        width: Width across it [m].
-        heading: Heading [rad].
-    """
-
-    position: Point
-    length: float = 2.0
-    width: float = 2.0
-    heading: float = 0.0
+    position: Point  # Its centre [m]
+    length: float = 2.0  # Length along the heading [m]
+    width: float = 2.0  # Width across it [m]
+    heading: float = 0.0  # [rad]
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,17 +88,15 @@ class Route:
     """A way through the road from a source to a destination.
 
     Attributes:
-        id: Name that is unique on the road, for instance ``south-north``.
         entry: Arc length at which the shared part of the road (junction, ring, merge) begins [m].
-        goal: Arc length at which a vehicle has arrived [m].
         taper: Length of the way from one lane to the one beside it, which ends where the lane that is left does [m].
     """
 
-    id: str
+    id: str  # Name that is unique on the road, for instance ``south-north``
     lanes: tuple[LaneId, ...]
     turn: Turn
     entry: float
-    goal: float
+    goal: float  # Arc length at which a vehicle has arrived [m]
     taper: float = 40.0
 
 

@@ -1,4 +1,4 @@
-"""Where everybody starts: the seeded beginning of one episode."""
+"""Where each vehicle starts: the seeded beginning of one episode."""
 
 from dataclasses import dataclass
 
@@ -7,18 +7,13 @@ from codriving.datatypes.vehicle import Kind
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """The beginning of one vehicle.
-
-    Attributes:
-        position: Arc length along the route [m].
-        speed: Initial speed [m/s].
-    """
+    """The beginning of one vehicle."""
 
     id: str
     kind: Kind
     route: str
-    position: float
-    speed: float
+    position: float  # Arc length along the route [m]
+    speed: float  # Initial speed [m/s]
 
 
 @dataclass(frozen=True, slots=True)

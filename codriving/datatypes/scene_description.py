@@ -21,29 +21,22 @@ class TrackedVehicle:
     """A vehicle as far as the ego vehicle knows it; what it does not know is None.
 
     Attributes:
-        x: Position [m].
-        y: Position [m].
-        speed: Speed [m/s].
-        heading: Heading [rad].
-        acceleration: Acceleration [m/s2].
-        length: Vehicle length [m].
         routes: Each route that it may be on, with its arc length there [m]; one entry if it shared its route.
-        standing: How long it has been standing [s].
         gap: Free distance along the ego lane for a leading or rearing vehicle [m].
     """
 
     id: str
     kind: Kind | None
-    x: float
-    y: float
-    speed: float
-    heading: float | None
-    acceleration: float | None
+    x: float  # [m]
+    y: float  # [m]
+    speed: float  # [m/s]
+    heading: float | None  # [rad]
+    acceleration: float | None  # [m/s2]
     lane: LaneId | None
-    length: float
+    length: float  # [m]
     routes: tuple[tuple[str, float], ...] = ()
     intent: Intent | None = None
-    standing: float = 0.0
+    standing: float = 0.0  # How long it has been standing [s]
     role: Role = Role.OTHER
     gap: float | None = None
 
@@ -60,14 +53,10 @@ class TrackedVehicle:
 
 @dataclass(frozen=True, slots=True)
 class LaneChange:
-    """A lane change that the ego vehicle's route asks for.
-
-    Attributes:
-        room: Distance within which it has to be begun, since the present lane ends [m].
-    """
+    """A lane change that the ego vehicle's route asks for."""
 
     lane: LaneId
-    room: float
+    room: float  # Distance within which it has to be begun, since the present lane ends [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,19 +64,17 @@ class SceneDescription:
     """The surroundings of one CAV, by lane and by relation.
 
     Attributes:
-        place: Its arc length along its route [m].
         covers: Other routes onto whose lanes its body reaches while it changes lanes, with its arc length there [m].
-        must_change: The lane change that its route asks for next, or None.
     """
 
     ego: VehicleState
     intent: Intent
-    place: float
+    place: float  # Its arc length along its route [m]
     adjacent_lanes: tuple[LaneId, ...]
     conflict_lanes: tuple[LaneId, ...]
     neighbours: tuple[TrackedVehicle, ...]
     covers: tuple[tuple[str, float], ...] = ()
-    must_change: LaneChange | None = None
+    must_change: LaneChange | None = None  # The lane change that its route asks for next, or None
 
     def neighbour(self, name: str) -> TrackedVehicle | None:
         """Return a neighbour by id, or None if the ego vehicle does not know of it."""

@@ -6,17 +6,12 @@ from typing import Literal, TypeAlias
 
 @dataclass(frozen=True, slots=True)
 class Pet:
-    """The post-encroachment time of one pair of vehicles.
-
-    Attributes:
-        kind: Kind of the conflict, for instance ``crossing``.
-        value: Time between the first leaving and the second entering [s].
-    """
+    """The post-encroachment time of one pair of vehicles."""
 
     first: str
     second: str
-    kind: str
-    value: float
+    kind: str  # Kind of the conflict, for instance ``crossing``
+    value: float  # Time between the first leaving and the second entering [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,14 +19,12 @@ class TravelScore:
     """How one vehicle travelled.
 
     Attributes:
-        velocity: Mean travel velocity [m/s].
-        time: Travel time [s].
         delay: Travel time beyond that of free flow [s], or None where the metric has no such notion.
     """
 
     id: str
-    velocity: float
-    time: float
+    velocity: float  # Mean travel velocity [m/s]
+    time: float  # Travel time [s]
     delay: float | None
 
 

@@ -10,42 +10,26 @@ from codriving.datatypes.vehicle import Kind
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """The recorded motion of one vehicle, from its start until it left the road.
-
-    Attributes:
-        x: Position of the centre (n,) [m].
-        y: Position of the centre (n,) [m].
-        heading: Heading (n,) [rad].
-        speed: Speed (n,) [m/s].
-        acceleration: Acceleration (n,) [m/s2].
-        action: Name of the action in force at each row (n,); empty for HDVs.
-        arrived: Time of arrival [s], or None.
-        length: Vehicle length [m].
-        width: Vehicle width [m].
-    """
+    """The recorded motion of one vehicle, from its start until it left the road."""
 
     id: str
     kind: Kind
     route: str
     first_step: int
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    heading: NDArray[np.float64]
-    speed: NDArray[np.float64]
-    acceleration: NDArray[np.float64]
-    action: tuple[str, ...]
-    arrived: float | None
-    length: float = 5.0
-    width: float = 2.0
+    x: NDArray[np.float64]  # Position of the centre (n,) [m]
+    y: NDArray[np.float64]  # Position of the centre (n,) [m]
+    heading: NDArray[np.float64]  # (n,) [rad]
+    speed: NDArray[np.float64]  # (n,) [m/s]
+    acceleration: NDArray[np.float64]  # (n,) [m/s2]
+    action: tuple[str, ...]  # Name of the action in force at each row (n,); empty for HDVs
+    arrived: float | None  # Time of arrival [s], or None
+    length: float = 5.0  # [m]
+    width: float = 2.0  # [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """The motion of all vehicles of one episode.
+    """The motion of all vehicles of one episode."""
 
-    Attributes:
-        step: Time between two rows [s].
-    """
-
-    step: float
+    step: float  # Time between two rows [s]
     tracks: tuple[Track, ...]

@@ -15,39 +15,24 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class VehicleState:
-    """The physical state of one vehicle, as anyone near enough could perceive it.
+    """The physical state of one vehicle, as others near enough could perceive it."""
 
-    Attributes:
-        id: Name, unique in the episode, for instance ``CAV1``.
-        x: Position of the centre [m].
-        y: Position of the centre [m].
-        heading: Heading [rad].
-        speed: Speed along the heading [m/s].
-        acceleration: Commanded acceleration of the last simulation step [m/s2].
-        length: Vehicle length [m].
-        width: Vehicle width [m].
-    """
-
-    id: str
+    id: str  # Name, unique in the episode, for instance ``CAV1``
     kind: Kind
-    x: float
-    y: float
-    heading: float
-    speed: float
-    acceleration: float
+    x: float  # Position of the centre [m]
+    y: float  # Position of the centre [m]
+    heading: float  # [rad]
+    speed: float  # Speed along the heading [m/s]
+    acceleration: float  # Commanded acceleration of the last simulation step [m/s2]
     lane: LaneId
-    length: float = 5.0
-    width: float = 2.0
+    length: float = 5.0  # [m]
+    width: float = 2.0  # [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Intent:
-    """What a CAV means to do; known to others only if it shares it (CDA class B).
-
-    Attributes:
-        target_speed: Speed that the controller tracks [m/s].
-    """
+    """What a CAV means to do; known to others only if it shares it (CDA class B)."""
 
     route: str
-    target_speed: float
+    target_speed: float  # Speed that the controller tracks [m/s]
     target_lane: LaneId

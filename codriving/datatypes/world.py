@@ -11,13 +11,10 @@ from codriving.datatypes.vehicle import Intent, Kind, VehicleState
 class WorldState:
     """All vehicles on the road, and what the CAVs among them intend.
 
-    Human drivers have no entry in ``intents``: nobody can read their minds.
-
-    Attributes:
-        time: Simulated time [s].
+    Human drivers have no entry in ``intents``: their minds cannot be read.
     """
 
-    time: float
+    time: float  # Simulated time [s]
     step: int
     vehicles: tuple[VehicleState, ...]
     intents: Mapping[str, Intent]

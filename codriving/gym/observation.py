@@ -22,8 +22,14 @@ from codriving.errors import ConfigError
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.sharing.cda import CdaLevel
-from codriving.reasoning.sharing.intent_sharing import HiddenIntents, IntentSharing, SharedIntents
-from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates, StateSharing
+from codriving.reasoning.sharing.sharing import (
+    HIDDEN_INTENTS,
+    SHARED_INTENTS,
+    IntentSharing,
+    SensedStates,
+    SharedStates,
+    StateSharing,
+)
 
 
 class Intention(IntEnum):
@@ -135,7 +141,7 @@ class CdaObserver(Observer):
         self._road_map, self._model, self._layout = road_map, model, layout
         # The same objects as in the reasoning, so that the same things are hidden.
         self._states: StateSharing = SharedStates() if cda.state_sharing else SensedStates()
-        self._intents: IntentSharing = SharedIntents() if cda.intent_sharing else HiddenIntents()
+        self._intents: IntentSharing = SHARED_INTENTS if cda.intent_sharing else HIDDEN_INTENTS
         self.lanes: Mapping[LaneId, int] = {lane.id: i for i, lane in enumerate(road_map.road.lanes, start=1)}
         low, high = layout.bounds(road_map)
         self._scale = np.maximum(-low, high) if layout.normalise else np.ones_like(low)
@@ -155,7 +161,7 @@ class CdaObserver(Observer):
         Returns:
             A matrix (rows, 6) a CAV, by id: the CAV itself, then the others from near to far, then zeros.
         """
-        views = self._states.views(world, self._model)
+        views = self._states.detections(world, self._model)
         intents = self._intents.intents(world)
         return {cav.id: self._matrix(cav, world.intents[cav.id], views[cav.id], intents) for cav in world.cavs}
 

@@ -40,9 +40,9 @@ class BruteForce(SearchedOrder):
         Raises:
             EpisodeError: If more than ten vehicles are to be ordered.
         """
-        if len(instance.entrants) > MOST:
+        if len(instance.vehicles) > MOST:
             raise EpisodeError(
-                f"bruteforce orders at most {MOST} vehicles, got {len(instance.entrants)}; "
+                f"bruteforce orders at most {MOST} vehicles, got {len(instance.vehicles)}; "
                 "take method=mcts or fewer vehicles"
             )
         return super().order(instance, planner)

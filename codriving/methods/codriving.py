@@ -16,10 +16,9 @@ from codriving.reasoning.perception import Perception
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
-from codriving.reasoning.safety.outlook import CONTINUATIONS
+from codriving.reasoning.safety.safety_input import CONTINUATIONS
 from codriving.reasoning.sharing.cda import CdaLevel
-from codriving.reasoning.sharing.intent_sharing import HiddenIntents, SharedIntents
-from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates
+from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, SensedStates, SharedStates
 from codriving.reasoning.sharing.tracking import Tracking
 
 
@@ -63,7 +62,7 @@ class CoDriving(Method):
                 forecast=forecast,
                 tracking=Tracking(road_map),
                 state_sharing=SharedStates() if self.cda.state_sharing else SensedStates(),
-                intent_sharing=SharedIntents() if self.cda.intent_sharing else HiddenIntents(),
+                intent_sharing=SHARED_INTENTS if self.cda.intent_sharing else HIDDEN_INTENTS,
             ),
             negotiation=AgreedOrder(coordinator) if self.cda.negotiation else OwnOrders(self.cda.own_order, seed),
             safety=ThreeLayers() if self.cda.safety_check else NoCheck(),

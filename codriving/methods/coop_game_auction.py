@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from codriving.datatypes.ordering_problem import Entrant, Instance
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
 from codriving.errors import require_range
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
 from codriving.reasoning.ordering.request import Request, best_subset
@@ -19,14 +19,14 @@ NEAR_OFFSET, SOON_OFFSET = 2.0, 0.5
 """What is added to the distance [m] and to the time [s], so that no bid is infinite."""
 
 
-def bid(entrant: Entrant, waited: float) -> float:
+def bid(vehicle: ApproachingVehicle, waited: float) -> float:
     """Return what a vehicle bids for going first.
 
     Args:
         waited: How long it has been waiting [s].
     """
-    soon = entrant.distance / max(entrant.speed, STANDING)
-    return WAITED * waited + NEAR / (entrant.distance + NEAR_OFFSET) + SOON / (soon + SOON_OFFSET)
+    soon = vehicle.distance / max(vehicle.speed, STANDING)
+    return WAITED * waited + NEAR / (vehicle.distance + NEAR_OFFSET) + SOON / (soon + SOON_OFFSET)
 
 
 class Auction(OrderRule):
@@ -52,7 +52,7 @@ class Auction(OrderRule):
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
         """Return the vehicles by decreasing bid, as far as what is physically fixed allows."""
         waited = self._wait(instance)
-        bids = {name: bid(entrant, waited[name]) for name, entrant in instance.entrants.items()}
+        bids = {name: bid(vehicle, waited[name]) for name, vehicle in instance.vehicles.items()}
         fresh = repaired(instance, sorted(bids, key=lambda name: (-bids[name], name)))
         steady = repaired(instance, overtaken(self._as_before(fresh), bids, self.hysteresis))
         # Where the two agree there is nothing to ask the planner.
@@ -72,9 +72,9 @@ class Auction(OrderRule):
 
     def _wait(self, instance: Instance) -> dict[str, float]:
         """Return how long each vehicle has been waiting [s]."""
-        slow = {name for name, entrant in instance.entrants.items() if entrant.speed < STANDING}
+        slow = {name for name, vehicle in instance.vehicles.items() if vehicle.speed < STANDING}
         self._stopped = {name: self._stopped.get(name, instance.time) for name in sorted(slow)}
-        return {name: instance.time - self._stopped.get(name, instance.time) for name in instance.entrants}
+        return {name: instance.time - self._stopped.get(name, instance.time) for name in instance.vehicles}
 
     def _as_before(self, fresh: Sequence[str]) -> list[str]:
         """Rank all as in the step before; each newcomer right behind the one that it follows by its bid."""

@@ -14,7 +14,7 @@ from codriving.memory.describe import describe
 from codriving.memory.effect import LESSONS, DecisionHistory, HistoryStep, OwnCollision, effect_of, verdict_of
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.sharing.scenes import describe_scenes
-from codriving.reasoning.sharing.state_sharing import SharedStates
+from codriving.reasoning.sharing.sharing import SharedStates
 from codriving.reasoning.sharing.tracking import Tracking
 
 FASTER_THAN: Mapping[Action | None, tuple[Action, ...]] = {
@@ -68,7 +68,7 @@ class ExperienceLog:
     def _look(self, world: WorldState, told: dict[str, tuple[Situation, Action]]) -> None:
         if self._begun is None:
             self._begun = world.time
-        views = self._sharing.views(world, self._model)
+        views = self._sharing.detections(world, self._model)
         scenes = describe_scenes(world, views, world.intents, self._tracking)
         everybody = {v.id: v for v in world.vehicles}
         for name, scene in scenes.items():

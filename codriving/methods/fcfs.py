@@ -67,10 +67,10 @@ def group_times(instance: Instance, order: Sequence[str]) -> dict[str, float]:
     clear = float("-inf")
     for name in order:
         if any(instance.conflict(name, other) for other in group):
-            clear = max([clear] + [times[other] + instance.entrants[other].crossing for other in group])
+            clear = max([clear] + [times[other] + instance.vehicles[other].crossing for other in group])
             group = []
         group.append(name)
         apart = [t + instance.separation.get((other, name), float("-inf")) for other, t in times.items()]
-        entrant = instance.entrants[name]
-        times[name] = after_windows(max([entrant.eta, clear, *apart]), entrant.windows)
+        vehicle = instance.vehicles[name]
+        times[name] = after_windows(max([vehicle.eta, clear, *apart]), vehicle.windows)
     return times

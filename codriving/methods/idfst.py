@@ -83,17 +83,17 @@ class SpanningTree(OrderRule):
 
     def _has_moved(self, instance: Instance) -> bool:
         """Whether something has changed too much since the vehicles that are scheduled were."""
-        kept = [name for name in self.scheduled if name in instance.entrants]
+        kept = [name for name in self.scheduled if name in instance.vehicles]
         pairs = [pair for one, other in combinations(kept, 2) for pair in ((one, other), (other, one))]
         if any((pair in self.before) != (pair in instance.before) for pair in pairs):
             return True
         for name in kept:
-            entrant = instance.entrants[name]
-            arrival = instance.time + entrant.eta
+            vehicle = instance.vehicles[name]
+            arrival = instance.time + vehicle.eta
             if arrival != self.arrivals[name] and not abs(arrival - self.arrivals[name]) <= self.drift:
                 return True
             then = clock_windows([(b - instance.time, e - instance.time) for b, e in self.windows[name]], instance.time)
-            if moved_windows(then, clock_windows(entrant.windows, instance.time), self.drift):
+            if moved_windows(then, clock_windows(vehicle.windows, instance.time), self.drift):
                 return True
         return False
 
@@ -104,9 +104,9 @@ class SpanningTree(OrderRule):
         self.before = frozenset(instance.before)
         for name in self.scheduled:
             if name not in known:
-                entrant = instance.entrants[name]
-                self.arrivals[name] = instance.time + entrant.eta
-                self.windows[name] = clock_windows(entrant.windows, instance.time)
+                vehicle = instance.vehicles[name]
+                self.arrivals[name] = instance.time + vehicle.eta
+                self.windows[name] = clock_windows(vehicle.windows, instance.time)
 
 
 def moved_windows(one: Windows, other: Windows, most: float) -> bool:

@@ -124,9 +124,9 @@ class Coded:
     """
 
     def __init__(self, instance: Instance, objective: Objective) -> None:
-        self.names = sorted(instance.entrants)
+        self.names = sorted(instance.vehicles)
         self._number = {name: k for k, name in enumerate(self.names)}
-        self._entrants = [instance.entrants[name] for name in self.names]
+        self._entrants = [instance.vehicles[name] for name in self.names]
         self.eta = [e.eta for e in self._entrants]
         self._base = [e.eta if isfinite(e.eta) else 0.0 for e in self._entrants]
         self._weights = [objective.weight(e.id) if isfinite(e.eta) else 0.0 for e in self._entrants]

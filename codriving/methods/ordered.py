@@ -17,9 +17,8 @@ from codriving.reasoning.ordering.protocol import Ordering, OrderRule
 from codriving.reasoning.perception import Perception
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.plans import PLANS
-from codriving.reasoning.safety.outlook import CONTINUATIONS, LONGITUDINAL
-from codriving.reasoning.sharing.intent_sharing import SharedIntents
-from codriving.reasoning.sharing.state_sharing import SharedStates
+from codriving.reasoning.safety.safety_input import CONTINUATIONS, LONGITUDINAL
+from codriving.reasoning.sharing.sharing import SHARED_INTENTS, SharedStates
 from codriving.reasoning.sharing.tracking import Tracking
 
 
@@ -38,14 +37,14 @@ class Ordered(Method):
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
         forecast = Forecast(model, (*CONTINUATIONS, *PLANS, *self.executor.library))
-        self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SharedIntents())
+        self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SHARED_INTENTS)
         self._requests = LaneRequests()
         self._lag = round(self.executor.margin / forecast.sample)
         self.rule.reset(seed)
         self.executor.reset()
 
     def act(self, world: WorldState) -> ReasonedDeliberation:
-        """Order everybody, and decide for every CAV on the road."""
+        """Order all CAVs, and decide for every CAV on the road."""
         moment = self._perception.perceive(world)
         problem = pose(moment, self.executor.gap)
         ordering = self.rule.order(problem.instance, self.executor.planner(moment))

@@ -1,18 +1,31 @@
-"""PIDM: the Intelligent Driver Model, for which whoever is expected first at a junction drives ahead."""
+"""PIDM: the Intelligent Driver Model, for which the vehicle that is expected first at a junction drives ahead."""
 
 from math import cos, inf
 
+from codriving.datatypes.action import Action
 from codriving.datatypes.order import Precedence
-from codriving.errors import ConfigError
-from codriving.methods.single_vehicle.action_mapping import closest_action, mean_accelerations
-from codriving.methods.single_vehicle.encounters import FRONT, Encounter, crossing_angle, encounters
-from codriving.methods.single_vehicle.expected_first import goes_first
+from codriving.errors import require_range
+from codriving.methods.single_vehicle.encounters import (
+    FRONT,
+    Encounter,
+    Patience,
+    crossing_angle,
+    encounters,
+    goes_first,
+    leaders,
+    may_start,
+)
 from codriving.methods.single_vehicle.lane_choice import LaneChoice
-from codriving.methods.single_vehicle.leaders import leaders
-from codriving.methods.single_vehicle.patience import Patience
-from codriving.methods.single_vehicle.protocol import Choice, Driver, View
-from codriving.methods.single_vehicle.starting import may_start
+from codriving.methods.single_vehicle.method import Choice, Driver
+from codriving.reasoning.moment import Moment
+from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.idm import IntelligentDriver
+from codriving.reasoning.prediction.rollout import Plan, rollout
+
+SPEED_ACTIONS = (Action.SLOWER, Action.IDLE, Action.FASTER)
+
+ONCE: tuple[Plan, ...] = ((Action.SLOWER, Action.IDLE), (Action.IDLE,), (Action.FASTER, Action.IDLE))
+"""Each action carried out once."""
 
 LIMITS = {
     "acceleration": (0.1, 10.0),
@@ -44,9 +57,9 @@ class ProjectedIdm(Driver):
         projection: Distance kept from a projected leader beyond a body length [m].
         stop_gap: Distance from the zone at which the vehicle waits [m].
         tie: Difference of the times to a zone up to which both count as there at once [s].
-        firm: Braking beyond which nobody is expected to wait any more [m/s2].
+        firm: Braking beyond which no vehicle is expected to wait any more [m/s2].
         patience: Time after which a waiting vehicle may start into an empty zone [s].
-        clear: Time that whoever moves towards that zone must be away from it beyond what the start takes [s].
+        clear: Time that a vehicle which moves towards that zone must be away from it beyond what the start takes [s].
         window: Time over which what an action leads to is compared with what is wished [s].
         brake_at: Braking beyond which the answer is always SLOWER [m/s2].
 
@@ -74,11 +87,8 @@ class ProjectedIdm(Driver):
         brake_at: float,
         lanes: LaneChoice,
     ) -> None:
-        given = {key: value for key, value in locals().items() if key in LIMITS}
-        for key, value in given.items():
-            low, high = LIMITS[key]
-            if not low <= value <= high:
-                raise ConfigError(f"{key} must be {low:g} to {high:g}, got {value:g}")
+        for key, value in [(key, value) for key, value in locals().items() if key in LIMITS]:
+            require_range(key, value, *LIMITS[key])
         self.idm = IntelligentDriver(gap, headway, acceleration, deceleration, hardest)
         self.projection, self.stop_gap, self.tie, self.firm = projection, stop_gap, tie, firm
         self.patience, self.clear, self.window, self.brake_at = patience, clear, window, brake_at
@@ -90,25 +100,27 @@ class ProjectedIdm(Driver):
         self._patience = Patience()
         self.lanes.reset()
 
-    def decide(self, view: View) -> Choice:
-        """Follow whoever is most in the way, or change lanes if that is better."""
-        scene = view.scene
-        waited = self._patience.waited(scene.ego.id, scene.ego.speed, view.time)
-        change, refused = self.lanes.choose(view, self.idm)
+    def decide(self, moment: Moment, ego: str) -> Choice:
+        """Follow the vehicle that is most in the way, or change lanes if that is better."""
+        scene = moment.scenes[ego]
+        waited = self._patience.waited(ego, scene.ego.speed, moment.time)
+        change, refused = self.lanes.choose(moment, ego, self.idm)
         if change is not None:
             return Choice(change.action, change.reason, (), refused)
-        met = self.met(view)
-        wished, why, precedences = self.wish(view, met, waited)
-        means = mean_accelerations(view.forecast, scene.ego.speed, scene.intent.target_speed, self.window)
+        met = self.met(moment, ego)
+        wished, why, precedences = self.wish(moment, ego, met, waited)
+        means = mean_accelerations(moment.forecast, scene.ego.speed, scene.intent.target_speed, self.window)
         action = closest_action(wished, means, self.brake_at)
         reason = f"{why}; IDM wishes {wished:+.1f} m/s2"
-        return Choice(action, reason, precedences, refused, {"creeps": int(self.may_start(view, met, waited))})
+        return Choice(action, reason, precedences, refused, {"creeps": int(self.may_start(moment, ego, met, waited))})
 
-    def met(self, view: View) -> tuple[Encounter, ...]:
+    def met(self, moment: Moment, ego: str) -> tuple[Encounter, ...]:
         """Return where it is open who goes first, most urgent first."""
-        return encounters(view, float(view.forecast.reach(view.scene.ego.speed, True).least[-1]), self.firm)
+        return encounters(moment, ego, self.firm)
 
-    def wish(self, view: View, met: tuple[Encounter, ...], waited: float) -> tuple[float, str, tuple[Precedence, ...]]:
+    def wish(
+        self, moment: Moment, ego: str, met: tuple[Encounter, ...], waited: float
+    ) -> tuple[float, str, tuple[Precedence, ...]]:
         """Return the acceleration that is wished.
 
         Args:
@@ -117,25 +129,25 @@ class ProjectedIdm(Driver):
         Returns:
             Acceleration [m/s2], why, and who goes first wherever it is open.
         """
-        scene = view.scene
-        speed, top = scene.ego.speed, view.top
+        scene = moment.scenes[ego]
+        speed, top = scene.ego.speed, moment.forecast.model.top_speed
         options = [(self.idm.accelerate(speed, top), "nobody holds it up")]
-        for ahead in leaders(scene, view.road_map):
+        for ahead in leaders(scene, moment.road_map):
             options.append((self.idm.accelerate(speed, top, ahead.gap, ahead.speed), f"{ahead.id} is ahead"))
-        creeps = self.may_start(view, met, waited)
+        creeps = self.may_start(moment, ego, met, waited)
         precedences: dict[str, Precedence] = {}
         for e in met:
-            first, why = goes_first(e, view.road_map, self.tie)
+            first, why = goes_first(e, moment.road_map, self.tie)
             if not first and creeps:
                 first, why = True, f"it has waited for {waited:.0f} s and the zone is empty"
             other = e.conflict.other
             if first:
-                precedences.setdefault(other, Precedence(scene.ego.id, other, why))
+                precedences.setdefault(other, Precedence(ego, other, why))
                 continue
-            if other not in precedences or precedences[other].first == scene.ego.id:
-                precedences[other] = Precedence(other, scene.ego.id, why)
-            options.append((self._behind(e, self._line(e, met), view), f"{other} goes first: {why}"))
-        # Of several that wish the same the first one counts, so that nobody is named who is not in the way.
+            if other not in precedences or precedences[other].first == ego:
+                precedences[other] = Precedence(other, ego, why)
+            options.append((self._behind(e, self._line(e, met), moment, ego), f"{other} goes first: {why}"))
+        # Of several that wish the same the first one counts, so that no vehicle is named that is not in the way.
         wished, why = min(options, key=lambda option: option[0])
         return wished, why, tuple(precedences.values())
 
@@ -148,21 +160,53 @@ class ProjectedIdm(Driver):
                 line = other.own_way - self.stop_gap
         return line
 
-    def _behind(self, e: Encounter, line: float, view: View) -> float:
-        """The acceleration behind somebody who goes first: to follow its projection, or to stop before the zone."""
-        speed = view.scene.ego.speed
-        waiting = inf if e.inside else self.idm.accelerate(speed, view.top, line, 0.0)
+    def _behind(self, e: Encounter, line: float, moment: Moment, ego: str) -> float:
+        """The acceleration behind a vehicle that goes first: to follow its projection, or to stop before the zone."""
+        speed = moment.scenes[ego].ego.speed
+        waiting = inf if e.inside else self.idm.accelerate(speed, moment.forecast.model.top_speed, line, 0.0)
         if e.other_inside and not e.merges():
             return waiting if waiting < inf else -self.idm.hardest
-        along = max(cos(crossing_angle(e.conflict, e.zone, view.road_map)), 0.0)
+        along = max(cos(crossing_angle(e.conflict, e.zone, moment.road_map)), 0.0)
         lead = e.own_way - e.its_way - 2 * FRONT - self.projection
-        following = self.idm.accelerate(speed, view.top, lead, e.other.speed * along)
+        following = self.idm.accelerate(speed, moment.forecast.model.top_speed, lead, e.other.speed * along)
         return following if waiting == inf else max(following, waiting)
 
-    def may_start(self, view: View, met: tuple[Encounter, ...], waited: float) -> bool:
-        """Whether the CAV has waited long enough, and nobody is in the zones ahead or will be before it is through.
+    def may_start(self, moment: Moment, ego: str, met: tuple[Encounter, ...], waited: float) -> bool:
+        """Whether the CAV has waited long enough, and no vehicle is in the zones ahead or will be before it is through.
 
         Args:
             waited: How long it has been standing [s].
         """
-        return may_start(view, met, waited, self.patience, self.clear)
+        return may_start(moment, ego, met, waited, self.patience, self.clear)
+
+
+def mean_accelerations(forecast: Forecast, speed: float, target: float, window: float) -> tuple[float, float, float]:
+    """Return the mean acceleration that SLOWER, IDLE and FASTER lead to, each carried out once [m/s2].
+
+    Args:
+        speed: Speed now [m/s].
+        target: Target speed now [m/s].
+        window: Time over which the mean is taken [s].
+    """
+    model = forecast.model
+    steps = max(1, round(window / model.step))
+    _, reached = rollout(model, [speed], [target], ONCE, steps)
+    slower, idle, faster = ((reached[0, :, -1] - speed) / (steps * model.step)).tolist()
+    return slower, idle, faster
+
+
+def closest_action(wished: float, means: tuple[float, float, float], hard: float) -> Action:
+    """Return the action whose mean acceleration is closest to what is wished.
+
+    Who wishes to brake hard slows down whatever the means are, and who wishes to accelerate never does; of two that
+    are equally close, the slower one is taken.
+
+    Args:
+        wished: Acceleration that is wished [m/s2].
+        means: Mean acceleration of SLOWER, IDLE and FASTER [m/s2].
+        hard: Braking beyond which the answer is always SLOWER [m/s2].
+    """
+    if wished < -hard:
+        return Action.SLOWER
+    options = [(abs(mean - wished), k) for k, mean in enumerate(means) if k > 0 or wished < 0]
+    return SPEED_ACTIONS[min(options)[1]]

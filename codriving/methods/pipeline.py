@@ -1,26 +1,19 @@
 """The paper's algorithm: share states, share intents, negotiate, check, recall, decide (Algorithm 1)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.deliberation import ReasonedDeliberation
-from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.parts import CaseMemory
-from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
-from codriving.geometry.road_map import RoadMap
 from codriving.llm.ledger import Ledger
-from codriving.reasoning.decision.clear_times import clear_time
-from codriving.reasoning.decision.decider import Decider
+from codriving.reasoning.decision.rules import Decider
 from codriving.reasoning.ordering.negotiation import Negotiation
 from codriving.reasoning.perception import Perception
-from codriving.reasoning.prediction.expectation import Expected, Motions, expect, motions_of
-from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.prediction.expectation import expect_all
 from codriving.reasoning.safety.assessment import SafetyCheck
-from codriving.reasoning.safety.outlook import Outlook, motions
+from codriving.reasoning.safety.safety_input import SafetyInput, clear_time, safety_input
 
 
 @dataclass(slots=True)
@@ -30,7 +23,6 @@ class Pipeline:
     Attributes:
         margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
         memory: Experiences of like situations; None without the memory module.
-        ledger: What is asked of a language model; None if none is.
     """
 
     perception: Perception
@@ -39,21 +31,17 @@ class Pipeline:
     decider: Decider
     margin: float
     memory: CaseMemory | None = None
-    ledger: Ledger | None = None
+    ledger: Ledger | None = None  # What is asked of a language model; None if none is
 
     def act(self, world: WorldState) -> ReasonedDeliberation:
         """Decide for every CAV on the road."""
         moment = self.perception.perceive(world)
-        scenes, conflicts, known = moment.scenes, moment.conflicts, moment.vehicles
         orders = self.negotiation.orders(moment)
-        expectations = self._expectations(known, orders)
-        situations = tuple(
-            self._situation(
-                scenes[ego], conflicts[ego], orders[ego], known[ego], expectations[ego], world.available[ego]
-            )
-            for ego in scenes
+        lag = round(self.margin / moment.forecast.sample)
+        expected = expect_all(moment, orders, lag)
+        situations = self._remembering(
+            [self._situation(safety_input(moment, ego, orders[ego], expected[ego], lag)) for ego in moment.scenes]
         )
-        situations = self._remembering(situations)
         decisions = tuple(self.decider.decide(situations))
         counts, lines = self.ledger.close_step(world.time) if self.ledger is not None else ({}, [])
         if self.memory is not None:
@@ -73,66 +61,11 @@ class Pipeline:
             replace(s, memories=memories) if memories else s for s, memories in zip(situations, found, strict=True)
         )
 
-    @property
-    def road_map(self) -> RoadMap:
-        """The precomputed road."""
-        return self.perception.road_map
-
-    @property
-    def forecast(self) -> Forecast:
-        """Predictions of the present step."""
-        return self.perception.forecast
-
-    @property
-    def _finds_conflicts(self) -> bool:
-        return self.perception.intent_sharing.finds_conflicts
-
-    @property
-    def _lag(self) -> int:
-        return round(self.margin / self.forecast.sample)
-
-    def _expectations(
-        self, known: Mapping[str, dict[str, TrackedVehicle]], orders: Mapping[str, PassingOrder]
-    ) -> dict[str, dict[str, tuple[Expected, ...]]]:
-        """Expect what follows from each CAV's knowledge and order; those who agree in both share one expectation."""
-        done: dict[tuple[int, Motions], dict[str, tuple[Expected, ...]]] = {}
-        found = {}
-        for ego, vehicles in known.items():
-            order = orders[ego]
-            key = id(order), motions_of(vehicles)
-            if key not in done:
-                done[key] = expect(vehicles, order, self.road_map, self.forecast, self._lag, self._finds_conflicts)
-            found[ego] = done[key]
-        return found
-
-    def _situation(
-        self,
-        scene: SceneDescription,
-        conflicts: tuple[Conflict, ...],
-        order: PassingOrder,
-        known: dict[str, TrackedVehicle],
-        expected: dict[str, tuple[Expected, ...]],
-        actions: tuple[Action, ...],
-    ) -> Situation:
-        stops, goes = motions(scene, actions, self.forecast)
-        outlook = Outlook(
-            scene,
-            conflicts,
-            order,
-            known,
-            expected,
-            actions,
-            stops,
-            goes,
-            self.road_map,
-            self.forecast,
-            self._lag,
-            self._finds_conflicts,
-        )
+    def _situation(self, given: SafetyInput) -> Situation:
         return Situation(
-            scene=scene,
-            conflicts=conflicts,
-            order=order,
-            clear_times=tuple(clear_time(outlook, c) for c in conflicts),
-            assessments=self.safety.assess(outlook),
+            scene=given.scene,
+            conflicts=given.conflicts,
+            order=given.order,
+            clear_times=tuple(clear_time(given, c) for c in given.conflicts),
+            assessments=self.safety.assess(given),
         )

@@ -9,12 +9,11 @@ from codriving.datatypes.situation import Decision, Situation
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.decision.decider import Decider
-from codriving.reasoning.decision.rules import decide_one
+from codriving.reasoning.decision.rules import Decider, decide_one
 
 
 class Probe:
-    """Goes through the whole pipeline, but has only one CAV's decision made by whoever reasons.
+    """Goes through the whole pipeline, but has only one CAV's decision made by the model.
 
     Args:
         method: The method; one that is not ``CoDriving`` decides for all CAVs.
@@ -37,8 +36,8 @@ class Probe:
         return self.method.act(world)
 
 
-class _ForOne:
-    """Has somebody else decide for the CAV with the most conflicts; the rules decide for the others."""
+class _ForOne(Decider):
+    """Has another one decide for the CAV with the most conflicts; the rules decide for the others."""
 
     def __init__(self, decider: Decider) -> None:
         self.decider = decider

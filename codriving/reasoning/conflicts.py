@@ -1,13 +1,15 @@
-"""The conflict description: everybody whose way ahead shares a zone with the ego vehicle's (Section III-C.3)."""
+"""The conflict description: whose way ahead shares a zone with the ego vehicle's, and how soon (III-C.3, Eq. 3)."""
 
-from codriving.datatypes.conflict import Conflict, Relation
+from codriving.datatypes.conflict import Conflict, Relation, Severity
 from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
-from codriving.reasoning.severity import severity, ttcp
 
 OPEN = (Relation.CROSSING, Relation.CONVERGING, Relation.WEAVING)
 """Relations in which it is open who goes first."""
+
+SLOWEST = 0.5
+"""Speed below which the time to the conflict point is counted as if at this speed [m/s]; at rest it has none."""
 
 
 def find_conflicts(scene: SceneDescription, road_map: RoadMap) -> tuple[Conflict, ...]:
@@ -63,3 +65,31 @@ def _conflict(
         severity=severity(abs(times[0] - times[1])),
         certain=certain,
     )
+
+
+def ttcp(distance: float, speed: float) -> float:
+    """Time to the conflict point at the present speed.
+
+    Args:
+        distance: Distance to the conflict point [m].
+        speed: Speed [m/s].
+
+    Returns:
+        Time [s]; 0 at or past the point.
+    """
+    return max(distance, 0.0) / max(speed, SLOWEST)
+
+
+def severity(dttcp: float) -> Severity:
+    """Put a difference of times to the conflict point into the paper's bands.
+
+    Args:
+        dttcp: Absolute difference [s].
+    """
+    if dttcp <= 2.0:
+        return Severity.SERIOUS
+    if dttcp <= 5.0:
+        return Severity.GENERAL
+    if dttcp <= 8.0:
+        return Severity.SLIGHT
+    return Severity.NONE

@@ -15,12 +15,11 @@ class Moment:
     """All that the CAVs know at one time, each by its id; functions are handed ``(moment, ego)``.
 
     Attributes:
-        time: Simulated time [s].
         vehicles: The vehicles that each CAV knows of, itself included, by id.
         sees_conflicts: Whether conflicts can be told at all, which takes routes that are shared or guessed.
     """
 
-    time: float
+    time: float  # Simulated time [s]
     scenes: Mapping[str, SceneDescription]
     conflicts: Mapping[str, tuple[Conflict, ...]]
     vehicles: Mapping[str, dict[str, TrackedVehicle]]

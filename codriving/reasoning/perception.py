@@ -8,9 +8,8 @@ from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.moment import Moment
 from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.sharing.intent_sharing import GuessedIntents, IntentSharing
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
-from codriving.reasoning.sharing.state_sharing import StateSharing, WatchedStates
+from codriving.reasoning.sharing.sharing import GUESSED_INTENTS, IntentSharing, SensedStates, StateSharing
 from codriving.reasoning.sharing.tracking import Tracking
 
 
@@ -27,9 +26,9 @@ class Perception:
     def perceive(self, world: WorldState) -> Moment:
         """Return what every CAV knows, and begin the predictions of this step."""
         self.forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
-        views = self.state_sharing.views(world, self.forecast.model)
+        detections = self.state_sharing.detections(world, self.forecast.model)
         intents = self.intent_sharing.intents(world)
-        scenes = describe_scenes(world, views, intents, self.tracking)
+        scenes = describe_scenes(world, detections, intents, self.tracking)
         conflicts: dict[str, tuple[Conflict, ...]] = dict.fromkeys(scenes, ())
         finds_conflicts = self.intent_sharing.finds_conflicts
         if finds_conflicts:
@@ -44,8 +43,8 @@ class Perception:
 def single_vehicle_perception(road_map: RoadMap, forecast: Forecast) -> Perception:
     """Return what a vehicle perceives that is on its own: what its sensors tell, and what the map allows.
 
-    It knows position, speed and heading of everybody within the detection range, cannot tell a CAV from a human
+    It knows position, speed and heading of every vehicle within the detection range, cannot tell a CAV from a human
     driver, and knows the ways that each may take from the map, narrowed down as it watches. Routes, intents, actions
     and negotiated orders of others stay hidden.
     """
-    return Perception(road_map, forecast, Tracking(road_map), WatchedStates(), GuessedIntents())
+    return Perception(road_map, forecast, Tracking(road_map), SensedStates(headings=True), GUESSED_INTENTS)

@@ -14,8 +14,7 @@ from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
-from codriving.methods.single_vehicle.alone import Alone
-from codriving.methods.single_vehicle.protocol import Driver
+from codriving.methods.single_vehicle.method import Driver, SingleVehicle
 from codriving.reasoning.prediction.forecast import HORIZON
 from codriving.reasoning.prediction.rollout import rollout
 from codriving.training.curriculum import Linear
@@ -64,7 +63,7 @@ class Advisor:
 
     def __init__(self, guidance: Guidance, road_map: RoadMap, model: DrivingModel) -> None:
         # Drivers remember their CAVs by name, which is the same in all environments.
-        self._alone = Alone(deepcopy(guidance.driver))
+        self._alone = SingleVehicle(deepcopy(guidance.driver))
         self._every, self._road = guidance.every, (road_map, model)
         self._decider = _decider(guidance.llm)
         self.asks = True

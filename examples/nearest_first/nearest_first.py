@@ -23,9 +23,9 @@ class NearestFirst(OrderRule):
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
         """Order by distance, and keep what is physically fixed."""
-        ranked = sorted(instance.entrants.values(), key=lambda e: (round(e.distance / self.step), -e.speed, e.id))
-        sequence = repaired(instance, [entrant.id for entrant in ranked])
-        times = schedule(instance, sequence) or {name: instance.entrants[name].eta for name in sequence}
+        ranked = sorted(instance.vehicles.values(), key=lambda e: (round(e.distance / self.step), -e.speed, e.id))
+        sequence = repaired(instance, [vehicle.id for vehicle in ranked])
+        times = schedule(instance, sequence) or {name: instance.vehicles[name].eta for name in sequence}
         return Ordering(tuple(sequence), times)
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:

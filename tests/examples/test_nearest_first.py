@@ -10,7 +10,7 @@ import pytest
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.outcome import Ending
-from codriving.ordering import Entrant, Instance
+from codriving.ordering import ApproachingVehicle, Instance
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "nearest_first"
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "methods" / "README.md"
@@ -25,11 +25,14 @@ def config(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Any]]:
 
 def test_it_orders_by_distance_and_keeps_what_is_fixed(config: dict[str, Any]) -> None:
     rule = build(config["method"], config["plugins"], "method").rule
-    far, near = Entrant("CAV1", 100.0, 5.0, distance=40.0), Entrant("CAV2", 100.0, 4.0, distance=20.0)
+    far, near = (
+        ApproachingVehicle("CAV1", 100.0, 5.0, distance=40.0),
+        ApproachingVehicle("CAV2", 100.0, 4.0, distance=20.0),
+    )
     instance = Instance(0.0, {"CAV1": far, "CAV2": near}, {("CAV1", "CAV2"): 2.0, ("CAV2", "CAV1"): 2.0}, set())
     assert rule.order(instance, None).sequence == ("CAV2", "CAV1")
     assert rule.order(instance, None).times == {"CAV2": 4.0, "CAV1": 6.0}
-    fixed = Instance(0.0, instance.entrants, instance.separation, {("CAV1", "CAV2")})
+    fixed = Instance(0.0, instance.vehicles, instance.separation, {("CAV1", "CAV2")})
     assert rule.order(fixed, None).sequence == ("CAV1", "CAV2")
 
 

@@ -23,7 +23,7 @@ from codriving.reasoning.ordering.schedule import Objective, schedule
 def test_equals_plain_enumeration(seed: int, n: int, windows: bool, share: float, weight: float) -> None:
     problem, fairness = crossroads(seed, n, windows), {"CAV0": weight}
     objective = Objective(share, fairness)
-    orders = [times for order in permutations(problem.entrants) if (times := schedule(problem, order)) is not None]
+    orders = [times for order in permutations(problem.vehicles) if (times := schedule(problem, order)) is not None]
     answer = BruteForce(evacuation_weight=share, fairness=fairness).order(problem, NoPlanner())
     found = objective.value(problem, answer.times)
     assert found == pytest.approx(min(objective.value(problem, times) for times in orders), abs=1e-6)

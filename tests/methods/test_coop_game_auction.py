@@ -4,7 +4,7 @@ from itertools import pairwise
 from math import inf
 
 import pytest
-from coalitions import Scheduled, entrant, everybody, instance, problems
+from coalitions import Scheduled, everybody, instance, problems, vehicle
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -16,16 +16,16 @@ from codriving.reasoning.ordering.request import Request
 
 
 def test_bid_is_the_formula() -> None:
-    assert bid(entrant("a", 2, distance=18.0, speed=9.0), 4.0) == pytest.approx(0.4 + 3 / 20 + 1 / 2.5)
+    assert bid(vehicle("a", 2, distance=18.0, speed=9.0), 4.0) == pytest.approx(0.4 + 3 / 20 + 1 / 2.5)
 
 
 def test_nobody_bids_without_end() -> None:
-    assert bid(entrant("a", 0, distance=0.0, speed=0.0), 0.0) == pytest.approx(3 / 2 + 1 / 0.5)
-    assert bid(entrant("a", 0, distance=10.0, speed=0.0), 0.0) == bid(entrant("a", 0, distance=10.0, speed=0.5), 0.0)
+    assert bid(vehicle("a", 0, distance=0.0, speed=0.0), 0.0) == pytest.approx(3 / 2 + 1 / 0.5)
+    assert bid(vehicle("a", 0, distance=10.0, speed=0.0), 0.0) == bid(vehicle("a", 0, distance=10.0, speed=0.5), 0.0)
 
 
 def test_highest_bid_goes_first() -> None:
-    problem = instance(entrant("a", 4), entrant("b", 2), entrant("c", 3), conflicts=everybody("abc"))
+    problem = instance(vehicle("a", 4), vehicle("b", 2), vehicle("c", 3), conflicts=everybody("abc"))
     ordering = Auction(0.1).order(problem, Scheduled(problem))
     assert ordering.sequence == ("b", "c", "a")
     assert list(ordering.times) == ["b", "c", "a"]
@@ -37,14 +37,14 @@ def test_waiting_counts_from_the_moment_of_standing() -> None:
     auction = Auction(0.0)
     firsts = []
     for step in range(40):
-        far = entrant("far", 3, distance=30.0, speed=0.2)
-        near = entrant("near", 1, distance=10.0, speed=0.2 if step >= 20 else 5.0)
+        far = vehicle("far", 3, distance=30.0, speed=0.2)
+        near = vehicle("near", 1, distance=10.0, speed=0.2 if step >= 20 else 5.0)
         problem = instance(far, near, conflicts=[("far", "near")], time=step * 0.5)
         firsts.append(auction.order(problem, Scheduled(problem)).sequence[0])
     assert firsts[0] == "near"
     # 0.1 a second has to make up for the nearer place and the earlier arrival.
     ahead = bid(near, 0.0) - bid(far, 0.0)
-    moving = bid(entrant("near", 1, distance=10.0, speed=5.0), 0.0) - bid(far, 0.0)
+    moving = bid(vehicle("near", 1, distance=10.0, speed=5.0), 0.0) - bid(far, 0.0)
     assert ahead / 0.1 < 10.0
     assert firsts[: int(moving / 0.1 / 0.5) + 1] == ["near"] * (int(moving / 0.1 / 0.5) + 1)
     assert firsts[-1] == "far"
@@ -53,7 +53,7 @@ def test_waiting_counts_from_the_moment_of_standing() -> None:
 def test_waiting_ends_with_driving_on() -> None:
     auction = Auction(0.0)
     for time, speed in ((0.0, 0.0), (5.0, 3.0), (6.0, 0.0), (8.0, 0.0)):
-        problem = instance(entrant("a", 2, speed=speed, distance=20.0), time=time)
+        problem = instance(vehicle("a", 2, speed=speed, distance=20.0), time=time)
         auction.order(problem, Scheduled(problem))
     assert auction._wait(problem) == {"a": 2.0}
     auction.reset(0)
@@ -64,7 +64,7 @@ def test_waiting_ends_with_driving_on() -> None:
 def test_order_stays_unless_enough_more_is_bid(hysteresis: float, first: str) -> None:
     auction = Auction(hysteresis)
     for b in (2.2, 1.9):
-        problem = instance(entrant("a", 2.0), entrant("b", b), conflicts=[("a", "b")])
+        problem = instance(vehicle("a", 2.0), vehicle("b", b), conflicts=[("a", "b")])
         ordering = auction.order(problem, Scheduled(problem))
     assert ordering.sequence[0] == first
     assert ordering.counts["kept"] == (first == "a")
@@ -74,7 +74,7 @@ def test_order_stays_unless_enough_more_is_bid(hysteresis: float, first: str) ->
 def test_order_that_cannot_be_kept_any_more_is_given_up() -> None:
     auction = Auction(5.0)
     for b in (2.2, 1.9):
-        problem = instance(entrant("a", 2.0), entrant("b", b), conflicts=[("a", "b")])
+        problem = instance(vehicle("a", 2.0), vehicle("b", b), conflicts=[("a", "b")])
         ordering = auction.order(problem, Scheduled(problem, lambda order: order[0] == "b"))
     assert ordering.sequence == ("b", "a")
 
@@ -96,7 +96,7 @@ def test_order_respects_what_is_fixed_and_is_repeatable(first: Instance, second:
 
     sequences = drive()
     for problem, sequence in zip((first, second), sequences, strict=True):
-        assert sorted(sequence) == sorted(problem.entrants)
+        assert sorted(sequence) == sorted(problem.vehicles)
         assert all(sequence.index(a) < sequence.index(b) for a, b in problem.before)
     assert drive() == sequences
 

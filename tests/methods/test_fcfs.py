@@ -133,7 +133,7 @@ def test_far_vehicle_does_not_hold_up_a_near_one_that_it_does_not_meet() -> None
 
 def test_order_does_not_depend_on_the_order_of_the_entrants() -> None:
     problem = crossroads(10_005, 9)
-    turned = Instance(0.0, dict(reversed(problem.entrants.items())), problem.separation, problem.before)
+    turned = Instance(0.0, dict(reversed(problem.vehicles.items())), problem.separation, problem.before)
     assert FirstComeFirstServed().order(turned, NoPlanner()) == FirstComeFirstServed().order(problem, NoPlanner())
 
 

@@ -139,9 +139,9 @@ def test_ticket_order_is_stable_while_nothing_drifts(seed: int) -> None:
     first = rule.order(problem, NoPlanner())
     for step in range(1, 4):
         moved = crossroads(seed, 9)
-        for k, entrant in enumerate(moved.entrants.values()):
-            entrant.eta += 0.3 * (-1) ** (k + step) - 0.5 * step
-        later = Instance(0.5 * step, moved.entrants, problem.separation, problem.before)
+        for k, vehicle in enumerate(moved.vehicles.values()):
+            vehicle.eta += 0.3 * (-1) ** (k + step) - 0.5 * step
+        later = Instance(0.5 * step, moved.vehicles, problem.separation, problem.before)
         assert rule.order(later, NoPlanner()).counts == {"scheduled_anew": 0}
         answer = rule.order(later, NoPlanner())
         pairs = [p for p in combinations(first.sequence, 2) if problem.conflict(*p)]
@@ -151,14 +151,14 @@ def test_ticket_order_is_stable_while_nothing_drifts(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(10_000, 10_060))
 def test_vehicles_come_and_go_and_the_schedule_stays_valid(seed: int) -> None:
     rule, problem = SpanningTree(), crossroads(seed, 12, True)
-    names = sorted(problem.entrants, key=lambda n: problem.entrants[n].eta)
+    names = sorted(problem.vehicles, key=lambda n: problem.vehicles[n].eta)
     for step in range(6):
         there = set(names[step : step + 6])
-        entrants = {n: e for n, e in problem.entrants.items() if n in there}
-        now = Instance(float(step), entrants, problem.separation, problem.before)
+        vehicles = {n: e for n, e in problem.vehicles.items() if n in there}
+        now = Instance(float(step), vehicles, problem.separation, problem.before)
         answer = rule.order(now, NoPlanner())
         inside = {p: w for p, w in problem.separation.items() if set(p) <= there}
-        left = Instance(now.time, entrants, inside, frozenset(p for p in problem.before if set(p) <= there))
+        left = Instance(now.time, vehicles, inside, frozenset(p for p in problem.before if set(p) <= there))
         assert is_valid(left, answer.sequence, dict(answer.times))
 
 
@@ -175,7 +175,7 @@ def test_an_order_is_carried_over_only_while_it_is_possible() -> None:
 def test_slots_are_the_schedule_of_their_order() -> None:
     for seed in range(10_000, 10_050):
         problem = crossroads(seed, 10, True)
-        names = list(problem.entrants)
+        names = list(problem.vehicles)
         slots = inserted(problem, names, {})
         assert sequence(problem, slots) == sorted(slots, key=lambda n: slots[n])
 

@@ -82,7 +82,7 @@ def test_the_rule_of_thumb_helps_with_a_small_budget() -> None:
 @given(seed=st.integers(10_000, 10**6), n=st.integers(1, 5), windows=st.booleans())
 def test_as_many_iterations_as_orders_are_enough_to_try_all(seed: int, n: int, windows: bool) -> None:
     problem = crossroads(seed, n, windows)
-    orders = [times for order in permutations(problem.entrants) if (times := schedule(problem, order)) is not None]
+    orders = [times for order in permutations(problem.vehicles) if (times := schedule(problem, order)) is not None]
     cost, tried, complete = searched(problem, len(orders), seed)
     assert complete
     assert tried <= len(orders), "no order is tried twice"
@@ -141,9 +141,9 @@ def test_an_order_that_has_become_impossible_is_given_up() -> None:
 def test_vehicles_come_and_go_and_the_order_stays_possible() -> None:
     for seed in range(10_000, 10_020):
         problem, rule = crossroads(seed, 12, True), MonteCarloTreeSearch(iterations=20)
-        names = sorted(problem.entrants, key=lambda n: problem.entrants[n].eta)
+        names = sorted(problem.vehicles, key=lambda n: problem.vehicles[n].eta)
         for step in range(6):
-            there = {n: problem.entrants[n] for n in names[step : step + 6]}
+            there = {n: problem.vehicles[n] for n in names[step : step + 6]}
             inside = {p: w for p, w in problem.separation.items() if set(p) <= set(there)}
             fixed = frozenset(p for p in problem.before if set(p) <= set(there))
             answer = rule.order(Instance(float(step), there, inside, fixed), NoPlanner())

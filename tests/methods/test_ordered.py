@@ -55,7 +55,7 @@ class InOrderOfNames(OrderRule):
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
         """By name."""
         self.posed.append(instance)
-        names = repaired(instance, sorted(instance.entrants, reverse=self.backwards))
+        names = repaired(instance, sorted(instance.vehicles, reverse=self.backwards))
         return Ordering(tuple(names), timed(instance, names), counts={"tried": 1})
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
@@ -134,8 +134,8 @@ def test_what_is_agreed_is_the_order_of_the_rule_and_respects_what_is_fixed(
     assert names == [d.ego for d in deliberation.decisions] == sorted(world.available)
     assert all(d.action in world.available[d.ego] for d in deliberation.decisions)
     order = deliberation.situations[0].order
-    ranked = repaired(instance, sorted(instance.entrants, reverse=backwards))
-    between = [(p.first, p.second) for p in order.precedences if {p.first, p.second} <= instance.entrants.keys()]
+    ranked = repaired(instance, sorted(instance.vehicles, reverse=backwards))
+    between = [(p.first, p.second) for p in order.precedences if {p.first, p.second} <= instance.vehicles.keys()]
     assert all(ranked.index(a) < ranked.index(b) for a, b in between)
     for one, other in instance.before:
         if (other, one) not in instance.before and set(between) & {(one, other), (other, one)}:
@@ -262,7 +262,7 @@ def test_its_rule_is_told_where_the_ordering_comes_from(junction: Junction) -> N
     # Reasons of the rule reach the order that is told; what it is silent about is still said in a sentence.
     class Says(InOrderOfNames):
         def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-            assert planner.plan(sorted(instance.entrants)).feasible
+            assert planner.plan(sorted(instance.vehicles)).feasible
             return Ordering(*_names("CAV1", "CAV2", "CAV3"), reasons={("CAV1", "CAV2"): "because I say so"})
 
     world = junction.world(

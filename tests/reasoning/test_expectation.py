@@ -1,4 +1,6 @@
-"""How everybody is expected to move if the passing order is kept."""
+"""How all vehicles are expected to move if the passing order is kept."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,8 +18,7 @@ from codriving.reasoning.prediction.plans import FIRST, HOLDS, PLANS, ROLLS, STA
 def expected(
     thoughts: Thoughts, order: PassingOrder, ego: str = "CAV1", minds_conflicts: bool = True
 ) -> dict[str, tuple[Expected, ...]]:
-    known, road_map = thoughts.scenes[ego].vehicles(), thoughts.junction.road_map
-    return expect(known, order, road_map, thoughts.forecast, LAG, minds_conflicts)
+    return expect(replace(thoughts.moment(), sees_conflicts=minds_conflicts), ego, order, LAG)
 
 
 def overlap(junction: Junction, one: Expected, other: Expected) -> bool:
@@ -85,22 +86,12 @@ def test_a_follower_keeps_a_headway_or_the_margin_if_that_is_less(
     gap: float, lag: int, keeps: bool, junction: Junction
 ) -> None:
     thoughts = junction.thoughts(car("CAV1", "south-north", 30.0, 9.0), car("CAV2", "south-north", 60.0, 9.0))
-    known, times = thoughts.scenes["CAV1"].vehicles(), thoughts.forecast.times
+    times = thoughts.forecast.times
     assert round(HEADWAY / thoughts.forecast.sample) < LAG
     # At 20 m/s the headway takes 16 m and the margin of these worlds 20 m, from one planning footprint to the next.
     ahead = {"CAV2": (Expected("south-north", 30.0 + gap + 20 * times, True, {}),)}
-    (flag,) = keeps_order(
-        "CAV1",
-        "south-north",
-        (30.0 + 20 * times)[None],
-        known,
-        ahead,
-        PassingOrder((), ()),
-        junction.road_map,
-        lag,
-        thoughts.forecast.sample,
-        True,
-    )
+    route, order = "south-north", PassingOrder((), ())
+    (flag,) = keeps_order(thoughts.moment(), "CAV1", "CAV1", route, (30.0 + 20 * times)[None], ahead, order, lag, True)
     assert flag == keeps
 
 

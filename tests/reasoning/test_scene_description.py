@@ -2,7 +2,7 @@
 
 from worlds import Junction, car
 
-from codriving.reasoning.sharing.state_sharing import SensedStates
+from codriving.reasoning.sharing.sharing import SensedStates
 
 
 def test_a_vehicle_is_on_every_lane_that_its_body_reaches_onto(highway: Junction) -> None:

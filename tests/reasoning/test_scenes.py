@@ -10,7 +10,7 @@ from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
 from codriving.datatypes.scene_description import Role, SceneDescription
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.sharing.scenes import adjacent_lanes, with_roles
-from codriving.reasoning.sharing.state_sharing import SensedStates
+from codriving.reasoning.sharing.sharing import SensedStates
 
 
 def roles(scene: SceneDescription) -> dict[str, Role]:

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from codriving.datatypes.conflict import Severity
-from codriving.reasoning.severity import severity, ttcp
+from codriving.reasoning.conflicts import severity, ttcp
 
 
 @pytest.mark.parametrize(

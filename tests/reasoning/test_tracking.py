@@ -5,7 +5,7 @@ from worlds import Junction, car
 
 from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.datatypes.vehicle import Intent, Kind
-from codriving.reasoning.sharing.state_sharing import SensedStates, SharedStates
+from codriving.reasoning.sharing.sharing import SensedStates, SharedStates
 from codriving.reasoning.sharing.tracking import Tracking
 
 
@@ -16,7 +16,7 @@ def perceived(junction: Junction, route: str, place: float, speed: float = 6.0, 
     watcher = car("CAV1", route, max(place - 20.0, 0.0), 6.0)
     assert path.length > place
     sharing = SharedStates() if full else SensedStates()
-    (seen,) = sharing.views(junction.world(watcher, human), junction.model)["CAV1"]
+    (seen,) = sharing.detections(junction.world(watcher, human), junction.model)["CAV1"]
     return seen
 
 
@@ -76,8 +76,8 @@ def test_a_shared_route_is_believed(junction: Junction) -> None:
 
 def test_a_body_between_two_lanes_is_on_both_whether_it_shares_or_not(highway: Junction) -> None:
     world = highway.world(car("CAV1", "lane-2", 280.0, 20.0), car("CAV2", "lane-0", 300.0, 20.0, offset=1.5))
-    (full,) = SharedStates().views(world, highway.model)["CAV1"]
-    (sensed,) = SensedStates().views(world, highway.model)["CAV1"]
+    (full,) = SharedStates().detections(world, highway.model)["CAV1"]
+    (sensed,) = SensedStates().detections(world, highway.model)["CAV1"]
     on_both = (("lane-0", pytest.approx(300.0)), ("lane-1", pytest.approx(300.0)))
     assert Tracking(highway.road_map).places("CAV1", full, world.intents["CAV2"]) == on_both
     assert Tracking(highway.road_map).places("CAV1", sensed, None) == on_both

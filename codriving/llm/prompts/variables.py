@@ -174,10 +174,10 @@ def negotiation_view(
 ) -> dict[str, Any]:
     """Return the variables of the negotiation prompt."""
     asked = sorted({name for _, c in pairs for name in (c.ego, c.other)})
-    ahead = {instance.entrants[name].leader for name in asked} - {None}
+    ahead = {instance.vehicles[name].leader for name in asked} - {None}
     fixed = sorted(pair for pair in instance.before if set(pair) <= {*asked, *ahead} and not _follows(instance, pair))
     return {
-        "vehicles": [_entrant(scenes, instance, name, names) for name in asked],
+        "vehicles": [_approaching(scenes, instance, name, names) for name in asked],
         "pairs": [_pair(name, c, previous, names) for name, c in pairs],
         "fixed": [FixedView(names(first), names(second)) for first, second in fixed],
         "binding": binding,
@@ -186,11 +186,11 @@ def negotiation_view(
 
 def _follows(instance: Instance, pair: Pair) -> bool:
     """Whether a pair is fixed because one drives behind the other, which is said of that vehicle."""
-    return instance.entrants[pair[1]].leader == pair[0]
+    return instance.vehicles[pair[1]].leader == pair[0]
 
 
-def _entrant(scenes: Mapping[str, SceneDescription], instance: Instance, name: str, names: Names) -> EntrantView:
-    entrant, scene = instance.entrants[name], scenes[name]
+def _approaching(scenes: Mapping[str, SceneDescription], instance: Instance, name: str, names: Names) -> EntrantView:
+    entrant, scene = instance.vehicles[name], scenes[name]
     windows = {(max(begin, 0.0), end) for begin, end in entrant.windows if begin < float("inf") and end > 0}
     return EntrantView(
         id=names(name),

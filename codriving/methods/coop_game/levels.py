@@ -34,7 +34,7 @@ def find_streams(instance: Instance, arrived: Sequence[str]) -> Streams:
     """Group the vehicles of an instance."""
     members: dict[str, list[str]] = {}
     for name in arrived:
-        members.setdefault(instance.entrants[name].stream or name, []).append(name)
+        members.setdefault(instance.vehicles[name].stream or name, []).append(name)
     names = tuple(members)
     conflicts = {
         (i, j)

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from codriving.datatypes.ordering_problem import Entrant, Instance
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
 
 SLOPE, OFFSET = 1.44, 25.4
@@ -71,12 +71,12 @@ class Payoff:
         """
         scale = self._scale(instance)
         found = {}
-        for name, entrant in instance.entrants.items():
-            left = self._left(entrant, plan, ahead)
+        for name, vehicle in instance.vehicles.items():
+            left = self._left(vehicle, plan, ahead)
             if self.objective is Goal.INVERSE_DISTANCE:
-                found[name] = 1 / on_one_scale(left, entrant.turning, scale)
+                found[name] = 1 / on_one_scale(left, vehicle.turning, scale)
             else:
-                found[name] = self._utility(instance, entrant, left, plan, planner)
+                found[name] = self._utility(instance, vehicle, left, plan, planner)
         return found
 
     def gain(
@@ -92,23 +92,23 @@ class Payoff:
 
     def _scale(self, instance: Instance) -> Scale:
         """Distances are only changed where some turn and others do not."""
-        kinds = {entrant.turning for entrant in instance.entrants.values()}
+        kinds = {vehicle.turning for vehicle in instance.vehicles.values()}
         return self.scale if len(kinds) == 2 else Scale.NONE
 
-    def _left(self, entrant: Entrant, plan: JointPlan, ahead: float) -> float:
+    def _left(self, vehicle: ApproachingVehicle, plan: JointPlan, ahead: float) -> float:
         """Mean distance to the destination within the horizon [m]."""
-        travel = plan.travels[entrant.id]
+        travel = plan.travels[vehicle.id]
         if ahead:
             travel = travel + float(travel[-1]) / (plan.sample * (len(travel) - 1)) * ahead
-        return float(np.maximum(entrant.remaining - travel, 0.0).mean())
+        return float(np.maximum(vehicle.remaining - travel, 0.0).mean())
 
     def _utility(
-        self, instance: Instance, entrant: Entrant, left: float, plan: JointPlan, planner: JointPlanner
+        self, instance: Instance, vehicle: ApproachingVehicle, left: float, plan: JointPlan, planner: JointPlanner
     ) -> float:
-        distance = max(entrant.remaining, NEAREST)
-        acceleration = np.diff(plan.speed(entrant.id)) / plan.sample
-        partners = [name for name in instance.entrants if name != entrant.id and instance.conflict(name, entrant.id)]
-        gaps = [max(planner.gap_time(plan, entrant.id, name), 0.0) for name in partners]
+        distance = max(vehicle.remaining, NEAREST)
+        acceleration = np.diff(plan.speed(vehicle.id)) / plan.sample
+        partners = [name for name in instance.vehicles if name != vehicle.id and instance.conflict(name, vehicle.id)]
+        gaps = [max(planner.gap_time(plan, vehicle.id, name), 0.0) for name in partners]
         risk = sum(math.exp(-gap / self.risk_time) for gap in gaps) / len(gaps) if gaps else 0.0
         terms = (
             self.efficiency * (distance - left) / distance

@@ -17,7 +17,7 @@ from codriving.reasoning.ordering.schedule import timed
 from codriving.reasoning.ordering.tickets import TicketBook, by_ticket, reasons
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.rollout import Plan
-from codriving.reasoning.safety.outlook import then_stop
+from codriving.reasoning.safety.safety_input import then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
 
 OPTIONS = (Action.FASTER, Action.IDLE, Action.SLOWER)

@@ -20,7 +20,7 @@ from codriving.methods.dilu.thinker import Thought
 from codriving.methods.dilu.told import Told, tell
 from codriving.methods.language_model.ports import check_prompts
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
-from codriving.methods.single_vehicle.protocol import Driver, View
+from codriving.methods.single_vehicle.method import Driver
 from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
@@ -76,7 +76,8 @@ class DiLu(Method):
             kept = [self._thoughts[name] for name in names]
             situations = tuple(thought.situation for thought in kept)
             return ReasonedDeliberation(world.time, world.step, situations, tuple(_holds(t.decision) for t in kept), {})
-        told = self._recall([tell(view) for view in self._views(world)])
+        moment = self._perception.perceive(world)
+        told = self._recall([tell(moment, ego) for ego in moment.scenes])
         thoughts = self._thinker.decide(told)
         self._thoughts = {thought.decision.ego: thought for thought in thoughts}
         self._decided = world.step
@@ -109,16 +110,6 @@ class DiLu(Method):
 
     def unfinished_step(self, time: float) -> Account:
         return self._ledger.close_step(time) if self._ledger is not None else ({}, [])
-
-    def _views(self, world: WorldState) -> list[View]:
-        perception = self._perception
-        seen = perception.perceive(world)
-        return [
-            View(
-                scene, seen.conflicts[name], world.available[name], perception.road_map, perception.forecast, world.time
-            )
-            for name, scene in seen.scenes.items()
-        ]
 
     def _recall(self, told: list[Told]) -> list[Told]:
         """Put what is remembered of like situations beside each."""

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from codriving.methods.dilu.reflection import Reflector, RuleReflector
 from codriving.methods.dilu.rule_thinker import RuleThinker
 from codriving.methods.dilu.thinker import Thinker
-from codriving.methods.single_vehicle.protocol import Driver
+from codriving.methods.single_vehicle.method import Driver
 
 if TYPE_CHECKING:
     from codriving.llm.ledger import Ledger

@@ -7,7 +7,7 @@ from typing import Protocol
 from codriving.datatypes.action import Action
 from codriving.datatypes.situation import Decision
 from codriving.methods.dilu.told import Told
-from codriving.reasoning.safety.beside import SIDES
+from codriving.reasoning.safety.safety_input import SIDES
 
 
 @dataclass(frozen=True, slots=True)

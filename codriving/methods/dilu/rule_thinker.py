@@ -7,9 +7,8 @@ from codriving.datatypes.experience import Verdict
 from codriving.datatypes.situation import Decision, Situation
 from codriving.methods.dilu.thinker import Thought
 from codriving.methods.dilu.told import Told
-from codriving.methods.single_vehicle.account import account
 from codriving.methods.single_vehicle.demonstrated import PREFERRED
-from codriving.methods.single_vehicle.protocol import Driver
+from codriving.methods.single_vehicle.method import Driver, account
 from codriving.reasoning.decision.cases import favour
 
 
@@ -25,8 +24,8 @@ class RuleThinker:
         return [self._decide(one) for one in told]
 
     def _decide(self, told: Told) -> Thought:
-        choice = self.rule.decide(told.view)
-        situation = replace(account(told.view, choice), memories=told.situation.memories)
+        choice = self.rule.decide(told.moment, told.ego)
+        situation = replace(account(told.moment, told.ego, choice), memories=told.situation.memories)
         decision = corrected(situation, Decision(situation.scene.ego.id, choice.action, choice.reason))
         return Thought(decision, situation, choice.counts)
 

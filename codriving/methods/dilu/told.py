@@ -10,9 +10,9 @@ from codriving.datatypes.road import LaneId
 from codriving.datatypes.scene_description import SceneDescription
 from codriving.datatypes.situation import ActionAssessment, Situation
 from codriving.methods.single_vehicle.lane_choice import look
-from codriving.methods.single_vehicle.protocol import View
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.prediction.rollout import CHANGE
-from codriving.reasoning.safety.beside import SIDES
+from codriving.reasoning.safety.safety_input import SIDES
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,38 +23,39 @@ class Told:
         targets: Target speed after each action along the lane [m/s].
     """
 
-    view: View
+    moment: Moment
+    ego: str
     situation: Situation
     lane: tuple[int, int]
     targets: Mapping[Action, float]
 
 
-def tell(view: View) -> Told:
+def tell(moment: Moment, ego: str) -> Told:
     """Describe what one CAV sees."""
-    scene = placed(view)
+    scene = placed(moment, ego)
     situation = Situation(
         scene=scene,
-        conflicts=view.conflicts,
+        conflicts=moment.conflicts[ego],
         order=PassingOrder((), ()),
         # Who passes when is for whoever reasons to find out.
-        clear_times=(float("inf"),) * len(view.conflicts),
-        assessments=tuple(ActionAssessment(action, True, (), (), None) for action in view.actions),
+        clear_times=(float("inf"),) * len(moment.conflicts[ego]),
+        assessments=tuple(ActionAssessment(action, True, (), (), None) for action in moment.available[ego]),
     )
     start, end, index = scene.ego.lane
-    count = sum((a, b) == (start, end) for a, b, _ in view.road_map.lanes)
-    targets = targets_after(view.forecast.model, scene.ego.speed, scene.intent.target_speed)
-    return Told(view, situation, (index + 1, count), targets)
+    count = sum((a, b) == (start, end) for a, b, _ in moment.road_map.lanes)
+    targets = targets_after(moment.forecast.model, scene.ego.speed, scene.intent.target_speed)
+    return Told(moment, ego, situation, (index + 1, count), targets)
 
 
-def placed(view: View) -> SceneDescription:
+def placed(moment: Moment, ego: str) -> SceneDescription:
     """Return the scene in which those next ahead and behind on the lanes beside are put onto these lanes.
 
     That is read off where they are and what the map says, since a vehicle on its own is told nobody's lane.
     """
-    scene = view.scene
+    scene = moment.scenes[ego]
     lanes: dict[str, LaneId] = {}
-    for action in (a for a in SIDES if a in view.actions):
-        side = look(view, action, 0.0)
+    for action in (a for a in SIDES if a in moment.available[ego]):
+        side = look(moment, ego, action, 0.0)
         if side is not None:
             lanes.update({n.id: side.lane for n in (side.ahead, side.behind) if n is not None})
     if not lanes:

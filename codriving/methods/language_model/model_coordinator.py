@@ -82,7 +82,7 @@ class ModelCoordinator:
         """Ask the model, and repair what it says; None if there is no answer."""
         by_urgency = sorted(conflicts, key=lambda c: (c.dttcp + 0.2 * min(c.ttcp), c.ego, c.other))
         pairs = {f"p{k + 1}": c for k, c in enumerate(by_urgency)}
-        names = Names(problem.instance.entrants)
+        names = Names(problem.instance.vehicles)
         question = self._question(scenes, problem, pairs, names)
         [answer] = self.chat.ask([question])
         self.ledger.note(question, answer)
@@ -130,11 +130,11 @@ class ModelCoordinator:
 
 def _most_urgent(problem: Problem, conflicts: Mapping[str, tuple[Conflict, ...]]) -> dict[Pair, Conflict]:
     """Return the most urgent conflict of each pair of CAVs, seen from the one with the lower id."""
-    entrants = problem.instance.entrants
+    vehicles = problem.instance.vehicles
     found: dict[Pair, Conflict] = {}
-    for ego in sorted(entrants):
+    for ego in sorted(vehicles):
         for c in conflicts[ego]:
-            if c.other in entrants and (c.other, ego) not in found:
+            if c.other in vehicles and (c.other, ego) not in found:
                 found.setdefault((ego, c.other), c)
     return found
 

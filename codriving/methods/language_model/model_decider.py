@@ -11,14 +11,13 @@ from codriving.llm.prompts.render import Prompts
 from codriving.llm.prompts.replies import DecisionReply, decision_reply
 from codriving.llm.prompts.variables import decision_view, vehicles_by_distance
 from codriving.llm.question import Answer, Chat, Question
-from codriving.reasoning.decision.plain import is_plain
-from codriving.reasoning.decision.rules import decide_one
+from codriving.reasoning.decision.rules import Decider, decide_one, is_plain
 
 SAFEST = (Action.SLOWER, Action.IDLE, Action.FASTER, Action.LANE_RIGHT, Action.LANE_LEFT)
 """Actions in the order in which they stand in for an answer that is missing."""
 
 
-class ModelDecider:
+class ModelDecider(Decider):
     """Asks a model for every CAV, all in one go.
 
     Nobody asks for a CAV whose decision is plain, see ``is_plain``; the rules decide, and the ledger counts it.

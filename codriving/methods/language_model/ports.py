@@ -3,8 +3,7 @@
 from typing import TYPE_CHECKING
 
 from codriving.datatypes.parts import Model
-from codriving.reasoning.decision.decider import Decider
-from codriving.reasoning.decision.rules import RuleDecider
+from codriving.reasoning.decision.rules import Decider, RuleDecider
 from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator
 
 if TYPE_CHECKING:

@@ -15,8 +15,7 @@ from codriving.geometry.path import Path
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.learned.known import Other
 from codriving.methods.learned.layout import FAR, NEAR, SIDE, SLOT, SLOTS
-from codriving.reasoning.conflicts import is_open
-from codriving.reasoning.severity import ttcp
+from codriving.reasoning.conflicts import is_open, ttcp
 from codriving.reasoning.sharing.scenes import ALIGNED, SAME_LANE
 
 LEANS = 0.6

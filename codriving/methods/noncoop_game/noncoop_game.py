@@ -5,29 +5,27 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from codriving.datatypes.order import Precedence
-from codriving.errors import ConfigError
-from codriving.methods.noncoop_game.lane_game import CHANGE, KEEP, LaneGame
-from codriving.methods.noncoop_game.nash import Array, best_answer, expected_action
-from codriving.methods.noncoop_game.passing_game import ACCELERATIONS, PassingGame, passing_game
-from codriving.methods.noncoop_game.payoff import Temper
-from codriving.methods.noncoop_game.stubborn import Stubborn
-from codriving.methods.pidm import ProjectedIdm
-from codriving.methods.single_vehicle.action_mapping import closest_action, mean_accelerations
-from codriving.methods.single_vehicle.encounters import Encounter
-from codriving.methods.single_vehicle.expected_first import goes_first
+from codriving.errors import ConfigError, require_range
+from codriving.methods.noncoop_game.games import ACCELERATIONS, CHANGE, KEEP, LaneGame, PassingGame, passing_game
+from codriving.methods.noncoop_game.payoff import Array, Temper, best_answer, expected_action
+from codriving.methods.pidm import ProjectedIdm, closest_action, mean_accelerations
+from codriving.methods.single_vehicle.encounters import Encounter, Patience, goes_first
 from codriving.methods.single_vehicle.lane_choice import Side
-from codriving.methods.single_vehicle.patience import Patience
-from codriving.methods.single_vehicle.protocol import Choice, Driver, View
+from codriving.methods.single_vehicle.method import Choice, Driver
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.prediction.idm import IntelligentDriver
 
 UNBRAKED = int(np.sum(ACCELERATIONS >= 0))
 """Number of accelerations without braking; they are the first ones."""
 
+BRAKES = 0.5
+"""How much slower a vehicle must have become to count as braking [m/s]."""
+
 
 class NonCooperativeGame(Driver):
     """A simultaneous game of two players with a private type, replanned each decision (after Fang et al., 2024).
 
-    The partner is whoever meets the vehicle most urgently. Everybody else is minded as projected IDM minds them.
+    The partner is the vehicle that is met most urgently. All others are minded as projected IDM minds them.
 
     Args:
         hold: How long an acceleration is held; then the speed is kept [s].
@@ -62,59 +60,60 @@ class NonCooperativeGame(Driver):
             ("hold", hold, 0.1, horizon),
             ("indifference", indifference, 0.0, 100.0),
         ):
-            if not low <= value <= high:
-                raise ConfigError(f"{key} must be {low:g} to {high:g}, got {value:g}")
+            require_range(key, value, low, high)
         self.tempers, self.own, self.shares = tuple(tempers.values()), tempers[own], shares
         self.hold, self.indifference, self.others = hold, indifference, others
         self.times: Array = np.arange(round(horizon / sample) + 1, dtype=np.float64) * sample
-        self._patience, self._stubborn = Patience(), Stubborn()
+        self._patience, self._unmet = Patience(), UnmetExpectations()
 
     def reset(self) -> None:
         """Begin an episode; nothing is remembered from the one before."""
         self._patience = Patience()
-        self._stubborn = Stubborn()
+        self._unmet = UnmetExpectations()
         self.others.reset()
 
-    def decide(self, view: View) -> Choice:
-        """Play against the most critical partner, mind everybody else, or change lanes if that game is worth it."""
-        ego = view.scene.ego
-        waited = self._patience.waited(ego.id, ego.speed, view.time)
-        change, refused = self.others.lanes.choose(view, self.others.idm, self.refuses)
+    def decide(self, moment: Moment, ego: str) -> Choice:
+        """Play against the most critical partner, mind all others, or change lanes if that game is worth it."""
+        own = moment.scenes[ego].ego
+        waited = self._patience.waited(ego, own.speed, moment.time)
+        change, refused = self.others.lanes.choose(moment, ego, self.others.idm, self.refuses)
         if change is not None:
             return Choice(change.action, change.reason, (), refused)
-        met = self.others.met(view)
+        met = self.others.met(moment, ego)
         partner = met[0].conflict.other if met else ""
         rest = tuple(e for e in met if e.conflict.other != partner)
-        crept = self.others.may_start(view, met, waited)
-        wished, why, precedences = self.others.wish(view, met if crept else rest, waited)
+        crept = self.others.may_start(moment, ego, met, waited)
+        wished, why, precedences = self.others.wish(moment, ego, met if crept else rest, waited)
         if partner and not crept:
-            played, said, precedence = self.play(view, [e for e in met if e.conflict.other == partner])
+            played, said, precedence = self.play(moment, ego, [e for e in met if e.conflict.other == partner])
             precedences = (precedence, *precedences)
             if played <= wished:
                 wished, why = played, said
-        means = mean_accelerations(view.forecast, ego.speed, view.scene.intent.target_speed, self.others.window)
+        means = mean_accelerations(
+            moment.forecast, own.speed, moment.scenes[ego].intent.target_speed, self.others.window
+        )
         action = closest_action(wished, means, self.others.brake_at)
         counts = {"games": int(bool(partner) and not crept), "creeps": int(crept)}
         return Choice(action, f"{why}; it wishes {wished:+.1f} m/s2", precedences, refused, counts)
 
-    def play(self, view: View, met: Sequence[Encounter]) -> tuple[float, str, Precedence]:
+    def play(self, moment: Moment, ego: str, met: Sequence[Encounter]) -> tuple[float, str, Precedence]:
         """Play against one partner.
 
         Returns:
             Acceleration [m/s2], why, and who goes first by that.
         """
-        ego, other = view.scene.ego, met[0].other
-        game = passing_game(met, ego.speed, view.top, self.hold, self.times)
+        speed, other = moment.scenes[ego].ego.speed, met[0].other
+        game = passing_game(met, speed, moment.forecast.model.top_speed, self.hold, self.times)
         # Only who is first on every way that the partner may take can be: so two can never both believe that they are.
-        first = all(goes_first(e, view.road_map, self.others.tie)[0] for e in met)
-        stubborn = self._stubborn.keeps_on(ego.id, other.id, other.speed)
-        answers = self.answers(game, first, UNBRAKED if stubborn else len(ACCELERATIONS))
-        if not stubborn and all(ACCELERATIONS[k] < 0 for k in answers):
-            self._stubborn.expected_to_brake(ego.id, other.id, other.speed)
+        first = all(goes_first(e, moment.road_map, self.others.tie)[0] for e in met)
+        does_not_yield = self._unmet.does_not_yield(ego, other.id, other.speed)
+        answers = self.answers(game, first, UNBRAKED if does_not_yield else len(ACCELERATIONS))
+        if not does_not_yield and all(ACCELERATIONS[k] < 0 for k in answers):
+            self._unmet.expected_to_brake(ego, other.id, other.speed)
         row, _ = best_answer(game.own(self.own), answers, self.shares)
         likely = answers[int(np.argmax(self.shares))]
         leads = bool(game.own_first[row, likely])
-        pair = (ego.id, other.id) if leads else (other.id, ego.id)
+        pair = (ego, other.id) if leads else (other.id, ego)
         said = f"the game with {other.id}, expected to choose {_steps(answers)} m/s2"
         return float(ACCELERATIONS[row]), said, Precedence(*pair, f"{pair[0]} is first by {said}")
 
@@ -129,11 +128,11 @@ class NonCooperativeGame(Driver):
             expected_action(own, game.other(temper)[:, :among], self.indifference, agreed)[0] for temper in self.tempers
         )
 
-    def refuses(self, view: View, side: Side, idm: IntelligentDriver) -> str:
+    def refuses(self, moment: Moment, ego: str, side: Side, idm: IntelligentDriver) -> str:
         """Say why the game of a lane change ends with keeping the lane; nothing if it ends with the change."""
         if side.behind is None or side.behind.gap is None:
             return ""
-        game = LaneGame(view, side, idm, self.hold, self.times)
+        game = LaneGame(moment, ego, side, idm, self.hold, self.times)
         own = game.own(self.own)
         answers = tuple(
             expected_action(own, game.other(temper), 0.0, lambda row, _: row == KEEP)[0] for temper in self.tempers
@@ -147,3 +146,32 @@ class NonCooperativeGame(Driver):
 
 def _steps(answers: tuple[int, ...]) -> str:
     return " or ".join(dict.fromkeys(f"{ACCELERATIONS[k]:+.0f}" for k in answers))
+
+
+class UnmetExpectations:
+    """Remembers of whom it was expected to brake, and how fast it was then."""
+
+    def __init__(self) -> None:
+        self._speeds: dict[tuple[str, str], float] = {}
+
+    def expected_to_brake(self, ego: str, other: str, speed: float) -> None:
+        """Note that a vehicle should brake from now on.
+
+        Args:
+            speed: Its speed now [m/s].
+        """
+        self._speeds[ego, other] = speed
+
+    def does_not_yield(self, ego: str, other: str, speed: float) -> bool:
+        """Whether a vehicle was expected to brake before and has not; once it does, it is expected to again.
+
+        Args:
+            speed: Its speed now [m/s].
+        """
+        before = self._speeds.get((ego, other))
+        if before is None:
+            return False
+        if speed <= before - BRAKES:
+            del self._speeds[ego, other]
+            return False
+        return True

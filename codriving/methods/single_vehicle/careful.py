@@ -1,4 +1,4 @@
-"""A careful driver: the fastest action that keeps its distance and meets nobody if all go on as they do now."""
+"""A careful driver: the fastest action that keeps its distance and meets no vehicle if all go on as they do now."""
 
 from dataclasses import dataclass
 
@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import Precedence
-from codriving.errors import ConfigError
-from codriving.methods.single_vehicle.encounters import Encounter, encounters
+from codriving.errors import require_range
+from codriving.methods.single_vehicle.encounters import Encounter, encounters, leaders
 from codriving.methods.single_vehicle.lane_choice import LaneChoice
-from codriving.methods.single_vehicle.leaders import leaders
-from codriving.methods.single_vehicle.protocol import Choice, Driver, View
+from codriving.methods.single_vehicle.method import Choice, Driver
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.prediction.rollout import rollout
 
@@ -24,10 +24,10 @@ LIMITS = {"look": (0.5, 10.0), "headway": (0.0, 5.0), "standstill": (0.0, 20.0),
 """Least and largest value of each setting."""
 
 SLOW = 0.1
-"""Whoever is slower is taken to be so fast, so that times stay finite [m/s]."""
+"""A vehicle that is slower is taken to be so fast, so that times stay finite [m/s]."""
 
 FIRM = 4.0
-"""Braking beyond which nobody is expected to wait any more [m/s2]."""
+"""Braking beyond which no vehicle is expected to wait any more [m/s2]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Careful(Driver):
 
     Args:
         look: How long an action is held and watched [s].
-        headway: Time gap to be kept to whoever drives ahead [s].
+        headway: Time gap to be kept to the vehicle ahead [s].
         standstill: Distance to be kept to it at a standstill [m].
         margin: Time between one vehicle's leaving a zone and the other's entering it [s].
 
@@ -69,9 +69,7 @@ class Careful(Driver):
 
     def __init__(self, look: float, headway: float, standstill: float, margin: float, lanes: LaneChoice) -> None:
         for key, value in (("look", look), ("headway", headway), ("standstill", standstill), ("margin", margin)):
-            low, high = LIMITS[key]
-            if not low <= value <= high:
-                raise ConfigError(f"{key} must be {low:g} to {high:g}, got {value:g}")
+            require_range(key, value, *LIMITS[key])
         self.look, self.headway, self.standstill, self.margin, self.lanes = look, headway, standstill, margin, lanes
         self._idm = IntelligentDriver(gap=standstill, headway=headway)
 
@@ -79,14 +77,14 @@ class Careful(Driver):
         """Begin an episode; nothing is remembered from the one before."""
         self.lanes.reset()
 
-    def decide(self, view: View) -> Choice:
+    def decide(self, moment: Moment, ego: str) -> Choice:
         """Decide for one CAV."""
-        change, refused = self.lanes.choose(view, self._idm)
+        change, refused = self.lanes.choose(moment, ego, self._idm)
         if change is not None:
             return Choice(change.action, change.reason, (), refused)
         found: dict[Action, tuple[float, str, tuple[Precedence, ...]]] = {}
         for action in PREFERRED:
-            danger, why, order = found[action] = self._danger(view, action)
+            danger, why, order = found[action] = self._danger(moment, ego, action)
             if not why:
                 return Choice(action, "nothing is in the way of it", order, refused)
             refused[action] = f"{why} in {danger:.1f} s"
@@ -96,23 +94,23 @@ class Careful(Driver):
         del refused[action]
         return Choice(action, f"{found[action][1]} whatever it does", found[action][2], refused, {"cornered": 1})
 
-    def _danger(self, view: View, action: Action) -> tuple[float, str, tuple[Precedence, ...]]:
+    def _danger(self, moment: Moment, ego: str, action: Action) -> tuple[float, str, tuple[Precedence, ...]]:
         """When an action becomes dangerous [s], why (nothing if it does not), and who would go first."""
-        motion = self._motion(view, action)
+        motion = self._motion(moment, ego, action)
         dangers: list[tuple[float, str]] = []
-        for ahead in leaders(view.scene, view.road_map):
+        for ahead in leaders(moment.scenes[ego], moment.road_map):
             gap = ahead.gap + ahead.speed * motion.times - motion.travelled
             close = gap < self.standstill + self.headway * motion.speeds
             if close.any():
                 dangers.append((float(motion.times[int(close.argmax())]), f"it comes too close to {ahead.id}"))
         order: dict[str, Precedence] = {}
-        for e in encounters(view, float(view.forecast.reach(view.scene.ego.speed, True).least[-1]), FIRM):
+        for e in encounters(moment, ego, FIRM):
             own = motion.until(e.own_way), motion.until(e.conflict.exits[0])
             entry = e.its_way / max(e.other.speed, SLOW)
             first = own[0] <= entry
-            names = (view.scene.ego.id, e.conflict.other) if first else (e.conflict.other, view.scene.ego.id)
+            names = (ego, e.conflict.other) if first else (e.conflict.other, ego)
             order.setdefault(e.conflict.other, Precedence(*names, "if both go on like this"))
-            # Whoever is not there within the look can decide anew.
+            # A vehicle that is not there within the look can decide anew.
             if own[0] <= self.look and self._meets(e, own):
                 dangers.append((max(own[0], entry), f"it meets {e.conflict.other} where the ways cross"))
         at, why = min(dangers, default=(float("inf"), ""))
@@ -121,7 +119,7 @@ class Careful(Driver):
     def _meets(self, e: Encounter, own: tuple[float, float]) -> bool:
         """Whether both are in a zone at once, or too soon one after the other, if the other one keeps its speed."""
         if e.inside:
-            # Whoever is in the zone can only get out of it; who is ahead there does so first.
+            # A vehicle in the zone can only get out of it; one that is ahead there does so first.
             ahead = e.zone.point_i - e.conflict.places[0] <= e.zone.point_j - e.conflict.places[1]
             return e.other_inside and not ahead and not e.merges()
         its = e.its_way / max(e.other.speed, SLOW), e.conflict.exits[1] / max(e.other.speed, SLOW)
@@ -132,8 +130,8 @@ class Careful(Driver):
             return abs(own[0] - max(its[0], 0.0)) < self.headway
         return own[0] < its[1] + self.margin and its[0] < own[1] + self.margin
 
-    def _motion(self, view: View, action: Action) -> _Motion:
-        model, scene = view.forecast.model, view.scene
+    def _motion(self, moment: Moment, ego: str, action: Action) -> _Motion:
+        model, scene = moment.forecast.model, moment.scenes[ego]
         steps = round(self.look / model.step)
         travelled, speeds = rollout(model, [scene.ego.speed], [scene.intent.target_speed], ((action,),), steps)
         return _Motion(np.arange(steps + 1, dtype=np.float64) * model.step, travelled[0, 0], speeds[0, 0])

@@ -1,37 +1,90 @@
-"""Where the way of a vehicle meets those of others, and who is expected there first, as it sees it alone."""
+"""The others as a vehicle on its own meets them: leaders, zones where ways meet, and who is expected there first."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin
 
-from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.conflict import Conflict, Relation
+from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
 from codriving.geometry.box import Footprint
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
-from codriving.methods.single_vehicle.protocol import View
+from codriving.reasoning.moment import Moment
+from codriving.reasoning.prediction.expectation import is_behind
+from codriving.reasoning.sharing.tracking import STANDING
 
 FRONT = 2.5
 """Distance from the centre of a vehicle to its front [m]."""
 
-
 CLOSE = Footprint(5.6, 2.4)
-"""Size of vehicles that pass by somebody who stands, at a walking pace and with a small margin [m]."""
+"""Size of vehicles that pass by one that stands, at a walking pace and with a small margin [m]."""
+
+TURN = 1.0
+"""Time by which those who wait start one after another [s]."""
+
+SAME = 0.25
+"""Difference of the times for which two have been standing that does not count [s]."""
+
+OWN, OTHER = True, False
+
+
+@dataclass(frozen=True, slots=True)
+class Leader:
+    """A vehicle, or the end of a lane, that a vehicle must not run into."""
+
+    id: str
+    gap: float  # Free distance [m]
+    speed: float  # Its speed along the way [m/s]
+
+
+def leaders(scene: SceneDescription, road_map: RoadMap) -> tuple[Leader, ...]:
+    """Return all vehicles ahead, at the smallest gap on any of the ways, in order of id.
+
+    The end of a lane that has to be left stands still.
+    """
+    ways = ((scene.intent.route, scene.place), *scene.covers)
+    found = []
+    for n in scene.neighbours:
+        bodies = (n.length + scene.ego.length) / 2
+        gaps = [ahead - bodies for route, place in n.routes for ahead in _ahead(ways, route, place, road_map)]
+        if n.role is Role.LEADING and n.gap is not None:
+            gaps.append(n.gap)
+        if gaps:
+            found.append(Leader(n.id, min(gaps), n.speed))
+    if scene.must_change is not None:
+        found.append(Leader("the end of the lane", scene.must_change.room - scene.ego.length / 2, 0.0))
+    return tuple(found)
+
+
+def _ahead(ways: tuple[tuple[str, float], ...], route: str, place: float, road_map: RoadMap) -> Iterator[float]:
+    """Distances of the centres by which a vehicle on a route is ahead, where it is [m]."""
+    for own, here in ways:
+        for zone in road_map.zones(own, route):
+            if is_behind(zone, here, place):
+                yield lead(zone, here, place)
+
+
+def lead(zone: ConflictZone, place: float, other: float) -> float:
+    """Return by how much another vehicle is ahead on a stretch that two routes share [m]; negative if it is behind.
+
+    Args:
+        place: Arc length of the vehicle [m].
+        other: Arc length of the other vehicle [m].
+    """
+    if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING) or zone.merge_i is None or zone.merge_j is None:
+        return (other - zone.entry_j) - (place - zone.entry_i)
+    return (other - zone.merge_j) - (place - zone.merge_i)
 
 
 @dataclass(frozen=True, slots=True)
 class Encounter:
-    """A zone ahead of which it is open who goes first, with one of the ways that the other one may take.
-
-    Attributes:
-        stops: Distance in which the ego vehicle can stop [m].
-        firm: Braking beyond which nobody is expected to wait any more [m/s2].
-    """
+    """A zone ahead of which it is open who goes first, with one of the ways that the other one may take."""
 
     conflict: Conflict
     other: TrackedVehicle
     zone: ConflictZone
-    stops: float
-    firm: float
+    stops: float  # Distance in which the ego vehicle can stop [m]
+    firm: float  # Braking beyond which no vehicle is expected to wait any more [m/s2]
 
     @property
     def own_way(self) -> float:
@@ -68,16 +121,17 @@ class Encounter:
         return self.zone.merge_i is not None
 
 
-def encounters(view: View, stops: float, firm: float) -> tuple[Encounter, ...]:
+def encounters(moment: Moment, ego: str, firm: float) -> tuple[Encounter, ...]:
     """Return everything that is open, most urgent first.
 
     Args:
-        stops: Distance in which it can stop [m].
-        firm: Braking beyond which nobody is expected to wait any more [m/s2].
+        firm: Braking beyond which no vehicle is expected to wait any more [m/s2].
     """
-    others = {n.id: n for n in view.scene.neighbours}
+    stops = float(moment.forecast.reach(moment.scenes[ego].ego.speed, True).least[-1])
+    others = {n.id: n for n in moment.scenes[ego].neighbours}
     return tuple(
-        Encounter(c, others[c.other], view.road_map.zones(*c.routes)[c.zone], stops, firm) for c in view.conflicts
+        Encounter(c, others[c.other], moment.road_map.zones(*c.routes)[c.zone], stops, firm)
+        for c in moment.conflicts[ego]
     )
 
 
@@ -103,3 +157,90 @@ def passes_by(e: Encounter, road_map: RoadMap) -> bool:
     """Whether a vehicle passes by the other one where that one stands."""
     place, there = e.conflict.places
     return all(float(zone.front(there)) < place for zone in road_map.zones(*e.conflict.routes, CLOSE))
+
+
+def goes_first(e: Encounter, road_map: RoadMap, tie: float) -> tuple[bool, str]:
+    """Say whether a vehicle goes before another one, and why.
+
+    A vehicle in the zone goes first; then one that can no longer wait while the other one can; then the one that is
+    there earlier by more than a tie. A tie is broken by right before left, and by the names of the two.
+
+    Args:
+        tie: Difference of the times to the zone up to which both count as there at once [s].
+
+    Returns:
+        Whether the ego vehicle goes first, and why it goes or does not.
+    """
+    c = e.conflict
+    if e.inside != e.other_inside:
+        return (OWN, "it is there already") if e.inside else (OTHER, f"{c.other} is there already")
+    if e.inside:
+        ahead = (e.zone.point_i - c.places[0], c.ego) <= (e.zone.point_j - c.places[1], c.other)
+        return ahead, "both are there, and " + ("it is ahead" if ahead else f"{c.other} is ahead")
+    if e.bound != e.other_bound:
+        return (
+            (OWN, "it cannot stop before it any more") if e.bound else (OTHER, f"{c.other} cannot be expected to stop")
+        )
+    earlier = c.ttcp[1] - c.ttcp[0]
+    if abs(earlier) > tie:
+        late = f"{abs(earlier):.1f} s"
+        return (
+            (OWN, f"it is there {late} before {c.other}")
+            if earlier > 0
+            else (OTHER, f"{c.other} is there {late} before")
+        )
+    right = comes_from_the_right(c, road_map)
+    if right is not None:
+        return (OTHER, f"{c.other} comes from the right") if right else (OWN, f"{c.other} comes from the left")
+    return (c.ego < c.other), "both are there at once, and names decide"
+
+
+def may_start(moment: Moment, ego: str, met: Sequence[Encounter], waited: float, patience: float, clear: float) -> bool:
+    """Whether a vehicle has waited long enough, and no vehicle is in the zones ahead or will be before it is through.
+
+    Args:
+        waited: How long it has been standing [s].
+        patience: How long it has to have been standing [s].
+        clear: Time that others must be away from a zone beyond what the start takes [s].
+    """
+    if not met or waited < patience or not all(_lets_start(e, moment, ego, clear) for e in met):
+        return False
+    # Of those who stand, the one that has waited longest starts first; its start is seen before the next one's turn.
+    before = {e.other.id for e in met if _stood_longer(e.other.standing, e.other.id, waited, ego)}
+    return waited >= patience + TURN * len(before)
+
+
+def _lets_start(e: Encounter, moment: Moment, ego: str, clear: float) -> bool:
+    if e.other.standing > 0:
+        return passes_by(e, moment.road_map)
+    if e.other_inside:
+        return False
+    go = moment.forecast.reach(moment.scenes[ego].ego.speed, True).most
+    through = moment.forecast.time_to(e.conflict.exits[0], go)
+    return e.conflict.ttcp[1] > through + clear
+
+
+def _stood_longer(standing: float, other: str, waited: float, ego: str) -> bool:
+    """Whether a vehicle that stands is to start before a vehicle that has waited for some time as well."""
+    if standing <= 0:
+        return False
+    return standing > waited + SAME or (standing >= waited - SAME and other < ego)
+
+
+class Patience:
+    """Remembers since when each CAV stands."""
+
+    def __init__(self) -> None:
+        self._since: dict[str, float] = {}
+
+    def waited(self, name: str, speed: float, time: float) -> float:
+        """Return how long a CAV has been standing, now that its speed is known [s].
+
+        Args:
+            speed: Its speed [m/s].
+            time: Simulated time [s].
+        """
+        if speed >= STANDING:
+            self._since.pop(name, None)
+            return 0.0
+        return time - self._since.setdefault(name, time)

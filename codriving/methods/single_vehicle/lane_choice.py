@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from codriving.datatypes.action import Action
 from codriving.datatypes.road import LaneId
 from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
-from codriving.errors import ConfigError
-from codriving.methods.single_vehicle.protocol import View
+from codriving.errors import require_range
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.prediction.idm import IntelligentDriver
-from codriving.reasoning.safety.beside import SIDES
+from codriving.reasoning.safety.safety_input import SIDES
 from codriving.reasoning.sharing.scenes import with_roles
 
 SLOWEST = 3.0
@@ -18,15 +18,11 @@ SLOWEST = 3.0
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A lane change that is safe and wanted.
-
-    Attributes:
-        gain: What it is worth [m/s2].
-    """
+    """A lane change that is safe and wanted."""
 
     action: Action
     reason: str
-    gain: float
+    gain: float  # What it is worth [m/s2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +35,7 @@ class Side:
     far: str
 
 
-LetsIn = Callable[[View, Side, IntelligentDriver], str]
+LetsIn = Callable[[Moment, str, Side, IntelligentDriver], str]
 """Says why a change in front of the new follower is refused; nothing if it is not."""
 
 
@@ -47,10 +43,10 @@ class LaneChoice:
     """Changes lanes by MOBIL (Kesting, Treiber and Helbing, 2007), and where the route asks for it.
 
     Args:
-        threshold: Gain below which nobody changes lanes [m/s2].
+        threshold: Gain below which lanes are not changed [m/s2].
         safe_braking: Hardest braking asked of oneself and of the new follower [m/s2].
         least_gap: Smallest free distance to either neighbour on the new lane [m].
-        alongside: Distance along the road within which somebody two lanes away could change to the same lane [m].
+        alongside: Distance along the road within which a vehicle two lanes away could change to the same lane [m].
         cool_down: Time between two lane changes [s].
 
     Raises:
@@ -74,34 +70,33 @@ class LaneChoice:
             ("alongside", alongside, 50),
             ("cool_down", cool_down, 60),
         ):
-            if not 0 <= value <= most:
-                raise ConfigError(f"{key} must be 0 to {most}, got {value:g}")
+            require_range(key, value, 0, most)
         self.politeness, self.threshold, self.safe_braking = politeness, threshold, safe_braking
         self.least_gap, self.alongside, self.cool_down = least_gap, alongside, cool_down
         self._changed: dict[str, float] = {}
 
     def reset(self) -> None:
-        """Begin an episode; nobody has changed lanes yet."""
+        """Begin an episode; no CAV has changed lanes yet."""
         self._changed.clear()
 
     def choose(
-        self, view: View, idm: IntelligentDriver, lets_in: LetsIn | None = None
+        self, moment: Moment, ego: str, idm: IntelligentDriver, lets_in: LetsIn | None = None
     ) -> tuple[Change | None, dict[Action, str]]:
         """Return the lane change that is worth most, and why others are left out."""
         refused: dict[Action, str] = {}
         options = []
-        for action in (a for a in SIDES if a in view.actions):
-            said = self._idle(view, action)
-            side = None if said else look(view, action, self.alongside)
+        for action in (a for a in SIDES if a in moment.available[ego]):
+            said = self._idle(moment, ego, action)
+            side = None if said else look(moment, ego, action, self.alongside)
             if side is None:
                 refused[action] = said or "the lane does not lead where the vehicle goes"
                 continue
-            must = view.scene.must_change is not None
-            gain = self.gain(view, side, idm)
+            must = moment.scenes[ego].must_change is not None
+            gain = self.gain(moment, ego, side, idm)
             if not must and gain <= self.threshold:
                 refused[action] = f"MOBIL: it gains {gain:.1f} m/s2, less than {self.threshold:g}"
                 continue
-            unsafe = self.unsafe(view, side, idm, must) or (lets_in or self.braked_for)(view, side, idm)
+            unsafe = self.unsafe(moment, ego, side, idm, must) or (lets_in or self.braked_for)(moment, ego, side, idm)
             if unsafe:
                 refused[action] = unsafe
             elif must:
@@ -112,12 +107,12 @@ class LaneChoice:
             return None, refused
         best = max(options, key=lambda change: (change.gain, change.action is Action.LANE_LEFT))
         refused.update({o.action: "the other side is better" for o in options if o is not best})
-        self._changed[view.scene.ego.id] = view.time
+        self._changed[ego] = moment.time
         return best, refused
 
-    def _idle(self, view: View, action: Action) -> str:
+    def _idle(self, moment: Moment, ego: str, action: Action) -> str:
         """Why a lane change is not looked at."""
-        scene = view.scene
+        scene = moment.scenes[ego]
         if scene.must_change is not None:
             asked = scene.ego.lane[2] + SIDES[action] == scene.must_change.lane[2]
             return "" if asked else "the route asks for the other side"
@@ -125,34 +120,38 @@ class LaneChoice:
             return "a lane change is under way"
         if scene.ego.speed < SLOWEST:
             return "too slow to change lanes just to get farther"
-        if view.time - self._changed.get(scene.ego.id, -self.cool_down) < self.cool_down:
+        if moment.time - self._changed.get(scene.ego.id, -self.cool_down) < self.cool_down:
             return "lanes have just been changed"
         return ""
 
-    def unsafe(self, view: View, side: Side, idm: IntelligentDriver, must: bool) -> str:
+    def unsafe(self, moment: Moment, ego: str, side: Side, idm: IntelligentDriver, must: bool) -> str:
         """Say why a lane change is not safe, whatever the new follower does; nothing if it is."""
         if side.far and not must:
             return f"{side.far} is alongside on the other side and might change there, too"
         ahead, behind = side.ahead, side.behind
         if ahead is not None and ahead.gap is not None:
-            braking = -idm.accelerate(view.scene.ego.speed, view.top, ahead.gap, ahead.speed)
+            braking = -idm.accelerate(
+                moment.scenes[ego].ego.speed, moment.forecast.model.top_speed, ahead.gap, ahead.speed
+            )
             if ahead.gap < self.least_gap or braking > self.safe_braking:
                 return f"{ahead.id} is {max(ahead.gap, 0.0):.0f} m ahead there"
         if behind is not None and behind.gap is not None and behind.gap < self.least_gap:
             return f"{behind.id} is {max(behind.gap, 0.0):.0f} m behind there"
         return ""
 
-    def braked_for(self, view: View, side: Side, idm: IntelligentDriver) -> str:
+    def braked_for(self, moment: Moment, ego: str, side: Side, idm: IntelligentDriver) -> str:
         """Say that the new follower would have to brake too hard, if it would."""
         behind = side.behind
         if behind is None or behind.gap is None:
             return ""
-        braking = -idm.accelerate(behind.speed, view.top, behind.gap, view.scene.ego.speed)
+        braking = -idm.accelerate(
+            behind.speed, moment.forecast.model.top_speed, behind.gap, moment.scenes[ego].ego.speed
+        )
         return f"{behind.id} behind would have to brake at {braking:.1f} m/s2" if braking > self.safe_braking else ""
 
-    def gain(self, view: View, side: Side, idm: IntelligentDriver) -> float:
+    def gain(self, moment: Moment, ego: str, side: Side, idm: IntelligentDriver) -> float:
         """Return MOBIL's incentive: what the vehicle gains, and politely what those behind it do [m/s2]."""
-        scene, top = view.scene, view.top
+        scene, top = moment.scenes[ego], moment.forecast.model.top_speed
         speed, bodies = scene.ego.speed, scene.ego.length
         here_ahead, here_behind = role(scene, Role.LEADING), role(scene, Role.REARING)
         own = _follow(idm, speed, top, side.ahead) - _follow(idm, speed, top, here_ahead)
@@ -168,21 +167,21 @@ class LaneChoice:
         return own + self.politeness * others
 
 
-def look(view: View, action: Action, alongside: float) -> Side | None:
+def look(moment: Moment, ego: str, action: Action, alongside: float) -> Side | None:
     """Return the lane beside; None if no route along it leads where the vehicle goes.
 
     Args:
-        alongside: Distance along the road within which somebody two lanes away counts [m].
+        alongside: Distance along the road within which a vehicle two lanes away counts [m].
     """
-    scene, changes = view.scene, view.road_map.changes
+    scene, changes = moment.scenes[ego], moment.road_map.changes
     start, end, index = scene.intent.target_lane
     lane = (start, end, index + SIDES[action])
     routes = {side: name for name, side in changes.routes_beside(scene.intent.route, scene.intent.target_lane)}
     if lane not in routes:
         return None
     route = routes[lane]
-    place, _ = view.road_map.project(route, scene.ego.x, scene.ego.y)
-    there = replace(scene, neighbours=with_roles(scene.neighbours, scene.ego, route, place, view.road_map))
+    place, _ = moment.road_map.project(route, scene.ego.x, scene.ego.y)
+    there = replace(scene, neighbours=with_roles(scene.neighbours, scene.ego, route, place, moment.road_map))
     beyond = (start, end, index + 2 * SIDES[action])
     far = next((name for name, side in changes.routes_beside(route, lane) if side == beyond), None)
     near = ""

@@ -1,9 +1,11 @@
 """The built-in rule reasoner behind ``llm=offline``: it sees what a model would be told, and nothing else."""
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 
 from codriving.datatypes.action import Action
+from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
 from codriving.datatypes.situation import Decision, Situation
 from codriving.reasoning.decision.cases import reconsider
 
@@ -28,8 +30,22 @@ YIELDS = 15.0
 TOLERANCE = 0.02
 """Share of the progress that is given up to be closer when the way becomes free earlier than expected."""
 
+HORIZON = 10.0
+"""How far ahead the progress of an action is predicted [s]."""
 
-class RuleDecider:
+HEADWAY = 2.0
+"""The vehicle ahead is not to be considered if the CAV stays this far behind at least [s]."""
+
+
+class Decider(ABC):
+    """Decides for all vehicles in one call; rules and language models alike."""
+
+    @abstractmethod
+    def decide(self, situations: Sequence[Situation]) -> list[Decision]:
+        """Return one decision a situation, in the same order."""
+
+
+class RuleDecider(Decider):
     """Goes as fast as is safe and as the passing order allows, and repeats no mistake that is remembered."""
 
     def decide(self, situations: Sequence[Situation]) -> list[Decision]:
@@ -58,7 +74,7 @@ def decide_one(situation: Situation) -> Decision:
     waits_for = _first(situation)
     ahead = {action: gain for action, gain in reached.items() if action in allowed}
     if not ahead:
-        # Standing does not help whoever has to go first; something safe has to be done.
+        # Standing does not help a vehicle that has to go first; something safe has to be done.
         stands = situation.scene.ego.speed < STANDS
         action, how = (allowed[0], "fastest") if stands else (allowed[-1], "slowest")
         with_whom = waits_for or "others"
@@ -105,3 +121,44 @@ def _reason(action: Action, allowed: list[Action], waits_for: str) -> str:
     if action is allowed[0]:
         return f"nobody goes first, and {action} is the fastest action that is safe"
     return f"nobody goes first, and {action} gets farther in the end behind those ahead"
+
+
+def is_plain(situation: Situation, sees_conflicts: bool) -> bool:
+    """Whether a CAV has no vehicle to consider, and its best action is plain.
+
+    It has no vehicle to consider if
+
+    - it is in no conflict, however slight, and in no pair of the order;
+    - the vehicle ahead on its lane is so far away that it stays 2 s behind for the next 10 s, the other one
+      keeping its speed;
+    - where conflicts cannot be seen, since intents are not shared: no vehicle is ahead, on any lane, as near as it gets
+      within 10 s.
+
+    Its best action is plain if every action along the lane is safe and keeps the order, it is on one lane only, its
+    route asks for no lane change, and the rules say FASTER: no lane change would get it clearly farther either.
+    """
+    scene = situation.scene
+    if situation.conflicts or scene.must_change is not None or scene.covers:
+        return False
+    if any(scene.ego.id in (p.first, p.second) for p in situation.order.precedences):
+        return False
+    along = [a for a in situation.assessments if a.action in EAGERNESS]
+    if not all(a.safe and not a.reasons and a.progress is not None for a in along):
+        return False
+    reach = max((a.progress or 0.0 for a in along), default=0.0)
+    if any(_catches_up(n, reach) or (not sees_conflicts and _is_ahead(scene, n, reach)) for n in scene.neighbours):
+        return False
+    return decide_one(situation).action is Action.FASTER
+
+
+def _catches_up(n: TrackedVehicle, reach: float) -> bool:
+    """Whether the CAV comes near a vehicle on its lane within the horizon, or is near it already."""
+    if n.role is not Role.LEADING:
+        return False
+    gap, pace = n.gap or 0.0, reach / HORIZON
+    return min(gap, gap + HORIZON * n.speed - reach) < HEADWAY * pace
+
+
+def _is_ahead(scene: SceneDescription, n: TrackedVehicle, reach: float) -> bool:
+    along = math.cos(scene.ego.heading) * (n.x - scene.ego.x) + math.sin(scene.ego.heading) * (n.y - scene.ego.y)
+    return 0 < along <= reach

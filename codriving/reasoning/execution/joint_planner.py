@@ -15,7 +15,7 @@ from codriving.reasoning.ordering.protocol import JointPlan
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind, worth
 from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.prediction.rollout import Plan
-from codriving.reasoning.safety.outlook import then_stop
+from codriving.reasoning.safety.safety_input import then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
 
 Flags = NDArray[np.bool_]

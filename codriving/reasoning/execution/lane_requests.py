@@ -11,8 +11,7 @@ from codriving.reasoning.ordering.request import Request
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.safety.adjacent_lane import HEADWAY, MARGIN, check_adjacent
-from codriving.reasoning.safety.beside import SIDES, beside
-from codriving.reasoning.safety.outlook import Outlook, motions
+from codriving.reasoning.safety.safety_input import SIDES, safety_input
 
 POLITENESS = 0.3
 """Weight of what those behind gain or lose (MOBIL)."""
@@ -79,15 +78,11 @@ class LaneRequests:
             return None
         if must is not None:
             sides = [a for a in sides if scene.ego.lane[2] + SIDES[a] == must.lane[2]]
-        stops, goes = motions(scene, actions, moment.forecast)
-        outlook = Outlook(
-            scene, moment.conflicts[name], agreed, dict(moment.vehicles[name]), dict(expected), actions, stops, goes,
-            moment.road_map, moment.forecast, lag, True,
-        )  # fmt: skip
-        unsafe = check_adjacent(outlook)
+        given = safety_input(moment, name, agreed, expected, lag)
+        unsafe = check_adjacent(given)
         options = []
         for action in sides:
-            there = beside(outlook, action)
+            there = given.beside(action)
             if action in unsafe or there is None:
                 continue
             gain = float("inf") if must is not None else incentive(scene, there.scene, moment)

@@ -9,7 +9,7 @@ from codriving.reasoning.execution.planned import drive_of
 from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.problem import window
 from codriving.reasoning.ordering.protocol import Ordering
-from codriving.reasoning.safety.outlook import then_stop
+from codriving.reasoning.safety.safety_input import then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
 
 BODY = 5.0
@@ -77,7 +77,7 @@ class Layered(Executor):
 
 
 def layers_of(moment: Moment, ordering: Ordering) -> dict[str, int]:
-    """Return each entrant's layer: one more than the highest of those before it with whom it is in conflict."""
+    """Return each vehicle's layer: one more than the highest of those before it with whom it is in conflict."""
     layers: dict[str, int] = {}
     for name in ordering.sequence:
         others = {c.other for c in moment.conflicts[name]}

@@ -60,20 +60,14 @@ def meets(zone: ConflictZone, ego: Array, low: Array, high: Array, lag: int, pad
 
 @dataclass(frozen=True, slots=True)
 class Meeting:
-    """A stretch that two CAVs share.
-
-    Attributes:
-        place: Its arc length [m].
-        there: Arc length of the one that goes first [m].
-        pad: Additional room along the route [m].
-    """
+    """A stretch that two CAVs share."""
 
     zones: tuple[ConflictZone, ...]
-    place: float
-    there: float
+    place: float  # Its arc length [m]
+    there: float  # Arc length of the one that goes first [m]
     until: int
     lag: int
-    pad: float
+    pad: float  # Additional room along the route [m]
     smaller: tuple[tuple[ConflictZone, ...], ...] = ()
 
     def steps(self, travels: Array, first: Array) -> Steps:

@@ -60,7 +60,7 @@ def reason_human(human_first: bool, begin: float, end: float, time: float) -> st
 def without_cycles(
     precedences: Sequence[Precedence], times: Mapping[str, float]
 ) -> tuple[tuple[Precedence, ...], tuple[str, ...]]:
-    """Drop precedences until none of them contradict, and line everybody up accordingly.
+    """Drop precedences until none of them contradict, and line all vehicles up accordingly.
 
     CAVs are scheduled one after another, so a circle always runs through a human driver, and one of its links
     contradicts the times; that link is dropped. A CAV that is not told to go first has to be able to wait.

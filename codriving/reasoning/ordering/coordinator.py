@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.ordering_problem import Entrant, Instance, Pair
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance, Pair
 from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.agreement import agreement
 from codriving.reasoning.ordering.problem import Problem, pose
@@ -19,7 +19,7 @@ KEEPS_TURN = 1.0
 
 
 SAVES = 0.3
-"""Time that another order must save everybody together to be taken [s]."""
+"""Time that another order must save all vehicles together to be taken [s]."""
 
 SWAP = 1.0
 """Time that it must save for each pair whose order it turns round that has been agreed on [s]."""
@@ -37,7 +37,7 @@ class Coordinator(Protocol):
 
 
 class RuleCoordinator:
-    """Schedules whoever can pass first, again and again, with the traffic rules as handicaps."""
+    """Schedules the vehicle that can pass first, again and again, with the traffic rules as handicaps."""
 
     def __init__(self, binding: bool) -> None:
         self.binding = binding
@@ -54,7 +54,7 @@ class RuleCoordinator:
 
         def reason(first: str, second: str) -> str:
             known = given.get((first, second))
-            return reason_between(instance.entrants[first], instance.entrants[second]) if known is None else known
+            return reason_between(instance.vehicles[first], instance.vehicles[second]) if known is None else known
 
         self.previous = agreement(moment, problem, times, reason, self.binding)
         return self.previous
@@ -62,21 +62,21 @@ class RuleCoordinator:
     def _list_schedule(self, instance: Instance) -> dict[str, float]:
         """Schedule the vehicle with the smallest start time, handicaps included, until all are scheduled."""
         times: dict[str, float] = {}
-        waiting = dict(instance.entrants)
+        waiting = dict(instance.vehicles)
         while waiting:
             held = {second for first, second in instance.before if first in waiting}
             ready = [s for s in waiting.values() if s.id not in held] or list(waiting.values())
             options = []
-            for entrant in ready:
-                time = start_time(entrant, times, instance.separation)
-                handicap = TURN_YIELDS if entrant.turning else 0.0
+            for vehicle in ready:
+                time = start_time(vehicle, times, instance.separation)
+                handicap = TURN_YIELDS if vehicle.turning else 0.0
                 if any(
-                    self._was_first(k, entrant.id)
+                    self._was_first(k, vehicle.id)
                     for k in waiting
-                    if (k, entrant.id) in instance.separation and k != entrant.id
+                    if (k, vehicle.id) in instance.separation and k != vehicle.id
                 ):
                     handicap += KEEPS_TURN
-                options.append((not entrant.committed, time + handicap, entrant.id, time))
+                options.append((not vehicle.committed, time + handicap, vehicle.id, time))
             _, _, name, time = min(options)
             times[name] = time
             del waiting[name]
@@ -87,7 +87,7 @@ class RuleCoordinator:
 
 
 def improve(times: Mapping[str, float], instance: Instance, previous: PassingOrder | None) -> dict[str, float]:
-    """Let single vehicles go earlier or later as long as that saves everybody together enough time.
+    """Let single vehicles go earlier or later as long as that saves all vehicles together enough time.
 
     Args:
         times: The schedule to begin with: when each vehicle passes [s].
@@ -117,7 +117,7 @@ def improve(times: Mapping[str, float], instance: Instance, previous: PassingOrd
 
 
 def cost(planned: Mapping[str, float], instance: Instance, previous: PassingOrder | None) -> float:
-    """Return the time that everybody loses in a schedule, with a surcharge for each agreed pair turned round [s].
+    """Return the time that all vehicles lose in a schedule, with a surcharge for each agreed pair turned round [s].
 
     Args:
         planned: When each vehicle passes, in the order in which they go [s].
@@ -128,10 +128,10 @@ def cost(planned: Mapping[str, float], instance: Instance, previous: PassingOrde
         for p in previous.precedences:
             if p.first in place and p.second in place and place[p.first] > place[p.second]:
                 changed += SWAP
-    return sum(t - max(instance.entrants[name].eta, 0.0) for name, t in planned.items()) + changed
+    return sum(t - max(instance.vehicles[name].eta, 0.0) for name, t in planned.items()) + changed
 
 
-def reason_between(first: Entrant, second: Entrant) -> str:
+def reason_between(first: ApproachingVehicle, second: ApproachingVehicle) -> str:
     """Explain the order of two CAVs."""
     if first.committed and not second.committed:
         return f"{first.id} can no longer stop before the conflict zone"

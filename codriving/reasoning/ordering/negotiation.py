@@ -10,11 +10,11 @@ import numpy as np
 from codriving.datatypes.order import PassingOrder, Precedence
 from codriving.datatypes.road import Turn
 from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
+from codriving.reasoning.conflicts import ttcp
 from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.agreement import without_cycles
 from codriving.reasoning.ordering.coordinator import TURN_YIELDS, Coordinator
 from codriving.reasoning.ordering.problem import passes_first
-from codriving.reasoning.severity import ttcp
 from codriving.reasoning.sharing.cda import OwnOrder
 
 DOUBT = 1.0

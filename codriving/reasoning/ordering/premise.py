@@ -1,4 +1,4 @@
-"""What a negotiated order rests on; as long as that holds, nobody has to be asked again."""
+"""What a negotiated order rests on; as long as that holds, no new one is needed."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -39,10 +39,10 @@ class Premise:
 
 def premise(instance: Instance, pairs: Iterable[Pair]) -> Premise:
     """Return what an order of some pairs rests on."""
-    pairs, entrants = list(pairs), instance.entrants
-    concerned = [entrants[name] for name in sorted({name for pair in pairs for name in pair})]
+    pairs, vehicles = list(pairs), instance.vehicles
+    concerned = [vehicles[name] for name in sorted({name for pair in pairs for name in pair})]
     return Premise(
-        leads={(one, other): entrants[other].eta - entrants[one].eta for one, other in pairs},
+        leads={(one, other): vehicles[other].eta - vehicles[one].eta for one, other in pairs},
         held=frozenset(e.id for e in concerned if any(begin < e.eta < end for begin, end in e.windows)),
         cannot_stop=frozenset(e.id for e in concerned if e.committed),
     )

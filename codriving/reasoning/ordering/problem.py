@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 
 from codriving.datatypes.conflict import Conflict, Relation
-from codriving.datatypes.ordering_problem import Entrant, Instance, Pair
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance, Pair
 from codriving.datatypes.road import Turn
 from codriving.datatypes.scene_description import Role, TrackedVehicle
 from codriving.geometry.box import TRUE, Footprint
@@ -54,14 +54,14 @@ def pose(moment: Moment, gap: float = GAP) -> Problem:
     Args:
         gap: Time between one vehicle's leaving a zone and the next one's entering it [s].
     """
-    entrants = {ego: _entrant(moment, ego) for ego in sorted(moment.scenes) if moment.conflicts[ego]}
-    separation = _separations(moment, entrants, gap)
-    _add_leaders(moment, entrants, separation)
-    passages = {ego: _add_windows(moment, entrant) for ego, entrant in entrants.items()}
-    return Problem(Instance(moment.time, entrants, separation, frozenset(_fixed(moment, entrants))), passages)
+    vehicles = {ego: _approaching(moment, ego) for ego in sorted(moment.scenes) if moment.conflicts[ego]}
+    separation = _separations(moment, vehicles, gap)
+    _add_leaders(moment, vehicles, separation)
+    passages = {ego: _add_windows(moment, vehicle) for ego, vehicle in vehicles.items()}
+    return Problem(Instance(moment.time, vehicles, separation, frozenset(_fixed(moment, vehicles))), passages)
 
 
-def _entrant(moment: Moment, ego: str) -> Entrant:
+def _approaching(moment: Moment, ego: str) -> ApproachingVehicle:
     scene, conflicts, road_map = moment.scenes[ego], moment.conflicts[ego], moment.road_map
     route, speed, top = road_map.routes[scene.intent.route], scene.ego.speed, moment.forecast.model.top_speed
     zones = [road_map.zones(*c.routes)[c.zone] for c in conflicts]
@@ -69,9 +69,9 @@ def _entrant(moment: Moment, ego: str) -> Entrant:
     ahead = reference - scene.place
     go = moment.forecast.reach(speed, True)
     lane = road_map.lane_at(route.id, scene.place)
-    # Turning matters where ways cross; on a ring or a ramp nobody goes straight on.
+    # Turning matters where ways cross; on a ring or a ramp no vehicle goes straight on.
     turning = route.turn is not Turn.STRAIGHT and any(c.relation is Relation.CROSSING for c in conflicts)
-    return Entrant(
+    return ApproachingVehicle(
         id=ego,
         reference=reference,
         eta=moment.forecast.time_to(ahead, go.most) if ahead > 0 else ahead / top,
@@ -87,15 +87,15 @@ def _entrant(moment: Moment, ego: str) -> Entrant:
     )
 
 
-def _separations(moment: Moment, entrants: Mapping[str, Entrant], gap: float) -> dict[Pair, float]:
+def _separations(moment: Moment, vehicles: Mapping[str, ApproachingVehicle], gap: float) -> dict[Pair, float]:
     found: dict[Pair, float] = {}
-    for ego in entrants:
+    for ego in vehicles:
         for c in moment.conflicts[ego]:
-            if c.other not in entrants:
+            if c.other not in vehicles:
                 continue
             zone = moment.road_map.zones(*c.routes)[c.zone]
             for pair, first in (((ego, c.other), True), ((c.other, ego), False)):
-                shift = entrants[pair[1]].reference - entrants[pair[0]].reference
+                shift = vehicles[pair[1]].reference - vehicles[pair[0]].reference
                 needed = (lag_length(zone, first) + shift) / moment.forecast.model.top_speed + gap
                 found[pair] = max(needed, found.get(pair, needed))
     return found
@@ -115,21 +115,21 @@ def lag_length(zone: ConflictZone, seen_from_i: bool = True) -> float:
     return float(np.max(front[inside] - s[inside])) if inside.any() else 0.0
 
 
-def _add_leaders(moment: Moment, entrants: dict[str, Entrant], separation: dict[Pair, float]) -> None:
+def _add_leaders(moment: Moment, vehicles: dict[str, ApproachingVehicle], separation: dict[Pair, float]) -> None:
     distance, time = FOLLOWS
-    for ego, entrant in entrants.items():
+    for ego, vehicle in vehicles.items():
         for n in moment.scenes[ego].neighbours:
-            if n.role is Role.LEADING and n.id in entrants:
-                entrant.leader = n.id
+            if n.role is Role.LEADING and n.id in vehicles:
+                vehicle.leader = n.id
                 needed = distance / moment.forecast.model.top_speed + time
                 separation[n.id, ego] = max(separation.get((n.id, ego), 0.0), needed)
 
 
-def _fixed(moment: Moment, entrants: Mapping[str, Entrant]) -> set[Pair]:
+def _fixed(moment: Moment, vehicles: Mapping[str, ApproachingVehicle]) -> set[Pair]:
     """Return the pairs whose order is physical: a leader, or one who cannot stop before the zone any more."""
-    found = {(entrant.leader, ego) for ego, entrant in entrants.items() if entrant.leader is not None}
-    for ego in entrants:
-        for c in (c for c in moment.conflicts[ego] if c.other in entrants):
+    found = {(vehicle.leader, ego) for ego, vehicle in vehicles.items() if vehicle.leader is not None}
+    for ego in vehicles:
+        for c in (c for c in moment.conflicts[ego] if c.other in vehicles):
             zones = moment.road_map.zones(*c.routes, COMMITTED)
             mine, theirs = (_stops_at(moment, name, c.places[k]) for k, name in enumerate((ego, c.other)))
             stuck = any(z.entry_i <= mine and c.places[0] < z.exit_i for z in zones)
@@ -150,17 +150,17 @@ def _is_ahead(c: Conflict, road_map: RoadMap) -> bool:
     return any(z.entry_j < c.places[1] and c.places[0] > float(z.front(c.places[1])) > 0 for z in zones)
 
 
-def _add_windows(moment: Moment, entrant: Entrant) -> dict[str, Window]:
+def _add_windows(moment: Moment, vehicle: ApproachingVehicle) -> dict[str, Window]:
     """Block the times at which human drivers may pass; return the blocked interval of each of them."""
     found: dict[str, Window] = {}
-    for c in moment.conflicts[entrant.id]:
-        n = moment.scenes[entrant.id].neighbour(c.other)
+    for c in moment.conflicts[vehicle.id]:
+        n = moment.scenes[vehicle.id].neighbour(c.other)
         if n is None or n.intent is not None:
             continue
-        begin, end = window(moment, c, n, entrant.reference)
+        begin, end = window(moment, c, n, vehicle.reference)
         if n.standing > 0 and is_blocked(c, moment.road_map):
             begin, end = -FOREVER, FOREVER
-        entrant.windows.append((begin, end))
+        vehicle.windows.append((begin, end))
         known = found.get(c.other, (begin, end))
         found[c.other] = (min(begin, known[0]), max(end, known[1]))
     return found

@@ -17,13 +17,12 @@ class Ordering:
     """The answer of an ordering rule.
 
     Attributes:
-        times: When each is to pass its reference point, in the same order [s].
         not_before: Earliest time at which a vehicle may pass its reference point even if its way is free [s]; only of
             those that the rule holds back for longer than their conflicts do.
     """
 
     sequence: tuple[str, ...]
-    times: Mapping[str, float]
+    times: Mapping[str, float]  # When each is to pass its reference point, in the same order [s]
     reasons: Mapping[Pair, str] = field(default_factory=dict)
     counts: Mapping[str, int] = field(default_factory=dict)
     not_before: Mapping[str, float] = field(default_factory=dict)
@@ -35,12 +34,11 @@ class JointPlan:
 
     Attributes:
         travels: Distance of each CAV over time, by id; each (steps + 1,) [m].
-        sample: Time between two samples [s].
     """
 
     feasible: bool
     travels: Mapping[str, NDArray[np.float64]]
-    sample: float
+    sample: float  # Time between two samples [s]
     stuck: int = 0
 
     def speed(self, name: str) -> NDArray[np.float64]:

@@ -13,13 +13,12 @@ class Request:
 
     Attributes:
         incentive: What it and those behind it gain (MOBIL) [m/s2]; inf if its route asks for the change.
-        since: Simulated time at which it first asked [s].
     """
 
     ego: str
     action: Action
     incentive: float
-    since: float
+    since: float  # Simulated time at which it first asked [s]
     excludes: frozenset[str] = frozenset()
 
 

@@ -3,18 +3,18 @@
 from collections.abc import Mapping, Sequence
 from math import isfinite
 
-from codriving.datatypes.ordering_problem import Entrant, Instance, Pair
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance, Pair
 from codriving.errors import require_range
 
 Times = Mapping[str, float]
 """When each vehicle passes its reference point, in the order in which they go [s]."""
 
 
-def start_time(entrant: Entrant, earlier: Times, separation: Mapping[Pair, float]) -> float:
+def start_time(vehicle: ApproachingVehicle, earlier: Times, separation: Mapping[Pair, float]) -> float:
     """Return the earliest time at which a vehicle can pass its reference point after those already scheduled [s]."""
-    name = entrant.id
-    time = max([entrant.eta] + [t + separation[k, name] for k, t in earlier.items() if (k, name) in separation])
-    return after_windows(time, entrant.windows)
+    name = vehicle.id
+    time = max([vehicle.eta] + [t + separation[k, name] for k, t in earlier.items() if (k, name) in separation])
+    return after_windows(time, vehicle.windows)
 
 
 def after_windows(time: float, windows: Sequence[tuple[float, float]]) -> float:
@@ -41,7 +41,7 @@ def schedule(instance: Instance, order: Sequence[str]) -> dict[str, float] | Non
     for name in order:
         if not held.get(name, set()) <= times.keys():
             return None
-        times[name] = start_time(instance.entrants[name], times, instance.separation)
+        times[name] = start_time(instance.vehicles[name], times, instance.separation)
     return times
 
 
@@ -63,12 +63,12 @@ def repaired(instance: Instance, ranking: Sequence[str]) -> list[str]:
 
 def total_delay(instance: Instance, times: Times) -> float:
     """Return the time that all lose together against going at the earliest [s]."""
-    return sum(t - instance.entrants[name].eta for name, t in times.items())
+    return sum(t - instance.vehicles[name].eta for name, t in times.items())
 
 
 def evacuation_time(instance: Instance, times: Times) -> float:
     """Return when the last vehicle has left its conflict zones [s]; 0 if there is none."""
-    return max((t + instance.entrants[name].crossing for name, t in times.items()), default=0.0)
+    return max((t + instance.vehicles[name].crossing for name, t in times.items()), default=0.0)
 
 
 def timed(instance: Instance, order: Sequence[str]) -> dict[str, float]:
@@ -79,7 +79,7 @@ def timed(instance: Instance, order: Sequence[str]) -> dict[str, float]:
     """
     times: dict[str, float] = {}
     for name in order:
-        times[name] = start_time(instance.entrants[name], times, instance.separation)
+        times[name] = start_time(instance.vehicles[name], times, instance.separation)
     return times
 
 
@@ -112,17 +112,17 @@ class Objective:
 
     def value(self, instance: Instance, times: Times) -> float:
         """Return J of a schedule [s]."""
-        delay = sum(self.weight(name) * waited(instance.entrants[name], t) for name, t in times.items())
+        delay = sum(self.weight(name) * waited(instance.vehicles[name], t) for name, t in times.items())
         if self.evacuation_weight == 0 or not times:
             return delay
-        return delay + self.evacuation_weight * max(left(instance.entrants[name], t) for name, t in times.items())
+        return delay + self.evacuation_weight * max(left(instance.vehicles[name], t) for name, t in times.items())
 
 
-def waited(entrant: Entrant, time: float) -> float:
+def waited(vehicle: ApproachingVehicle, time: float) -> float:
     """Return how much later than at the earliest a vehicle passes [s], at most LONGEST_WAIT."""
-    return min(time - entrant.eta, LONGEST_WAIT) if isfinite(entrant.eta) else 0.0
+    return min(time - vehicle.eta, LONGEST_WAIT) if isfinite(vehicle.eta) else 0.0
 
 
-def left(entrant: Entrant, time: float) -> float:
+def left(vehicle: ApproachingVehicle, time: float) -> float:
     """Return when a vehicle that passes at a time [s], at most LONGEST_WAIT, has left its last conflict zone [s]."""
-    return min(max(time, -LONGEST_WAIT), LONGEST_WAIT) + entrant.crossing
+    return min(max(time, -LONGEST_WAIT), LONGEST_WAIT) + vehicle.crossing

@@ -15,8 +15,8 @@ def earliest_slot(instance: Instance, name: str, scheduled: Times) -> float:
 
     Each scheduled vehicle shuts out an interval around its own time, each human driver a window.
     """
-    entrant, separation = instance.entrants[name], instance.separation
-    time, shut = entrant.eta, list(entrant.windows)
+    vehicle, separation = instance.vehicles[name], instance.separation
+    time, shut = vehicle.eta, list(vehicle.windows)
     for other, at in scheduled.items():
         apart = separation.get((other, name))
         if apart is None or (name, other) in instance.before:
@@ -83,7 +83,7 @@ def carried_over(instance: Instance, previous: Sequence[str], ranking: Sequence[
     Returns:
         All vehicles; None if none of the order is left, or if it contradicts what is now physically fixed.
     """
-    kept = [name for name in previous if name in instance.entrants]
+    kept = [name for name in previous if name in instance.vehicles]
     known = set(kept)
     if not kept:
         return None

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from codriving.datatypes.ordering_problem import Entrant, Instance, Pair
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance, Pair
 from codriving.errors import require_range
 from codriving.reasoning.ordering.schedule import Times, repaired
 
@@ -55,17 +55,17 @@ class TicketBook:
         Returns:
             Ids by ticket, behind them those without one by earliest arrival; as far as what is physically fixed allows.
         """
-        for entrant in instance.entrants.values():
-            if entrant.id not in self.held and (not self.begun or entrant.distance <= self.radius):
-                self.held[entrant.id] = _ticket(entrant, instance.time)
+        for vehicle in instance.vehicles.values():
+            if vehicle.id not in self.held and (not self.begun or vehicle.distance <= self.radius):
+                self.held[vehicle.id] = _ticket(vehicle, instance.time)
         self.begun = True
-        holders = [self.held[name] for name in instance.entrants if name in self.held]
-        others = [_ticket(e, instance.time) for name, e in instance.entrants.items() if name not in self.held]
+        holders = [self.held[name] for name in instance.vehicles if name in self.held]
+        others = [_ticket(e, instance.time) for name, e in instance.vehicles.items() if name not in self.held]
         return repaired(instance, [t.id for t in (*in_turn(holders), *in_turn(others))])
 
 
-def _ticket(entrant: Entrant, now: float) -> Ticket:
-    return Ticket(now + entrant.eta, -entrant.priority, entrant.id)
+def _ticket(vehicle: ApproachingVehicle, now: float) -> Ticket:
+    return Ticket(now + vehicle.eta, -vehicle.priority, vehicle.id)
 
 
 def in_turn(tickets: list[Ticket]) -> list[Ticket]:
@@ -89,7 +89,7 @@ def reasons(instance: Instance, order: Sequence[str], chosen: Callable[[str, str
 
 def fixed(instance: Instance, one: str, other: str) -> str:
     """Say why it is physically fixed that one vehicle goes before another one."""
-    first, second = instance.entrants[one], instance.entrants[other]
+    first, second = instance.vehicles[one], instance.vehicles[other]
     if second.leader == one:
         return f"{one} drives ahead of {other}"
     if first.committed and not second.committed:

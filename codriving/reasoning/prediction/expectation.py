@@ -1,8 +1,7 @@
-"""How everybody is expected to move if the passing order is kept: planned one after another, first to last."""
+"""How all vehicles are expected to move if the passing order is kept: planned one after another, first to last."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,18 +10,17 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Relation
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.scene_description import TrackedVehicle
-from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
 from codriving.reasoning.conflicts import is_open
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.prediction.clearance import stays_behind
-from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.plans import PLANS, STARTS_WITH
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 HEADWAY = 0.8
-"""Time gap to whoever drives ahead that is planned for [s]; the safety check alone would allow less or ask for more."""
+"""Time gap to the vehicle ahead that is planned for [s]; the safety check alone would allow less or ask for more."""
 
 EARLY = 0.3
 """Weight of the mean distance within the horizon against the distance at its end."""
@@ -36,57 +34,58 @@ class Expected:
     """The expected motion of one vehicle.
 
     Attributes:
-        places: Arc length over time (n,) [m].
         progress: How far it gets within the horizon if it begins with an action and keeps the order [m]; no entry for
             an action with which it could not keep the order, and none at all for human drivers.
     """
 
     route: str
-    places: Array
+    places: Array  # Arc length over time (n,) [m]
     free: bool
     progress: Mapping[Action, float]
 
 
-Motions = tuple[tuple[Any, ...], ...]
+def expect_all(
+    moment: Moment, orders: Mapping[str, PassingOrder], lag: int
+) -> dict[str, dict[str, tuple[Expected, ...]]]:
+    """Expect what follows from each CAV's knowledge and order; CAVs that agree in both share one expectation.
+
+    Args:
+        orders: The order that each CAV goes by, by id.
+        lag: Samples that should lie between one vehicle's leaving a zone and the next one's entering it.
+    """
+    done: dict[tuple[object, ...], dict[str, tuple[Expected, ...]]] = {}
+    found = {}
+    for ego, order in orders.items():
+        vehicles = moment.vehicles[ego].values()
+        key = (id(order), *((v.id, v.is_cav, v.speed, v.target, v.routes) for v in vehicles))
+        if key not in done:
+            done[key] = expect(moment, ego, order, lag)
+        found[ego] = done[key]
+    return found
 
 
-def motions_of(vehicles: Mapping[str, TrackedVehicle]) -> Motions:
-    """Return all of some vehicles that an expectation depends on, to be compared."""
-    return tuple((v.id, v.is_cav, v.speed, v.target, v.routes) for v in vehicles.values())
-
-
-def expect(
-    vehicles: dict[str, TrackedVehicle],
-    order: PassingOrder,
-    road_map: RoadMap,
-    forecast: Forecast,
-    lag: int,
-    minds_conflicts: bool,
-) -> dict[str, tuple[Expected, ...]]:
-    """Plan every vehicle in the passing order against those before it.
+def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str, tuple[Expected, ...]]:
+    """Plan every vehicle that one CAV knows of in the passing order against those before it.
 
     Human drivers are expected to keep their speed on each route that they may take.
+
+    Args:
+        lag: Samples that should lie between one vehicle's leaving a zone and the next one's entering it.
 
     Returns:
         Expected motions by id: one a route that the vehicle may be on or reaches onto, that of its intent first.
     """
-    cavs = [v for v in vehicles.values() if v.is_cav]
+    vehicles, forecast = moment.vehicles[ego], moment.forecast
     found: dict[str, tuple[Expected, ...]] = {}
     for v in vehicles.values():
         if not v.is_cav:
             steady = forecast.reach(v.speed, False).steady
             found[v.id] = tuple(Expected(route, place + steady, True, {}) for route, place in v.routes)
     rank = {name: i for i, name in enumerate(order.sequence)}
-    # Whoever is in no conflict follows the order of the lanes: the vehicle farther along its route first.
+    # CAVs in no conflict follow the order of the lanes: the vehicle farther along its route first.
+    cavs = (v for v in vehicles.values() if v.is_cav)
     for v in sorted(cavs, key=lambda v: (rank.get(v.id, len(rank)), -v.routes[0][1], v.id)):
-        travels = forecast.travel(v.speed, v.target, PLANS)
-        keeps = np.ones(len(PLANS), dtype=np.bool_)
-        for k, (route, place) in enumerate(v.routes):
-            # A lane that the vehicle is leaving is minded until its body is off it.
-            until = forecast.steps + 1 if k == 0 else round(CLEARS / forecast.sample) + 1
-            motion = place + travels[:, :until]
-            minds = minds_conflicts and k == 0
-            keeps &= keeps_order(v.id, route, motion, vehicles, found, order, road_map, lag, forecast.sample, minds)
+        travels, keeps = plans_that_keep(moment, ego, v, found, order, lag)
         gained = np.where(keeps, worth(travels), -np.inf)
         best = int(np.argmax(gained)) if keeps.any() else len(PLANS) - 1
         gains = progress_by_action(gained)
@@ -97,29 +96,49 @@ def expect(
     return found
 
 
+def plans_that_keep(
+    moment: Moment,
+    ego: str,
+    vehicle: TrackedVehicle,
+    expected: Mapping[str, tuple[Expected, ...]],
+    order: PassingOrder,
+    lag: int,
+) -> tuple[Array, Flags]:
+    """Return how far each plan takes a vehicle (plans, n) [m], and whether it keeps the order on each of its routes."""
+    forecast = moment.forecast
+    travels = forecast.travel(vehicle.speed, vehicle.target, PLANS)
+    keeps = np.ones(len(PLANS), dtype=np.bool_)
+    for k, (route, place) in enumerate(vehicle.routes):
+        # A lane that the vehicle is leaving is minded until its body is off it.
+        until = forecast.steps + 1 if k == 0 else round(CLEARS / forecast.sample) + 1
+        minds = moment.sees_conflicts and k == 0
+        keeps &= keeps_order(moment, ego, vehicle.id, route, place + travels[:, :until], expected, order, lag, minds)
+    return travels, keeps
+
+
 def keeps_order(
+    moment: Moment,
+    ego: str,
     name: str,
     route: str,
     places: Array,
-    vehicles: Mapping[str, TrackedVehicle],
     expected: Mapping[str, tuple[Expected, ...]],
     order: PassingOrder,
-    road_map: RoadMap,
     lag: int,
-    sample: float,
     minds_conflicts: bool,
 ) -> Flags:
-    """Whether a vehicle stays behind everybody who drives ahead or goes first.
+    """Whether a vehicle that one CAV knows of stays behind all vehicles that drive ahead or go first.
 
     Args:
         places: Its arc length there over time, for as long as it is to be minded (plans, n) [m].
-        sample: Time between two samples of a motion [s].
 
     Returns:
         One flag a plan (plans,).
     """
     keeps: Flags = np.ones(len(places), dtype=np.bool_)
     place = float(places[0, 0])
+    vehicles = moment.vehicles[ego]
+    headway = min(lag, round(HEADWAY / moment.forecast.sample))
     for other, motions in expected.items():
         if other == name:
             continue
@@ -128,11 +147,11 @@ def keeps_order(
         minds = minds_conflicts and certain and order.first_of(name, other) != name
         for motion in motions:
             there = float(motion.places[0])
-            for zone in road_map.zones(route, motion.route):
+            for zone in moment.road_map.zones(route, motion.route):
                 following = is_behind(zone, place, there)
                 if not following and not (minds and is_open(zone, place, there)):
                     continue
-                after = min(lag, round(HEADWAY / sample)) if following else lag
+                after = headway if following else lag
                 keeps &= stays_behind(zone, places, motion.places[: places.shape[1]], after, 0.0)
     return keeps
 

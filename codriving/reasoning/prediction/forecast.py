@@ -1,4 +1,4 @@
-"""Bounds and expectations of how far everybody comes: the shared predictor of all reasoning."""
+"""Bounds and expectations of how far each vehicle comes: the shared predictor of all reasoning."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,19 +8,28 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.reasoning.prediction.human import fastest, likely, slowest
 from codriving.reasoning.prediction.rollout import Plan, canonical, travelled
 
 Array = NDArray[np.float64]
 
 HORIZON = 10.0
-"""How far ahead everybody is predicted [s]; a stop from top speed and a crossing both fit in."""
+"""How far ahead each vehicle is predicted [s]; a stop from top speed and a crossing both fit in."""
 
 SAMPLE = 0.2
 """Time between two samples of a prediction, rounded to whole simulation steps [s]."""
 
 SPEEDING = 1.0
 """How much faster than the CAVs' top speed a human driver may become [m/s]."""
+
+HARD_BRAKING = 6.0
+"""Hardest braking expected of a human driver [m/s2]."""
+
+HARD_ACCELERATION = 1.5
+"""Hardest acceleration expected of a human driver [m/s2]."""
+
+
+DRIFT = (1.0, 0.75, 6.0)
+"""How far a driver may be from where constant speed leads: at once [m], more each second [m/s], and at most [m]."""
 
 FEW = 8
 """Plans that are looked up one by one in no time."""
@@ -31,17 +40,11 @@ GO: Plan = (Action.FASTER,)
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """How far a vehicle may come from now on.
+    """How far a vehicle may come from now on."""
 
-    Attributes:
-        least: Distance if it brakes as hard as it can (steps + 1,) [m].
-        steady: Distance if it keeps its speed (steps + 1,) [m].
-        most: Distance if it accelerates as hard as it can (steps + 1,) [m].
-    """
-
-    least: Array
-    steady: Array
-    most: Array
+    least: Array  # Distance if it brakes as hard as it can (steps + 1,) [m]
+    steady: Array  # Distance if it keeps its speed (steps + 1,) [m]
+    most: Array  # Distance if it accelerates as hard as it can (steps + 1,) [m]
 
 
 class Forecast:
@@ -156,7 +159,7 @@ class Forecast:
             The least and the most, each (steps + 1,) [m].
         """
         if speed not in self._likely:
-            self._likely[speed] = likely(speed, self.times)
+            self._likely[speed] = likely_distances(speed, self.times)
         return self._likely[speed]
 
     def time_to(self, distance: float, travel: Array) -> float:
@@ -177,3 +180,48 @@ class Forecast:
             return float(self.times[index] - (travel[index] - distance) / pace)
         pace = (travel[-1] - travel[-2]) / self.sample
         return float(self.times[-1] + (distance - travel[-1]) / pace) if pace > 0.05 else float("inf")
+
+
+def likely_distances(speed: float, times: Array) -> tuple[Array, Array]:
+    """Distances between which a driver is expected, who goes on at about the present speed.
+
+    Args:
+        speed: Speed now [m/s].
+        times: Times from now (n,) [s].
+
+    Returns:
+        The least and the most, each (n,) [m].
+    """
+    at_once, each_second, at_most = DRIFT
+    drift = np.minimum(at_once + each_second * times, at_most)
+    return np.maximum(speed * times - drift, 0.0), speed * times + drift
+
+
+def slowest(speed: float, times: Array) -> Array:
+    """Distance of a driver who brakes hard at once.
+
+    Args:
+        speed: Speed now [m/s].
+        times: Times from now (n,) [s].
+
+    Returns:
+        Distance travelled (n,) [m].
+    """
+    braking = np.minimum(times, speed / HARD_BRAKING)
+    return np.asarray(speed * braking - HARD_BRAKING * braking**2 / 2)
+
+
+def fastest(speed: float, times: Array, limit: float) -> Array:
+    """Distance of a driver who accelerates hard up to the speed limit.
+
+    Args:
+        speed: Speed now [m/s].
+        times: Times from now (n,) [s].
+        limit: Speed limit [m/s]; a driver who is faster keeps the speed.
+
+    Returns:
+        Distance travelled (n,) [m].
+    """
+    gain = max(limit - speed, 0.0)
+    rising = np.minimum(times, gain / HARD_ACCELERATION)
+    return np.asarray(speed * times + HARD_ACCELERATION * rising**2 / 2 + HARD_ACCELERATION * rising * (times - rising))

@@ -1,4 +1,4 @@
-"""The Intelligent Driver Model as a yardstick: how hard somebody would accelerate behind somebody else."""
+"""The Intelligent Driver Model as a yardstick: how hard a driver would accelerate behind another vehicle."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -6,21 +6,13 @@ from math import sqrt
 
 @dataclass(frozen=True, slots=True)
 class IntelligentDriver:
-    """Treiber, Hennecke and Helbing (2000); the numbers are those of a brisk but careful driver.
+    """Treiber, Hennecke and Helbing (2000); the numbers are those of a brisk but careful driver."""
 
-    Attributes:
-        gap: Distance kept at a standstill [m].
-        headway: Desired time gap [s].
-        acceleration: Largest acceleration [m/s2].
-        deceleration: Comfortable braking [m/s2].
-        hardest: Hardest braking [m/s2].
-    """
-
-    gap: float = 2.0
-    headway: float = 1.2
-    acceleration: float = 2.0
-    deceleration: float = 3.0
-    hardest: float = 8.0
+    gap: float = 2.0  # Distance kept at a standstill [m]
+    headway: float = 1.2  # Desired time gap [s]
+    acceleration: float = 2.0  # Largest acceleration [m/s2]
+    deceleration: float = 3.0  # Comfortable braking [m/s2]
+    hardest: float = 8.0  # Hardest braking [m/s2]
 
     def accelerate(self, speed: float, wanted: float, gap: float | None = None, leader: float = 0.0) -> float:
         """Return the acceleration [m/s2].
@@ -28,8 +20,8 @@ class IntelligentDriver:
         Args:
             speed: Speed [m/s].
             wanted: Speed that is wanted [m/s].
-            gap: Free distance to whoever drives ahead, None if nobody does [m].
-            leader: Speed of whoever drives ahead [m/s].
+            gap: Free distance to the vehicle ahead, None if there is none [m].
+            leader: Speed of the vehicle ahead [m/s].
         """
         free = 1 - (speed / max(wanted, 0.1)) ** 4
         if gap is None:

@@ -1,4 +1,4 @@
-"""Whether a human driver has to give way, and can: the traffic rules that everybody knows (Section III-C.3)."""
+"""Whether a human driver has to give way, and can: the traffic rules that all drivers know (Section III-C.3)."""
 
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.scene_description import TrackedVehicle
@@ -22,9 +22,9 @@ def gives_way(c: Conflict, human: TrackedVehicle, road_map: RoadMap) -> str:
 
     A driver who stands does, and one who can still stop before a zone that the CAV is in. So does one who can still
     stop comfortably before the junction, or is seen to brake for it, if it has the lower lane priority or finds the
-    CAV in the junction already. Nobody else is relied on.
+    CAV in the junction already. No other driver is relied on.
 
-    On unregulated roads, too, whoever has to leave a lane that ends gives way to those on the lane beside.
+    On unregulated roads, too, a driver who has to leave a lane that ends gives way to those on the lane beside.
 
     Returns:
         The reason in words; empty if it is not expected to give way.

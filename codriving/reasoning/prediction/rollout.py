@@ -120,7 +120,7 @@ def travelled(
     shape = (len(speeds),) if paired else (len(speeds), len(plans))
     v, goals, excess = np.empty(shape), np.empty((decisions + 1, *shape)), np.empty((decisions, *shape))
     v.T[...], goals[-1].T[...] = speeds, targets
-    # Nobody steps beyond the highest or lowest target; where the target stays it is copied from the decision before.
+    # No plan steps beyond the highest or lowest target; where the target stays it is copied from the decision before.
     least, most, stays = np.maximum(changes, 0), law.top + np.minimum(changes, 0), changes == 0
     for k in range(decisions):
         goal, over = goals[k], excess[k]

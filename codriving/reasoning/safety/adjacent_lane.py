@@ -3,9 +3,8 @@
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.reasoning.prediction.expectation import is_behind
-from codriving.reasoning.safety.beside import SIDES, beside
 from codriving.reasoning.safety.conflict_lane import check_conflicts
-from codriving.reasoning.safety.outlook import Outlook
+from codriving.reasoning.safety.safety_input import SIDES, SafetyInput
 from codriving.reasoning.safety.same_lane import check_ahead
 
 MARGIN = 2.0
@@ -24,18 +23,18 @@ HELD_UP = -0.3
 """Below this acceleration a human driver is held up and may want to change lanes [m/s2]."""
 
 
-def check_adjacent(outlook: Outlook) -> dict[Action, list[str]]:
+def check_adjacent(given: SafetyInput) -> dict[Action, list[str]]:
     """Remove lane changes after which the CAV could not stop behind who is ahead there, or cuts in on who is behind.
 
     Returns:
         Reasons by action; no entry where the action is safe.
     """
     found: dict[Action, list[str]] = {}
-    must = outlook.scene.must_change is not None
-    for action in outlook.actions:
+    must = given.scene.must_change is not None
+    for action in given.actions:
         if action not in SIDES:
             continue
-        there = beside(outlook, action)
+        there = given.beside(action)
         if there is None:
             found[action] = ["adjacent lane: it does not lead where the CAV goes"]
             continue
@@ -49,7 +48,7 @@ def check_adjacent(outlook: Outlook) -> dict[Action, list[str]]:
     return found
 
 
-def _cuts_in(there: Outlook, n: TrackedVehicle) -> str:
+def _cuts_in(there: SafetyInput, n: TrackedVehicle) -> str:
     """Say that a vehicle behind on the new lane could not brake in time, if it could not."""
     ego = there.scene.ego
     for route, place in n.routes:
@@ -63,13 +62,13 @@ def _cuts_in(there: Outlook, n: TrackedVehicle) -> str:
     return ""
 
 
-def _alongside(there: Outlook, n: TrackedVehicle, route: str, place: float) -> bool:
+def _alongside(there: SafetyInput, n: TrackedVehicle, route: str, place: float) -> bool:
     return (
         route == there.scene.intent.route and abs(place - there.scene.place) < (n.length + there.scene.ego.length) / 2
     )
 
 
-def _meets(there: Outlook, n: TrackedVehicle, action: Action, must: bool) -> str:
+def _meets(there: SafetyInput, n: TrackedVehicle, action: Action, must: bool) -> str:
     """Say that a vehicle two lanes away might change onto the same lane, if it is near and does not have to wait."""
     scene = there.scene
     far = there.road_map.changes.routes_beside(scene.intent.route, scene.intent.target_lane)

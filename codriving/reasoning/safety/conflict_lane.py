@@ -12,7 +12,7 @@ from codriving.geometry.box import TRUE, Footprint
 from codriving.geometry.zone import ConflictZone
 from codriving.reasoning.prediction.clearance import first_overlap, reacts, stays_ahead, stays_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
-from codriving.reasoning.safety.outlook import Outlook
+from codriving.reasoning.safety.safety_input import SafetyInput
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -30,75 +30,75 @@ AHEAD_LAG = 0.4
 """Time between the CAV's leaving and the earliest moment at which the other vehicle can be there [s]."""
 
 
-def check_conflicts(outlook: Outlook) -> dict[Action, list[str]]:
+def check_conflicts(given: SafetyInput) -> dict[Action, list[str]]:
     """Remove actions after which the CAV could neither stop before a zone that is not its turn, nor pass it in time.
 
     Returns:
         Reasons by action; no entry where the action is safe.
     """
     found: dict[Action, list[str]] = {}
-    conflicts = [c for c in outlook.conflicts if not changes_before(outlook, c)]
+    conflicts = [c for c in given.conflicts if not changes_before(given, c)]
     passes = []
     for c in conflicts:
-        goes, stops = passes_and_stops(outlook, c)
+        goes, stops = passes_and_stops(given, c)
         passes.append(goes)
-        for action, fine in zip(outlook.actions, goes | stops, strict=True):
+        for action, fine in zip(given.actions, goes | stops, strict=True):
             if not fine:
                 add(found, action, f"{action} intensifies the {c.relation} conflict with {c.other} ({c.severity})")
     # A CAV that waits for this one is only delayed; a human driver in between may never get out of a gridlock. Where
-    # ways merge nobody is caught in between.
-    for c in (c for c in conflicts if c.relation is Relation.CROSSING and not outlook.others[c.other].is_cav):
-        zone = outlook.road_map.zones(*c.routes)[c.zone]
-        ends = (outlook.stops[:, -1] + PAD).tolist()
-        inside = [outlook.scene.place < zone.entry_i < end < zone.exit_i for end in ends]
-        if not any(inside) or leaves_in_time(outlook, c, zone):
+    # ways merge no vehicle is caught in between.
+    for c in (c for c in conflicts if c.relation is Relation.CROSSING and not given.vehicles[c.other].is_cav):
+        zone = given.road_map.zones(*c.routes)[c.zone]
+        ends = (given.stops[:, -1] + PAD).tolist()
+        inside = [given.scene.place < zone.entry_i < end < zone.exit_i for end in ends]
+        if not any(inside) or leaves_in_time(given, c, zone):
             continue
-        through = gets_through(outlook, conflicts, passes)
-        for k, action in enumerate(outlook.actions):
+        through = gets_through(given, conflicts, passes)
+        for k, action in enumerate(given.actions):
             if inside[k] and not through[k]:
                 add(found, action, f"after {action} the CAV might have to stop in the way of {c.other}")
     return found
 
 
-def gets_through(outlook: Outlook, conflicts: Sequence[Conflict], passes: Sequence[Flags]) -> Flags:
+def gets_through(given: SafetyInput, conflicts: Sequence[Conflict], passes: Sequence[Flags]) -> Flags:
     """Whether the CAV can pass, or comes behind a vehicle that moves as expected, in each of its conflicts.
 
     Returns:
         One flag an action (actions,).
     """
-    through: Flags = np.ones(len(outlook.actions), dtype=np.bool_)
+    through: Flags = np.ones(len(given.actions), dtype=np.bool_)
     for c, goes in zip(conflicts, passes, strict=True):
         if not goes.all():
-            through &= goes | expected_to_pass(outlook, c)
+            through &= goes | expected_to_pass(given, c)
     return through
 
 
-def changes_before(outlook: Outlook, c: Conflict) -> bool:
+def changes_before(given: SafetyInput, c: Conflict) -> bool:
     """Whether one of two CAVs comes to a zone only by a lane change not yet begun, which its second layer guards."""
-    for k, is_cav in enumerate((True, outlook.others[c.other].is_cav)):
-        change = outlook.road_map.changes.ahead(c.routes[k], c.places[k]) if is_cav else None
+    for k, is_cav in enumerate((True, given.vehicles[c.other].is_cav)):
+        change = given.road_map.changes.ahead(c.routes[k], c.places[k]) if is_cav else None
         if change is not None and c.places[k] + c.exits[k] > change[1]:
             return True
     return False
 
 
-def expected_to_pass(outlook: Outlook, c: Conflict) -> Flags:
+def expected_to_pass(given: SafetyInput, c: Conflict) -> Flags:
     """Whether the CAV comes behind the other vehicle if that one moves as expected.
 
     Returns:
         One flag an action (actions,).
     """
-    zone = outlook.road_map.zones(*c.routes)[c.zone]
-    for motion in outlook.expected[c.other]:
+    zone = given.road_map.zones(*c.routes)[c.zone]
+    for motion in given.expected[c.other]:
         if motion.route == c.routes[1]:
-            return stays_behind(zone, outlook.goes, motion.places, 0, PAD)
-    return np.zeros(len(outlook.actions), dtype=np.bool_)
+            return stays_behind(zone, given.goes, motion.places, 0, PAD)
+    return np.zeros(len(given.actions), dtype=np.bool_)
 
 
-def leaves_in_time(outlook: Outlook, c: Conflict, zone: ConflictZone) -> bool:
+def leaves_in_time(given: SafetyInput, c: Conflict, zone: ConflictZone) -> bool:
     """Whether the CAV, as it is expected to move, will be out of a zone before a human driver can be there."""
-    own = outlook.expected[c.ego][0]
-    most = c.places[1] + outlook.forecast.reach(outlook.others[c.other].speed, False).most
+    own = given.expected[c.ego][0]
+    most = c.places[1] + given.forecast.reach(given.vehicles[c.other].speed, False).most
     return bool(stays_ahead(zone, own.places[None], most, 0, 0.0)[0])
 
 
@@ -109,7 +109,7 @@ def add(found: dict[Action, list[str]], action: Action, reason: str) -> None:
         reasons.append(f"conflict lane: {reason}")
 
 
-def passes_and_stops(outlook: Outlook, c: Conflict) -> tuple[Flags, Flags]:
+def passes_and_stops(given: SafetyInput, c: Conflict) -> tuple[Flags, Flags]:
     """Judge every action in one conflict: can the CAV then pass, and can it then stop?
 
     It can pass if it comes behind whatever the other one does at the least, or ahead of the earliest moment at which
@@ -119,30 +119,30 @@ def passes_and_stops(outlook: Outlook, c: Conflict) -> tuple[Flags, Flags]:
     Returns:
         Whether it can pass and whether it can stop, one flag an action each (actions,).
     """
-    zone, other = outlook.road_map.zones(*c.routes)[c.zone], outlook.others[c.other]
-    reach, place = outlook.forecast.reach(other.speed, other.is_cav), c.places[1]
-    relied_on = _goes_on(outlook, other)
+    zone, other = given.road_map.zones(*c.routes)[c.zone], given.vehicles[c.other]
+    reach, place = given.forecast.reach(other.speed, other.is_cav), c.places[1]
+    relied_on = _goes_on(given, other)
     least = place + (reach.steady if relied_on else reach.least)
     # A bound on what the other one can do is a margin in itself; an expectation needs one.
-    lag = outlook.lag if relied_on else round(BOUND_LAG / outlook.forecast.sample)
+    lag = given.lag if relied_on else round(BOUND_LAG / given.forecast.sample)
     # Both in one go: nearly all of the time goes into calls, not into numbers.
-    motions = np.concatenate((outlook.goes, outlook.stops))
+    motions = np.concatenate((given.goes, given.stops))
     fine = stays_behind(zone, motions, least, lag, PAD)
-    goes_first = outlook.order.first_of(c.ego, c.other) == c.ego
-    if goes_first and (other.is_cav or gives_way(c, other, outlook.road_map)):
-        fine |= keeps_clear(outlook, c, motions, place + reach.least)
-    goes, stops = fine[: len(outlook.goes)], fine[len(outlook.goes) :]
-    if (goes_first or not (outlook.order.binding and other.is_cav)) and c.distances[1] > 0:
-        ahead = round(AHEAD_LAG / outlook.forecast.sample)
+    goes_first = given.order.first_of(c.ego, c.other) == c.ego
+    if goes_first and (other.is_cav or gives_way(c, other, given.road_map)):
+        fine |= keeps_clear(given, c, motions, place + reach.least)
+    goes, stops = fine[: len(given.goes)], fine[len(given.goes) :]
+    if (goes_first or not (given.order.binding and other.is_cav)) and c.distances[1] > 0:
+        ahead = round(AHEAD_LAG / given.forecast.sample)
         late = np.flatnonzero(~goes)
         if len(late):
-            most, after = place + reach.most, outlook.goes[late]
-            reacting = np.array([reacts(zone, motion, most, outlook.forecast.sample) for motion in after])
+            most, after = place + reach.most, given.goes[late]
+            reacting = np.array([reacts(zone, motion, most, given.forecast.sample) for motion in after])
             goes[late] = stays_ahead(zone, after, reacting, ahead, PAD)
     return goes, stops
 
 
-def keeps_clear(outlook: Outlook, c: Conflict, motions: Array, other: Array) -> Flags:
+def keeps_clear(given: SafetyInput, c: Conflict, motions: Array, other: Array) -> Flags:
     """Whether the CAV and another vehicle that gives way would not touch, the bodies a little larger than they are.
 
     Args:
@@ -153,7 +153,7 @@ def keeps_clear(outlook: Outlook, c: Conflict, motions: Array, other: Array) -> 
         One flag a motion (motions,).
     """
     for footprint in (BODY, TRUE):
-        zones = outlook.road_map.zones(*c.routes, footprint)
+        zones = given.road_map.zones(*c.routes, footprint)
         overlaps = [first_overlap(z, motions, other) for z in zones]
         if not any(steps[0] == 0 for steps in overlaps):
             clear: Flags = np.ones(len(motions), dtype=np.bool_)
@@ -163,7 +163,7 @@ def keeps_clear(outlook: Outlook, c: Conflict, motions: Array, other: Array) -> 
     return np.zeros(len(motions), dtype=np.bool_)
 
 
-def _goes_on(outlook: Outlook, other: TrackedVehicle) -> bool:
-    """Whether a CAV can be relied on to go on: it waits for nobody and has said that it wants to keep its speed."""
-    expected = outlook.expected.get(other.id, ())
+def _goes_on(given: SafetyInput, other: TrackedVehicle) -> bool:
+    """Whether a CAV can be relied on to go on: it waits for no vehicle and has said that it wants to keep its speed."""
+    expected = given.expected.get(other.id, ())
     return other.is_cav and bool(expected) and expected[0].free and other.target >= other.speed - 0.5

@@ -7,7 +7,7 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import Role, TrackedVehicle
 from codriving.reasoning.prediction.clearance import stays_behind
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind
-from codriving.reasoning.safety.outlook import Outlook
+from codriving.reasoning.safety.safety_input import SafetyInput
 
 Array = NDArray[np.float64]
 
@@ -24,46 +24,46 @@ REACTION = 0.5
 """Time after which the rearing vehicle begins to brake [s]."""
 
 
-def check_ahead(outlook: Outlook) -> dict[Action, list[str]]:
-    """Remove actions after which the CAV could not stop behind whoever is ahead, if that one brakes hard.
+def check_ahead(given: SafetyInput) -> dict[Action, list[str]]:
+    """Remove actions after which the CAV could not stop behind the vehicle ahead if it brakes hard.
 
     Returns:
         Reasons by action; no entry where the action is safe.
     """
     found: dict[Action, list[str]] = {}
-    travelled = outlook.stops - outlook.scene.place
+    travelled = given.stops - given.scene.place
     # While it changes lanes, the CAV is on two of them.
-    short = round(CLEARS / outlook.forecast.sample) + 1
+    short = round(CLEARS / given.forecast.sample) + 1
     ways = [
-        (own, place, short if k else outlook.forecast.steps + 1)
-        for k, (own, place) in enumerate(outlook.others[outlook.scene.ego.id].routes)
+        (own, place, short if k else given.forecast.steps + 1)
+        for k, (own, place) in enumerate(given.vehicles[given.scene.ego.id].routes)
     ]
-    for n in outlook.scene.neighbours:
-        there = outlook.others[n.id]
+    for n in given.scene.neighbours:
+        there = given.vehicles[n.id]
         ahead = [
             (zone, place, other, until)
             for own, place, until in ways
             for route, other in there.routes
-            for zone in outlook.road_map.zones(own, route)
+            for zone in given.road_map.zones(own, route)
             if is_behind(zone, place, other)
         ]
         gap = n.gap if n.role is Role.LEADING else None
         if not ahead and gap is None:
             continue
-        least = outlook.forecast.reach(n.speed, there.is_cav).least
-        keeps = np.ones(len(outlook.actions), dtype=np.bool_)
+        least = given.forecast.reach(n.speed, there.is_cav).least
+        keeps = np.ones(len(given.actions), dtype=np.bool_)
         if gap is not None:
             keeps &= (gap + least - travelled >= min(STANDSTILL_GAP, gap)).all(axis=1)
         for zone, place, other, until in ahead:
             keeps &= stays_behind(zone, place + travelled[:, :until], other + least[:until], 0, 0.0)
-        for action, safe in zip(outlook.actions, keeps, strict=True):
+        for action, safe in zip(given.actions, keeps, strict=True):
             if not safe:
                 found.setdefault(action, []).append(
                     f"same lane: {action} leaves too little room to stop behind {n.id} at {n.speed:.1f} m/s"
                 )
-    change = outlook.scene.must_change
+    change = given.scene.must_change
     if change is not None:
-        for action, reached in zip(outlook.actions, travelled[:, -1], strict=True):
+        for action, reached in zip(given.actions, travelled[:, -1], strict=True):
             if reached > change.room - LANE_END_GAP:
                 found.setdefault(action, []).append(
                     f"same lane: after {action} the CAV could not stop before its lane ends, {change.room:.0f} m ahead"
@@ -71,24 +71,24 @@ def check_ahead(outlook: Outlook) -> dict[Action, list[str]]:
     return found
 
 
-def check_behind(outlook: Outlook) -> dict[Action, list[str]]:
+def check_behind(given: SafetyInput) -> dict[Action, list[str]]:
     """Remove actions that force the rearing vehicle to brake abruptly.
 
     Returns:
         Reasons by action; no entry where the action is safe.
     """
-    behind = next((n for n in outlook.scene.neighbours if n.role is Role.REARING), None)
+    behind = next((n for n in given.scene.neighbours if n.role is Role.REARING), None)
     if behind is None or behind.gap is None:
         return {}
     found: dict[Action, list[str]] = {}
-    for action, goes in zip(outlook.actions, outlook.goes, strict=True):
-        braking = forced_braking(outlook, behind, goes)
+    for action, goes in zip(given.actions, given.goes, strict=True):
+        braking = forced_braking(given, behind, goes)
         if braking > ABRUPT:
             found[action] = [f"same lane: {action} would force {behind.id} behind to brake at {braking:.1f} m/s2"]
     return found
 
 
-def forced_braking(outlook: Outlook, behind: TrackedVehicle, goes: Array) -> float:
+def forced_braking(given: SafetyInput, behind: TrackedVehicle, goes: Array) -> float:
     """Return how hard the rearing vehicle would have to brake to come down to the CAV's speed.
 
     Args:
@@ -97,9 +97,9 @@ def forced_braking(outlook: Outlook, behind: TrackedVehicle, goes: Array) -> flo
     Returns:
         Braking [m/s2]; inf if there is no room left.
     """
-    after = outlook.forecast.model.decision_interval
-    done = max(1, int(np.searchsorted(outlook.forecast.times, after + 1e-9)) - 1)
-    speed = float(goes[done] - goes[done - 1]) / outlook.forecast.sample
+    after = given.forecast.model.decision_interval
+    done = max(1, int(np.searchsorted(given.forecast.times, after + 1e-9)) - 1)
+    speed = float(goes[done] - goes[done - 1]) / given.forecast.sample
     closing = behind.speed - speed
     if closing <= 0 or behind.gap is None:
         return 0.0

@@ -10,7 +10,7 @@ from codriving.datatypes.scene_description import LaneChange, Role, SceneDescrip
 from codriving.datatypes.vehicle import Intent, Kind, VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.sharing.state_sharing import Views
+from codriving.reasoning.sharing.sharing import Detections
 from codriving.reasoning.sharing.tracking import Tracking
 
 SAME_LANE = 2.0
@@ -25,7 +25,7 @@ NO_ROLE: tuple[Role, float | None] = (Role.OTHER, None)
 
 
 def describe_scenes(
-    world: WorldState, views: Views, intents: Mapping[str, Intent], tracking: Tracking
+    world: WorldState, detections: Detections, intents: Mapping[str, Intent], tracking: Tracking
 ) -> dict[str, SceneDescription]:
     """Describe the surroundings of every CAV; who is in conflict with whom is filled in later.
 
@@ -36,7 +36,7 @@ def describe_scenes(
     road_map = tracking.road_map
     scenes = {}
     for ego in world.cavs:
-        intent, seen = world.intents[ego.id], views[ego.id]
+        intent, seen = world.intents[ego.id], detections[ego.id]
         road_map.project_all(intent.route, [(ego.x, ego.y), *((other.x, other.y) for other in seen)])
         place, _ = road_map.project(intent.route, ego.x, ego.y)
         change = road_map.changes.ahead(intent.route, place)
@@ -65,13 +65,13 @@ def with_roles(
     Args:
         place: Its arc length there [m].
     """
-    everybody = tuple(neighbours)
-    road_map.project_all(route, [(n.x, n.y) for n in everybody])
-    roles = _roles(everybody, ego, route, place, road_map)
-    wanted = [roles.get(n.id, NO_ROLE) for n in everybody]
+    others = tuple(neighbours)
+    road_map.project_all(route, [(n.x, n.y) for n in others])
+    roles = _roles(others, ego, route, place, road_map)
+    wanted = [roles.get(n.id, NO_ROLE) for n in others]
     return tuple(
         n if (n.role, n.gap) == (role, gap) else replace(n, role=role, gap=gap)
-        for n, (role, gap) in zip(everybody, wanted, strict=True)
+        for n, (role, gap) in zip(others, wanted, strict=True)
     )
 
 
@@ -123,7 +123,7 @@ def _neighbour(
 ) -> TrackedVehicle:
     return TrackedVehicle(
         id=seen.id,
-        # Whoever shares an intent has said that it is a CAV.
+        # A vehicle that shares an intent has said that it is a CAV.
         kind=Kind.CAV if intent is not None else seen.kind,
         x=seen.x,
         y=seen.y,

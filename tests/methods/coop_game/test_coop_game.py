@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from coalitions import GAME, SAMPLE, STEPS, TOP, Scheduled, entrant, everybody, instance, payoff, problems
+from coalitions import GAME, SAMPLE, STEPS, TOP, Scheduled, everybody, instance, payoff, problems, vehicle
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from codriving.datatypes.action import Action
-from codriving.datatypes.ordering_problem import Entrant, Instance
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
 from codriving.errors import ConfigError
 from codriving.methods.coop_game.coop_game import CoopGame
 from codriving.methods.coop_game.payoff import Goal, Scale, on_one_scale
@@ -33,7 +33,7 @@ def value(problem: Instance, order: tuple[str, ...], objective: Goal = Goal.INVE
     return sum(payoff(objective).of(problem, planner.plan(order), planner).values())
 
 
-def crossing(*cars: Entrant) -> Instance:
+def crossing(*cars: ApproachingVehicle) -> Instance:
     """Vehicles that all conflict."""
     return instance(*cars, conflicts=everybody([car.id for car in cars]))
 
@@ -46,7 +46,7 @@ def first_come(problem: Instance) -> tuple[str, ...]:
 @pytest.mark.parametrize("etas", [(3.0, 3.0), (2.0, 3.5), (6.0, 1.0)])
 def test_two_gain_together_what_they_would_alone_or_more(objective: Goal, etas: tuple[float, float]) -> None:
     """Superadditivity: v({a, b}) >= v({a}) + v({b}), alone meaning first come, first served, or at the worst last."""
-    problem = crossing(entrant("a", etas[0]), entrant("b", etas[1]))
+    problem = crossing(vehicle("a", etas[0]), vehicle("b", etas[1]))
     planner = Scheduled(problem)
     together = value(problem, game(objective=objective).order(problem, planner).sequence, objective)
     payoffs = [payoff(objective).of(problem, planner.plan(order), planner) for order in permutations("ab")]
@@ -57,7 +57,7 @@ def test_two_gain_together_what_they_would_alone_or_more(objective: Goal, etas: 
 
 def test_agreeing_can_be_worth_more_than_coming_first() -> None:
     """Whoever comes a little later but is much nearer to its destination goes first."""
-    problem = crossing(entrant("a", 3.0, remaining=200.0), entrant("b", 3.1, remaining=40.0))
+    problem = crossing(vehicle("a", 3.0, remaining=200.0), vehicle("b", 3.1, remaining=40.0))
     ordering = game().order(problem, Scheduled(problem))
     assert first_come(problem) == ("a", "b")
     assert ordering.sequence == ("b", "a")
@@ -68,12 +68,12 @@ def test_turning_yields_to_straight_where_drivers_would_be_indifferent() -> None
     """At d_turn = 1.44 d_gs - 25.4 both count as equally far; straight gains more from going first."""
     straight = 90.0
     cars = (
-        entrant("a", 4.0, turning=True, remaining=1.44 * straight - 25.4),
-        entrant("b", 4.0, remaining=straight),
+        vehicle("a", 4.0, turning=True, remaining=1.44 * straight - 25.4),
+        vehicle("b", 4.0, remaining=straight),
     )
     assert game().order(crossing(*cars), Scheduled(crossing(*cars))).sequence == ("b", "a")
     # Without a common scale the shorter way would win, whoever turns.
-    cars = (entrant("a", 4.0, turning=True, remaining=90.0), entrant("b", 4.0, remaining=90.5))
+    cars = (vehicle("a", 4.0, turning=True, remaining=90.0), vehicle("b", 4.0, remaining=90.5))
     problem = crossing(*cars)
     assert game(scale="none").order(problem, Scheduled(problem)).sequence == ("a", "b")
     assert game().order(problem, Scheduled(problem)).sequence == ("b", "a")
@@ -94,17 +94,17 @@ def test_distances_count_as_one_metre_at_least() -> None:
 
 @pytest.mark.parametrize("turning", [False, True])
 def test_distances_are_as_they_are_where_all_turn_or_none(turning: bool) -> None:
-    problem = crossing(entrant("a", 3, turning=turning), entrant("b", 4, turning=turning))
+    problem = crossing(vehicle("a", 3, turning=turning), vehicle("b", 4, turning=turning))
     planner = Scheduled(problem)
     plan = planner.plan(("a", "b"))
     assert payoff().of(problem, plan, planner) == payoff(scale=Scale.NONE).of(problem, plan, planner)
-    mixed = crossing(entrant("a", 3, turning=True), entrant("b", 4))
+    mixed = crossing(vehicle("a", 3, turning=True), vehicle("b", 4))
     assert payoff().of(mixed, plan, planner)["a"] != payoff(scale=Scale.NONE).of(mixed, plan, planner)["a"]
     assert payoff().of(mixed, plan, planner)["b"] == payoff(scale=Scale.NONE).of(mixed, plan, planner)["b"]
 
 
 def test_inverse_distance_is_that_of_the_mean() -> None:
-    problem = instance(entrant("a", 0.0, remaining=54.0))
+    problem = instance(vehicle("a", 0.0, remaining=54.0))
     travel = np.arange(STEPS + 1) * SAMPLE * TOP
     plan = JointPlan(True, {"a": travel}, SAMPLE)
     left = np.maximum(54.0 - travel, 0.0).mean()
@@ -128,7 +128,7 @@ class Gap:
 
 @pytest.mark.parametrize(("gap", "risk"), [(inf, 0.0), (1.5, exp(-1)), (0.0, 1.0), (-2.0, 1.0)])
 def test_utility_weighs_way_acceleration_and_risk(gap: float, risk: float) -> None:
-    problem = crossing(entrant("a", 1.0, remaining=100.0), entrant("b", 1.0, remaining=100.0))
+    problem = crossing(vehicle("a", 1.0, remaining=100.0), vehicle("b", 1.0, remaining=100.0))
     times = np.arange(STEPS + 1) * SAMPLE
     plan = JointPlan(True, {"a": times**2 / 2, "b": times}, SAMPLE)
     found = payoff(Goal.UTILITY).of(problem, plan, Gap(gap))
@@ -138,7 +138,7 @@ def test_utility_weighs_way_acceleration_and_risk(gap: float, risk: float) -> No
 
 
 def test_four_streams_that_all_conflict_get_four_levels() -> None:
-    problem = crossing(*(entrant(name, 3.0) for name in "abcd"))
+    problem = crossing(*(vehicle(name, 3.0) for name in "abcd"))
     planner = Scheduled(problem)
     ordering = game().order(problem, planner)
     assert sorted(planner.asked) == sorted(permutations("abcd"))
@@ -148,7 +148,7 @@ def test_four_streams_that_all_conflict_get_four_levels() -> None:
 
 
 def test_with_levels_bounded_two_share_one_and_go_as_they_came() -> None:
-    problem = crossing(*(entrant(name, 3.0 + k) for k, name in enumerate("abcd")))
+    problem = crossing(*(vehicle(name, 3.0 + k) for k, name in enumerate("abcd")))
     planner = Scheduled(problem)
     ordering = game(levels=2).order(problem, planner)
     assert ordering.counts["orders"] == len(planner.asked) < 24
@@ -158,14 +158,14 @@ def test_with_levels_bounded_two_share_one_and_go_as_they_came() -> None:
 
 
 def test_streams_without_conflict_are_not_enumerated() -> None:
-    problem = instance(*(entrant(n, 3.0) for n in "abcd"), conflicts=[("a", "b"), ("c", "d")])
+    problem = instance(*(vehicle(n, 3.0) for n in "abcd"), conflicts=[("a", "b"), ("c", "d")])
     planner = Scheduled(problem)
     game().order(problem, planner)
     assert len(planner.asked) == 4
 
 
 def test_nothing_is_asked_if_there_is_nothing_to_agree_on() -> None:
-    problem = instance(entrant("a", 4), entrant("b", 2), entrant("c", 3), before=[("a", "c")])
+    problem = instance(vehicle("a", 4), vehicle("b", 2), vehicle("c", 3), before=[("a", "c")])
     planner = Scheduled(problem)
     ordering = game().order(problem, planner)
     assert ordering.sequence == ("b", "a", "c")
@@ -198,7 +198,7 @@ def test_never_worse_than_first_come_and_within_the_limit(
 ) -> None:
     planner = Scheduled(problem)
     ordering = game(objective=objective, levels=levels, evaluations=evaluations).order(problem, planner)
-    assert sorted(ordering.sequence) == sorted(problem.entrants)
+    assert sorted(ordering.sequence) == sorted(problem.vehicles)
     assert list(ordering.times) == list(ordering.sequence)
     assert all(ordering.sequence.index(a) < ordering.sequence.index(b) for a, b in problem.before)
     assert all(ordering.sequence.index(a) < ordering.sequence.index(b) for a, b in ordering.reasons)
@@ -210,10 +210,10 @@ def test_never_worse_than_first_come_and_within_the_limit(
 @given(problems(most=4))
 def test_enumeration_finds_the_best_order_of_single_vehicles(problem: Instance) -> None:
     """With one vehicle a stream, levels are orders: the game is exact."""
-    for one in problem.entrants.values():
+    for one in problem.vehicles.values():
         one.stream = one.id
     ordering = game().order(problem, Scheduled(problem))
-    orders = {tuple(repaired(problem, ranking)) for ranking in permutations(sorted(problem.entrants))}
+    orders = {tuple(repaired(problem, ranking)) for ranking in permutations(sorted(problem.vehicles))}
     assert value(problem, ordering.sequence) == pytest.approx(max(value(problem, order) for order in orders))
 
 
@@ -233,13 +233,13 @@ def test_climbing_gets_far_with_few_orders() -> None:
     ratios = []
     for seed in range(4):
         rng = np.random.default_rng(seed)
-        problem = crossing(*(entrant(f"v{k}", e, remaining=r) for k, (e, r) in enumerate(rng.uniform(3, 90, (6, 2)))))
-        for one in problem.entrants.values():
+        problem = crossing(*(vehicle(f"v{k}", e, remaining=r) for k, (e, r) in enumerate(rng.uniform(3, 90, (6, 2)))))
+        for one in problem.vehicles.values():
             one.eta = one.eta % 6
             one.distance = one.eta * TOP
             one.remaining += one.distance
         ordering = game().order(problem, Scheduled(problem))
-        best = max(value(problem, order) for order in permutations(sorted(problem.entrants)))
+        best = max(value(problem, order) for order in permutations(sorted(problem.vehicles)))
         start = value(problem, first_come(problem))
         assert ordering.counts["enumerated"] == 0
         assert ordering.counts["orders"] <= 60
@@ -251,7 +251,7 @@ def test_climbing_gets_far_with_few_orders() -> None:
 def test_order_stays_unless_another_one_is_worth_enough_more(hysteresis: float, kept: int) -> None:
     rule = game(hysteresis=hysteresis)
     for remaining in (80.0, 76.0):
-        problem = crossing(entrant("a", 3.0, remaining=78.0), entrant("b", 3.0, remaining=remaining))
+        problem = crossing(vehicle("a", 3.0, remaining=78.0), vehicle("b", 3.0, remaining=remaining))
         ordering = rule.order(problem, Scheduled(problem))
     assert ordering.counts["kept"] == kept
     assert ordering.sequence == (("a", "b") if kept else ("b", "a"))
@@ -259,13 +259,13 @@ def test_order_stays_unless_another_one_is_worth_enough_more(hysteresis: float, 
 
 def test_order_that_cannot_be_kept_any_more_is_given_up() -> None:
     rule = game(hysteresis=10.0)
-    problem = crossing(entrant("a", 3.0, remaining=78.0), entrant("b", 3.0, remaining=80.0))
+    problem = crossing(vehicle("a", 3.0, remaining=78.0), vehicle("b", 3.0, remaining=80.0))
     assert rule.order(problem, Scheduled(problem)).sequence == ("a", "b")
     assert rule.order(problem, Scheduled(problem, lambda order: order[0] == "b")).sequence == ("b", "a")
 
 
 def test_whoever_would_lose_is_counted_and_can_refuse() -> None:
-    problem = crossing(entrant("a", 3.0, remaining=200.0), entrant("b", 3.1, remaining=40.0))
+    problem = crossing(vehicle("a", 3.0, remaining=200.0), vehicle("b", 3.1, remaining=40.0))
     ordering = game().order(problem, Scheduled(problem))
     assert (ordering.sequence, ordering.counts["worse_off"]) == (("b", "a"), 1)
     ordering = game(rational=True).order(problem, Scheduled(problem))
@@ -275,17 +275,17 @@ def test_whoever_would_lose_is_counted_and_can_refuse() -> None:
 def test_equal_worth_goes_to_the_smaller_delay_and_then_to_the_lower_levels() -> None:
     """All are at their destination already, so that only the delay is left."""
     cars = [
-        entrant(n, eta, remaining=0.0, stream=s) for n, eta, s in (("a", 1.0, "s"), ("b", 1.5, "t"), ("c", 2.0, "s"))
+        vehicle(n, eta, remaining=0.0, stream=s) for n, eta, s in (("a", 1.0, "s"), ("b", 1.5, "t"), ("c", 2.0, "s"))
     ]
     problem = instance(*cars, conflicts=[("a", "b"), ("c", "b")], before=[("a", "c")], apart=2.0)
-    problem = Instance(0.0, problem.entrants, {**problem.separation, ("a", "c"): 0.5}, problem.before)
+    problem = Instance(0.0, problem.vehicles, {**problem.separation, ("a", "c"): 0.5}, problem.before)
     assert game().order(problem, Scheduled(problem)).sequence == ("a", "c", "b")
-    twins = crossing(entrant("a", 2.0, remaining=0.0), entrant("b", 2.0, remaining=0.0))
+    twins = crossing(vehicle("a", 2.0, remaining=0.0), vehicle("b", 2.0, remaining=0.0))
     assert game().order(twins, Scheduled(twins)).sequence == ("a", "b")
 
 
 def test_reasons_tell_what_the_group_gains() -> None:
-    problem = crossing(entrant("a", 3.0, remaining=200.0), entrant("b", 3.1, remaining=40.0))
+    problem = crossing(vehicle("a", 3.0, remaining=200.0), vehicle("b", 3.1, remaining=40.0))
     assert "on level 0" in game().order(problem, Scheduled(problem)).reasons["b", "a"]
     stuck = game().order(problem, Scheduled(problem, lambda order: False))
     assert "earlier ticket" in stuck.reasons["a", "b"]
@@ -336,7 +336,7 @@ def test_settings_out_of_range_are_refused(change: dict[str, Any], message: str)
 
 
 def test_where_nobody_can_keep_any_order_the_one_with_the_fewest_who_cannot_is_taken() -> None:
-    problem = crossing(*(entrant(name, 3.0) for name in "abc"))
+    problem = crossing(*(vehicle(name, 3.0) for name in "abc"))
 
     class Stuck(Scheduled):
         """No order works; in those that begin with c one vehicle has no plan, in all others two have none."""

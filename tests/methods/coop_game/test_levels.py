@@ -3,7 +3,7 @@
 from itertools import combinations, permutations, product
 
 import pytest
-from coalitions import entrant, everybody, instance, problems
+from coalitions import everybody, instance, problems, vehicle
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -120,7 +120,7 @@ def test_ranks_become_levels_as_far_as_there_are_some() -> None:
 
 
 def test_streams_come_as_their_first_vehicles_came() -> None:
-    cars = [entrant("a", 4, stream="south"), entrant("b", 1, stream="west"), entrant("c", 2, stream="south")]
+    cars = [vehicle("a", 4, stream="south"), vehicle("b", 1, stream="west"), vehicle("c", 2, stream="south")]
     streams = find_streams(instance(*cars, conflicts=[("a", "b")], before=[("c", "a")]), ["b", "c", "a"])
     assert streams.names == ("west", "south")
     assert streams.members == {"west": ("b",), "south": ("c", "a")}
@@ -128,14 +128,14 @@ def test_streams_come_as_their_first_vehicles_came() -> None:
 
 
 def test_whoever_has_no_stream_is_one_of_its_own() -> None:
-    streams = find_streams(instance(entrant("a", 1, stream=""), entrant("b", 2, stream="")), ["a", "b"])
+    streams = find_streams(instance(vehicle("a", 1, stream=""), vehicle("b", 2, stream="")), ["a", "b"])
     assert streams.names == ("a", "b")
     assert not streams.conflicts
 
 
 def test_streams_whose_order_is_fixed_do_not_conflict() -> None:
     """One lane, two movements: who drives ahead goes first, whatever the levels."""
-    cars = [entrant("a", 1), entrant("b", 2)]
+    cars = [vehicle("a", 1), vehicle("b", 2)]
     problem = instance(*cars, before=[("a", "b")])
     assert problem.conflict("a", "b")
     assert not is_free(problem, "a", "b")
@@ -143,7 +143,7 @@ def test_streams_whose_order_is_fixed_do_not_conflict() -> None:
 
 
 def test_vehicles_are_ranked_by_level_and_then_as_they_came() -> None:
-    cars = [entrant("a", 1, stream="s"), entrant("b", 2, stream="t"), entrant("c", 3, stream="s"), entrant("d", 4)]
+    cars = [vehicle("a", 1, stream="s"), vehicle("b", 2, stream="t"), vehicle("c", 3, stream="s"), vehicle("d", 4)]
     streams = find_streams(instance(*cars, conflicts=everybody("abcd")), ["a", "b", "c", "d"])
     assert streams.names == ("s", "t", "d")
     assert streams.ranked([1, 0, 1], ["a", "b", "c", "d"]) == ["b", "a", "c", "d"]
@@ -152,8 +152,8 @@ def test_vehicles_are_ranked_by_level_and_then_as_they_came() -> None:
 
 @given(problems())
 def test_everybody_is_in_one_stream(problem: Instance) -> None:
-    streams = find_streams(problem, sorted(problem.entrants))
-    assert sorted(name for members in streams.members.values() for name in members) == sorted(problem.entrants)
+    streams = find_streams(problem, sorted(problem.vehicles))
+    assert sorted(name for members in streams.members.values() for name in members) == sorted(problem.vehicles)
     for i, j in streams.conflicts:
         pairs = [(a, b) for a in streams.members[streams.names[i]] for b in streams.members[streams.names[j]]]
         assert i < j

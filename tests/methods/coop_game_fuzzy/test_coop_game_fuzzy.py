@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from coalitions import Scheduled, entrant, instance
+from coalitions import Scheduled, instance, vehicle
 from worlds import Car, Junction, car
 
 from codriving.datatypes.action import Action
@@ -181,7 +181,7 @@ def test_whoever_has_to_change_lanes_stops_before_its_lane_ends(merge: Junction)
 
 
 def test_whoever_came_first_is_shown_first() -> None:
-    problem = instance(entrant("a", 4), entrant("b", 2), conflicts=[("a", "b")])
+    problem = instance(vehicle("a", 4), vehicle("b", 2), conflicts=[("a", "b")])
     rule = Arrival(60.0)
     rule.reset(0)
     assert (rule.name, rule.variant) == ("coop_game", "")

@@ -16,7 +16,6 @@ from codriving.methods.dilu.dilu import DiLu
 from codriving.methods.dilu.reflection import RuleReflector
 from codriving.methods.dilu.told import Told, tell
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
-from codriving.methods.single_vehicle.protocol import View
 from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
@@ -30,16 +29,7 @@ def told(junction: Junction) -> Told:
     """What CAV1 is told of HDV1, who comes from the left."""
     perception = single_vehicle_perception(junction.road_map, Forecast(junction.model, CONSTANT))
     world = junction.world(car("CAV1", "south-north", 86, 8, 9), car("HDV1", "west-east", 85, 8))
-    seen = perception.perceive(world)
-    view = View(
-        seen.scenes["CAV1"],
-        seen.conflicts["CAV1"],
-        world.available["CAV1"],
-        junction.road_map,
-        perception.forecast,
-        0.0,
-    )
-    return tell(view)
+    return tell(perception.perceive(world), "CAV1")
 
 
 def diary(told: Told, actions: Sequence[Action], ego: str = "CAV1") -> Diary:

@@ -9,36 +9,28 @@ from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.methods.noncoop_game.noncoop_game import NonCooperativeGame
 from codriving.methods.pidm import ProjectedIdm
-from codriving.methods.single_vehicle.alone import Alone
-from codriving.methods.single_vehicle.protocol import Choice, Driver, View
+from codriving.methods.single_vehicle.method import Choice, Driver, SingleVehicle
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.perception import single_vehicle_perception
 
 D = TypeVar("D", bound=Driver)
 
-
-def seen(junction: Junction, *cars: Car, ego: str = "CAV1", time: float = 0.0) -> View:
-    """The view of one CAV."""
-    return views(junction, [cars], ego, time)[-1]
+Seen = tuple[Moment, str]
 
 
-def views(junction: Junction, moments: list[tuple[Car, ...]], ego: str = "CAV1", start: float = 0.0) -> list[View]:
-    """Its views one decision after another."""
+def seen(junction: Junction, *cars: Car, ego: str = "CAV1", time: float = 0.0) -> Seen:
+    """One moment, and the CAV that sees it."""
+    return seen_each(junction, [cars], ego, time)[-1]
+
+
+def seen_each(junction: Junction, moments: list[tuple[Car, ...]], ego: str = "CAV1", start: float = 0.0) -> list[Seen]:
+    """One decision after another, and the CAV that sees them."""
     perception = single_vehicle_perception(junction.road_map, junction.forecast())
-    found = []
-    for k, cars in enumerate(moments):
-        world = junction.world(*cars, time=start + k * junction.model.decision_interval, step=k)
-        told = perception.perceive(world)
-        found.append(
-            View(
-                told.scenes[ego],
-                told.conflicts[ego],
-                world.available[ego],
-                junction.road_map,
-                perception.forecast,
-                world.time,
-            )
-        )
-    return found
+    step = junction.model.decision_interval
+    return [
+        (perception.perceive(junction.world(*cars, time=start + k * step, step=k)), ego)
+        for k, cars in enumerate(moments)
+    ]
 
 
 @lru_cache
@@ -51,7 +43,7 @@ def config(name: str, *overrides: str) -> dict[str, Any]:
 def configured(name: str, kind: type[D], *overrides: str) -> D:
     """The driver of a method as it is configured, at the beginning of an episode."""
     made = build(config(name, *overrides))
-    assert isinstance(made, Alone)
+    assert isinstance(made, SingleVehicle)
     assert isinstance(made.driver, kind)
     made.driver.reset()
     return made.driver
@@ -69,4 +61,4 @@ def game(*overrides: str) -> NonCooperativeGame:
 
 def decide(driver: Driver, junction: Junction, *cars: Car, ego: str = "CAV1") -> Choice:
     """What a driver does at one moment."""
-    return driver.decide(seen(junction, *cars, ego=ego))
+    return driver.decide(*seen(junction, *cars, ego=ego))

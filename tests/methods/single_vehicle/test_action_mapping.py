@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from worlds import Junction
 
 from codriving.datatypes.action import Action
-from codriving.methods.single_vehicle.action_mapping import closest_action, mean_accelerations
+from codriving.methods.pidm import closest_action, mean_accelerations
 
 MEANS = (-1.5, 0.0, 1.5)
 

@@ -12,8 +12,8 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
-from codriving.methods.single_vehicle.alone import Alone
 from codriving.methods.single_vehicle.careful import Careful
+from codriving.methods.single_vehicle.method import SingleVehicle
 
 CONFIG = compose_training("tell_junction", (), smoke=False)["guidance"]["driver"]
 
@@ -64,7 +64,7 @@ def test_where_nothing_helps_it_puts_the_danger_off(junction: Junction) -> None:
 
 @pytest.mark.parametrize("scenario", ["intersection", "roundabout"])
 def test_it_gets_through(scenario: str, configured: Callable[..., Environment]) -> None:
-    environment, method = configured(f"scenario={scenario}"), Alone(careful())
+    environment, method = configured(f"scenario={scenario}"), SingleVehicle(careful())
     world = environment.reset(10_004)
     method.reset(environment.road_map, environment.driving_model, 10_004)
     while environment.outcome is None:

@@ -7,23 +7,21 @@ from worlds import Car, Junction, car
 from codriving.datatypes.action import Action
 from codriving.errors import ConfigError
 from codriving.methods.single_vehicle.demonstrated import CONSTANT, LIMITS
-from codriving.methods.single_vehicle.protocol import Choice, View
+from codriving.methods.single_vehicle.method import Choice
+from codriving.reasoning.moment import Moment
 from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
 
-def view(world: Junction, *cars: Car) -> View:
+def view(world: Junction, *cars: Car) -> tuple[Moment, str]:
     """What CAV1 sees."""
-    moment = world.world(*cars)
     perception = single_vehicle_perception(world.road_map, Forecast(world.model, CONSTANT))
-    seen = perception.perceive(moment)
-    available = moment.available["CAV1"]
-    return View(seen.scenes["CAV1"], seen.conflicts["CAV1"], available, world.road_map, perception.forecast, 0.0)
+    return perception.perceive(world.world(*cars)), "CAV1"
 
 
 def decide(world: Junction, *cars: Car, **change: float) -> Choice:
     """What the rule says, as it is configured but for what is named."""
-    return rule(**change).decide(view(world, *cars))
+    return rule(**change).decide(*view(world, *cars))
 
 
 def test_alone_it_accelerates(junction: Junction) -> None:

@@ -6,24 +6,18 @@ from hypothesis import strategies as st
 from seeing import seen
 from worlds import Car, Junction, car
 
-from codriving.methods.single_vehicle.encounters import Encounter, encounters
-from codriving.methods.single_vehicle.expected_first import goes_first
-from codriving.methods.single_vehicle.protocol import View
+from codriving.methods.single_vehicle.encounters import Encounter, encounters, goes_first
 
 LEGS = ("south", "west", "north", "east")
 ROUTES = tuple(f"{a}-{b}" for a in LEGS for b in LEGS if a != b)
 FIRM, TIE = 2.0, 0.3
 
 
-def met(view: View) -> tuple[Encounter, ...]:
-    return encounters(view, float(view.forecast.reach(view.scene.ego.speed, True).least[-1]), FIRM)
-
-
 def first(junction: Junction, one: Car, other: Car) -> dict[str, tuple[bool, str]]:
     """Whether each goes first, on the ways that both really take."""
     found = {}
     for me, you in ((one, other), (other, one)):
-        for e in met(seen(junction, one, other, ego=me.id)):
+        for e in encounters(*seen(junction, one, other, ego=me.id), FIRM):
             if _real(e, me, you):
                 found[me.id] = goes_first(e, junction.road_map, TIE)
     return found
@@ -46,7 +40,9 @@ def test_two_never_both_go_first(
     found = first(junction, *cars)
     assume(len(found) == 2)
     bound = {
-        me.id: next((e.bound, e.other_bound) for e in met(seen(junction, *cars, ego=me.id)) if _real(e, me, you))
+        me.id: next(
+            (e.bound, e.other_bound) for e in encounters(*seen(junction, *cars, ego=me.id), FIRM) if _real(e, me, you)
+        )
         for me, you in (cars, cars[::-1])
     }
     alike = bound["CAV1"] == bound["CAV2"][::-1]
@@ -87,7 +83,7 @@ def test_at_once_from_opposite_sides_names_decide(junction: Junction) -> None:
 def test_whoever_would_have_to_brake_hard_is_not_expected_to_wait(junction: Junction) -> None:
     # The CAV would be there at about the same time and comes from the right, but can still wait; HDV1 cannot.
     cars = (car("CAV1", "south-north", 99.0, 3.0), car("HDV1", "west-east", 92.0, 9.0))
-    (e,) = [e for e in met(seen(junction, *cars)) if e.conflict.routes[1] == "west-east"]
+    (e,) = [e for e in encounters(*seen(junction, *cars), FIRM) if e.conflict.routes[1] == "west-east"]
     assert (e.bound, e.other_bound) == (False, True)
     assert goes_first(e, junction.road_map, TIE) == (False, "HDV1 cannot be expected to stop")
 

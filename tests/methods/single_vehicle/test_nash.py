@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from codriving.methods.noncoop_game.nash import Array, best_answer, expected_action, pure_equilibria
+from codriving.methods.noncoop_game.payoff import Array, best_answer, expected_action, pure_equilibria
 
 CHICKEN = np.array([[-10.0, 3.0], [1.0, 0.0]])
 """To go or to wait: to go alone is best, both going is a crash."""

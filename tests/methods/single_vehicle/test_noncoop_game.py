@@ -4,33 +4,33 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from seeing import decide, game, seen
+from seeing import Seen, decide, game, seen
 from worlds import Junction, car
 
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.action import Action
 from codriving.errors import ConfigError
-from codriving.methods.noncoop_game.lane_game import CHANGE, LaneGame
-from codriving.methods.noncoop_game.nash import pure_equilibria
-from codriving.methods.noncoop_game.passing_game import ACCELERATIONS, PassingGame, passing_game
+from codriving.methods.noncoop_game.games import ACCELERATIONS, CHANGE, LaneGame, PassingGame, passing_game
+from codriving.methods.noncoop_game.payoff import pure_equilibria
 from codriving.methods.single_vehicle.encounters import Encounter
 from codriving.methods.single_vehicle.lane_choice import look
-from codriving.methods.single_vehicle.protocol import View
 
 LEGS = ("south", "west", "north", "east")
 ROUTES = tuple(f"{a}-{b}" for a in LEGS for b in LEGS if a != b)
 
 
-def partner(view: View) -> list[Encounter]:
+def partner(view: Seen) -> list[Encounter]:
     """Where the CAV meets its most critical partner."""
-    met = game().others.met(view)
+    met = game().others.met(*view)
     return [e for e in met if e.conflict.other == met[0].conflict.other]
 
 
-def played(view: View) -> PassingGame:
+def played(view: Seen) -> PassingGame:
     driver = game()
-    return passing_game(partner(view), view.scene.ego.speed, view.top, driver.hold, driver.times)
+    return passing_game(
+        partner(view), view[0].scenes[view[1]].ego.speed, view[0].forecast.model.top_speed, driver.hold, driver.times
+    )
 
 
 def test_a_partner_far_away_does_not_keep_it_from_accelerating(junction: Junction) -> None:
@@ -39,7 +39,7 @@ def test_a_partner_far_away_does_not_keep_it_from_accelerating(junction: Junctio
     assert choice.counts["games"] == 1
     assert choice.action is Action.FASTER
     driver = game()
-    acceleration, said, precedence = driver.play(seen(junction, ego, far), partner(seen(junction, ego, far)))
+    acceleration, said, precedence = driver.play(*seen(junction, ego, far), partner(seen(junction, ego, far)))
     assert (acceleration, precedence.first) == (2.0, "CAV1")
     assert said.startswith("the game with HDV1")
 
@@ -47,7 +47,7 @@ def test_a_partner_far_away_does_not_keep_it_from_accelerating(junction: Junctio
 def test_it_lets_a_partner_pass_who_is_there_first(junction: Junction) -> None:
     ego, near = car("CAV1", "south-north", 88.0, 7.0), car("HDV1", "west-east", 98.0, 7.0)
     driver, view = game(), seen(junction, ego, near)
-    acceleration, _, precedence = driver.play(view, partner(view))
+    acceleration, _, precedence = driver.play(*view, partner(view))
     assert acceleration < 0
     assert precedence.first == "HDV1"
 
@@ -57,7 +57,7 @@ def test_a_symmetric_meeting_has_two_asymmetric_equilibria(junction: Junction) -
     (e,) = [e for e in partner(view) if e.conflict.routes[1] == "west-east"]
     assert e.own_way == pytest.approx(e.its_way, abs=0.6)
     driver = game()
-    made = passing_game([e], 7.0, view.top, driver.hold, driver.times)
+    made = passing_game([e], 7.0, view[0].forecast.model.top_speed, driver.hold, driver.times)
     found = pure_equilibria(made.own(driver.own), made.other(driver.own))
     firsts = {bool(made.own_first[pair]) for pair in found}
     assert firsts == {True, False}, "one in which each goes first"
@@ -79,7 +79,7 @@ def test_payoffs_are_defined_and_the_answer_is_a_best_response(
     junction: Junction, one: tuple[str, float, float], other: tuple[str, float, float]
 ) -> None:
     view = seen(junction, car("CAV1", *one), car("CAV2", *other))
-    assume(view.conflicts)
+    assume(view[0].conflicts["CAV1"])
     driver, made = game(), played(view)
     own = made.own(driver.own)
     assert np.isfinite(own).all()
@@ -91,7 +91,7 @@ def test_payoffs_are_defined_and_the_answer_is_a_best_response(
             assert np.isfinite(its).all()
             stable = {column for _, column in pure_equilibria(own, its)}
             assert answer in (stable or {int(np.argmax(its.min(axis=0)))})
-    acceleration, _, _ = driver.play(view, partner(view))
+    acceleration, _, _ = driver.play(*view, partner(view))
     assert acceleration in ACCELERATIONS
 
 
@@ -123,14 +123,14 @@ def test_a_lane_change_before_somebody_who_would_have_to_brake_hard_is_refused(h
 
     def refused(gap: float, speed: float) -> str:
         view = seen(highway, ego, slow, car("HDV2", lanes[0], 100.0 - gap - 5.0, speed))
-        side = look(view, Action.LANE_LEFT, 8.0)
+        side = look(*view, Action.LANE_LEFT, 8.0)
         assert side is not None
         assert side.behind is not None
-        made = LaneGame(view, side, driver.others.idm, driver.hold, driver.times)
+        made = LaneGame(*view, side, driver.others.idm, driver.hold, driver.times)
         assert np.isfinite(made.own(driver.own)).all()
         assert np.isfinite(made.other(driver.own)).all()
         assert made.own(driver.own).shape == (CHANGE + 1, 2)
-        return driver.refuses(view, side, driver.others.idm)
+        return driver.refuses(*view, side, driver.others.idm)
 
     assert refused(60.0, 15.0) == ""
     assert "the game with HDV2" in refused(6.0, 25.0)

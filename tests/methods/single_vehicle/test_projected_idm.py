@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from seeing import decide, pidm, seen, views
+from seeing import decide, pidm, seen, seen_each
 from worlds import Junction, car
 
 from codriving.config.build import build
@@ -11,7 +11,7 @@ from codriving.config.compose import compose
 from codriving.datatypes.action import Action
 from codriving.errors import ConfigError
 from codriving.methods.pidm import LIMITS
-from codriving.methods.single_vehicle.starting import TURN
+from codriving.methods.single_vehicle.encounters import TURN
 
 EGO = car("CAV1", "south-north", 70.0, 6.0)
 
@@ -60,8 +60,8 @@ def test_a_projected_leader_costs_no_more_than_to_wait_before_the_zone(junction:
 def test_who_has_waited_long_enough_starts_into_an_empty_zone(junction: Junction) -> None:
     waits = (car("CAV1", "south-north", 102.0, 0.0), car("HDV1", "west-east", 107.0, 0.0))
     driver = pidm()
-    seen_each = views(junction, [waits] * 12)
-    actions = [driver.decide(view).action for view in seen_each]
+    found = seen_each(junction, [waits] * 12)
+    actions = [driver.decide(*view).action for view in found]
     patience = round(driver.patience / junction.model.decision_interval)
     assert Action.FASTER not in actions[:patience]
     assert set(actions[patience:]) == {Action.FASTER}
@@ -70,16 +70,16 @@ def test_who_has_waited_long_enough_starts_into_an_empty_zone(junction: Junction
 def test_nobody_starts_into_a_zone_in_which_somebody_stands(junction: Junction) -> None:
     stuck = (car("CAV1", "south-north", 102.0, 0.0), car("HDV1", "west-east", 112.0, 0.0))
     driver = pidm()
-    assert all(driver.decide(view).action is not Action.FASTER for view in views(junction, [stuck] * 12))
+    assert all(driver.decide(*view).action is not Action.FASTER for view in seen_each(junction, [stuck] * 12))
 
 
 def test_who_waits_forgets_it_when_an_episode_begins(junction: Junction) -> None:
     waits = (car("CAV1", "south-north", 102.0, 0.0), car("HDV1", "west-east", 107.0, 0.0))
     driver = pidm()
-    for view in views(junction, [waits] * 12):
-        driver.decide(view)
+    for view in seen_each(junction, [waits] * 12):
+        driver.decide(*view)
     driver.reset()
-    assert driver.decide(seen(junction, *waits, time=20.0)).action is not Action.FASTER
+    assert driver.decide(*seen(junction, *waits, time=20.0)).action is not Action.FASTER
 
 
 def test_the_end_of_a_lane_stands_still(merge: Junction) -> None:
@@ -87,8 +87,8 @@ def test_the_end_of_a_lane_stands_still(merge: Junction) -> None:
     last = merge.road_map.changes.ahead(route, 0.0)
     assert last is not None
     blocked = car("CAV1", route, last[2] - 12.0, 10.0)
-    view = seen(merge, blocked)
-    choice = pidm().decide(replace(view, actions=view.actions[:3]))
+    moment, ego = seen(merge, blocked)
+    choice = pidm().decide(replace(moment, available={ego: moment.available[ego][:3]}), ego)
     assert choice.action is Action.SLOWER
     assert choice.reason.startswith("the end of the lane is ahead")
 
@@ -105,7 +105,7 @@ def test_of_those_who_wait_each_starts_after_the_one_before(junction: Junction) 
     # Both have been standing for as long; CAV1 is named first, and CAV2 gives it a second to start.
     waits = (car("CAV1", "south-north", 102.0, 0.0), car("CAV2", "west-east", 106.0, 0.0))
     driver = pidm()
-    actions = [driver.decide(view).action for view in views(junction, [waits] * 16, "CAV2")]
+    actions = [driver.decide(*view).action for view in seen_each(junction, [waits] * 16, "CAV2")]
     assert actions.index(Action.FASTER) == round((driver.patience + TURN) / junction.model.decision_interval)
 
 
@@ -117,7 +117,7 @@ def test_nobody_waits_inside_another_crossing(junction: Junction) -> None:
     lines = {}
     for cars in ((ego, right), (ego, right, left)):
         view = seen(junction, *cars)
-        met = driver.met(view)
+        met = driver.met(*view)
         (e,) = [e for e in met if e.conflict.routes[1] == "east-west"]
         lines[len(cars)] = driver._line(e, met)
         zones = junction.road_map.zones("south-north", "west-east")

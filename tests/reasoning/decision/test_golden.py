@@ -17,7 +17,7 @@ TABLE = sections(Path(__file__).parent / "golden" / "decisions.md")
 def test_what_is_decided_is_what_the_table_says(section: Section, road: Callable[[str], Junction]) -> None:
     found = {}
     for value, _ in section.rows:
-        seen = setting(section.scene, value).outlook(road(section.road))
+        seen = setting(section.scene, value).safety_input(road(section.road))
         assessed = ThreeLayers().assess(seen)
         found[value] = decided(Situation(seen.scene, seen.conflicts, seen.order, (), assessed))
     assert found == dict(section.rows)

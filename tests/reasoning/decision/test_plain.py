@@ -8,7 +8,7 @@ from worlds import Car, Junction, car, order_of
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import LaneChange
 from codriving.datatypes.situation import ActionAssessment, Situation
-from codriving.reasoning.decision.plain import is_plain
+from codriving.reasoning.decision.rules import is_plain
 
 GOOD = tuple(
     ActionAssessment(action, True, (), (), gain)

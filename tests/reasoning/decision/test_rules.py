@@ -31,8 +31,8 @@ def situation(
 
 
 def assessed(thoughts: Thoughts, ego: str) -> Situation:
-    outlook = thoughts.outlook(ego)
-    return Situation(outlook.scene, outlook.conflicts, outlook.order, (), ThreeLayers().assess(outlook))
+    given = thoughts.safety_input(ego)
+    return Situation(given.scene, given.conflicts, given.order, (), ThreeLayers().assess(given))
 
 
 @given(st.fixed_dictionaries(dict.fromkeys(Action, SAFE)))

@@ -18,7 +18,6 @@ from codriving.reasoning.execution.lane_requests import COOL_DOWN, POLITENESS, T
 from codriving.reasoning.ordering.protocol import Ordering
 from codriving.reasoning.ordering.request import Request, best_subset, in_order
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
-from codriving.reasoning.safety.beside import beside
 
 LEFT, RIGHT = Action.LANE_LEFT, Action.LANE_RIGHT
 NOBODY = PassingOrder((), ())
@@ -35,7 +34,7 @@ def ask(world: Junction, *cars: Car, requests: LaneRequests | None = None, time:
 def gain(world: Junction, *cars: Car, action: Action = LEFT) -> float:
     """The incentive of CAV1."""
     thoughts = world.thoughts(*cars)
-    there = beside(thoughts.outlook("CAV1", NOBODY), action)
+    there = thoughts.safety_input("CAV1", NOBODY).beside(action)
     assert there is not None
     return incentive(thoughts.scenes["CAV1"], there.scene, moment_of(thoughts))
 
@@ -112,7 +111,7 @@ def test_every_request_passes_the_gap_test_of_all_methods_and_overlaps_are_mutua
     for r in requests:
         assert r.action in thoughts.available[r.ego]
         assert r.incentive > THRESHOLD
-        assert r.action not in check_adjacent(thoughts.outlook(r.ego, NOBODY))
+        assert r.action not in check_adjacent(thoughts.safety_input(r.ego, NOBODY))
         assert r.ego not in r.excludes
         assert all(r.ego in by_name[other].excludes for other in r.excludes)
 

@@ -29,7 +29,7 @@ def agree(
 ) -> tuple[Problem, PassingOrder, dict[str, float]]:
     problem = pose(thoughts.moment(), 0.6)
     if times is None:
-        ranking = sorted(problem.instance.entrants, key=lambda n: (problem.instance.entrants[n].eta, n))
+        ranking = sorted(problem.instance.vehicles, key=lambda n: (problem.instance.vehicles[n].eta, n))
         times = timed(problem.instance, repaired(problem.instance, ranking))
     return problem, agreement(thoughts.moment(), problem, times, why, binding), times
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from codriving.datatypes.order import PassingOrder, Precedence
-from codriving.datatypes.ordering_problem import Entrant, Instance
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
 from codriving.reasoning.ordering.coordinator import SAVES, SWAP, cost, improve
 from codriving.reasoning.ordering.schedule import start_time
 
@@ -17,12 +17,12 @@ WINDOW = st.tuples(TIMES, st.floats(0.1, 8.0)).map(lambda w: (w[0], w[0] + w[1])
 Separation = dict[tuple[str, str], float]
 
 
-def slot(name: str, eta: float, *windows: tuple[float, float]) -> Entrant:
-    return Entrant(name, 100.0, eta, windows=list(windows))
+def slot(name: str, eta: float, *windows: tuple[float, float]) -> ApproachingVehicle:
+    return ApproachingVehicle(name, 100.0, eta, windows=list(windows))
 
 
 @st.composite
-def problems(draw: st.DrawFn) -> tuple[dict[str, Entrant], Separation, set[tuple[str, str]]]:
+def problems(draw: st.DrawFn) -> tuple[dict[str, ApproachingVehicle], Separation, set[tuple[str, str]]]:
     """Some vehicles, what must lie between them, and pairs whose order is fixed, without a circle."""
     names = NAMES[: draw(st.integers(2, len(NAMES)))]
     slots = {name: slot(name, draw(TIMES), *draw(st.lists(WINDOW, max_size=2))) for name in names}
@@ -35,14 +35,16 @@ def problems(draw: st.DrawFn) -> tuple[dict[str, Entrant], Separation, set[tuple
     return slots, separation, fixed
 
 
-def schedule(order: tuple[str, ...], slots: dict[str, Entrant], separation: Separation) -> dict[str, float]:
+def schedule(order: tuple[str, ...], slots: dict[str, ApproachingVehicle], separation: Separation) -> dict[str, float]:
     times: dict[str, float] = {}
     for name in order:
         times[name] = start_time(slots[name], times, separation)
     return times
 
 
-def first(slots: dict[str, Entrant], separation: Separation, fixed: set[tuple[str, str]]) -> dict[str, float]:
+def first(
+    slots: dict[str, ApproachingVehicle], separation: Separation, fixed: set[tuple[str, str]]
+) -> dict[str, float]:
     """A schedule to begin with: whoever may go and can go first."""
     times: dict[str, float] = {}
     while len(times) < len(slots):
@@ -55,7 +57,7 @@ def first(slots: dict[str, Entrant], separation: Separation, fixed: set[tuple[st
 @settings(max_examples=150, deadline=None)
 @given(problems(), st.permutations(NAMES) | st.none())
 def test_it_keeps_fixed_pairs_and_never_costs_more(
-    problem: tuple[dict[str, Entrant], Separation, set[tuple[str, str]]], agreed: list[str] | None
+    problem: tuple[dict[str, ApproachingVehicle], Separation, set[tuple[str, str]]], agreed: list[str] | None
 ) -> None:
     slots, separation, fixed = problem
     line = [name for name in agreed or () if name in slots]
@@ -81,7 +83,7 @@ def test_it_keeps_fixed_pairs_and_never_costs_more(
         assert all(not begin < time < end for begin, end in slots[name].windows)
 
 
-def two(lead: float, saving: float) -> tuple[dict[str, Entrant], Separation]:
+def two(lead: float, saving: float) -> tuple[dict[str, ApproachingVehicle], Separation]:
     """Two vehicles, of which a comes earlier; b before a would save everybody together some time."""
     return {"a": slot("a", 5.0), "b": slot("b", 5.0 + lead)}, {("a", "b"): 2.0 + lead + saving, ("b", "a"): 2.0 - lead}
 

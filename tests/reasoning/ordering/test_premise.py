@@ -5,12 +5,12 @@ from itertools import pairwise
 
 import pytest
 
-from codriving.datatypes.ordering_problem import Entrant, Instance
+from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
 from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
 
 
 def instance(before: frozenset[tuple[str, str]] = frozenset(), **etas: float) -> Instance:
-    return Instance(0.0, {name: Entrant(name, 0.0, eta) for name, eta in etas.items()}, {}, before)
+    return Instance(0.0, {name: ApproachingVehicle(name, 0.0, eta) for name, eta in etas.items()}, {}, before)
 
 
 THEN = premise(instance(A=3.0, B=3.5, C=9.0), [("A", "B"), ("B", "C")])
@@ -50,8 +50,8 @@ def test_premise_is_about_human_drivers_and_who_can_stop() -> None:
 
 def test_human_drivers_count_only_where_they_hold_somebody_up() -> None:
     world = instance(A=3.0, B=3.5)
-    world.entrants["A"].windows.append((1.0, 4.0))
-    world.entrants["B"].windows.append((4.0, 9.0))
+    world.vehicles["A"].windows.append((1.0, 4.0))
+    world.vehicles["B"].windows.append((4.0, 9.0))
     assert premise(world, [("A", "B")]).held == {"A"}
 
 

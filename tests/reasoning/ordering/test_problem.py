@@ -40,7 +40,7 @@ def test_how_far_apart_two_must_be(routes: tuple[str, str], gap: float, junction
     problem = posed(junction, car("CAV1", routes[0], 60.0, 8.0), car("CAV2", routes[1], 62.0, 8.0), gap=gap).instance
     (zone,) = junction.road_map.zones(*routes)
     top = junction.model.target_speeds[-1]
-    r1, r2 = (problem.entrants[name].reference for name in ("CAV1", "CAV2"))
+    r1, r2 = (problem.vehicles[name].reference for name in ("CAV1", "CAV2"))
     assert (r1, r2) == (zone.entry_i, zone.entry_j)
     for pair, seen, shift in ((("CAV1", "CAV2"), zone, r2 - r1), (("CAV2", "CAV1"), zone.mirrored(), r1 - r2)):
         assert problem.separation[pair] == pytest.approx((furthest(seen) + shift) / top + gap, abs=0.5 / top)
@@ -65,32 +65,32 @@ def test_whoever_passes_that_much_later_does_not_touch_the_first(junction: Junct
 
 def test_those_without_a_conflict_are_not_ordered(junction: Junction) -> None:
     problem = posed(junction, car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "north-south", 60.0, 8.0)).instance
-    assert problem.entrants == {}
+    assert problem.vehicles == {}
     cars = car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "north-south", 60.0, 8.0)
     third = posed(junction, *cars, car("CAV3", "west-east", 60.0, 8.0)).instance
-    assert list(third.entrants) == ["CAV1", "CAV2", "CAV3"]
+    assert list(third.vehicles) == ["CAV1", "CAV2", "CAV3"]
     assert not third.conflict("CAV1", "CAV2")
 
 
 def test_one_arrives_as_early_as_it_can(junction: Junction) -> None:
     top = junction.model.target_speeds[-1]
     cars = car("CAV1", "south-north", 60.0, top), car("CAV2", "west-east", 60.0, 0.0)
-    entrants = posed(junction, *cars).instance.entrants
-    assert entrants["CAV1"].eta == pytest.approx(entrants["CAV1"].distance / top, abs=0.01)
-    assert entrants["CAV2"].eta > entrants["CAV2"].distance / top + 1.0, "it has to get going"
-    assert (entrants["CAV1"].speed, entrants["CAV2"].speed) == (top, 0.0)
-    assert entrants["CAV1"].remaining == pytest.approx(junction.road_map.routes["south-north"].goal - 60.0, abs=0.01)
-    assert entrants["CAV1"].crossing > 0
+    vehicles = posed(junction, *cars).instance.vehicles
+    assert vehicles["CAV1"].eta == pytest.approx(vehicles["CAV1"].distance / top, abs=0.01)
+    assert vehicles["CAV2"].eta > vehicles["CAV2"].distance / top + 1.0, "it has to get going"
+    assert (vehicles["CAV1"].speed, vehicles["CAV2"].speed) == (top, 0.0)
+    assert vehicles["CAV1"].remaining == pytest.approx(junction.road_map.routes["south-north"].goal - 60.0, abs=0.01)
+    assert vehicles["CAV1"].crossing > 0
 
 
 def test_past_the_reference_point_the_time_is_gone(junction: Junction) -> None:
     (zone,) = junction.road_map.zones("south-north", "west-east")
     inside = car("CAV1", "south-north", zone.entry_i + 2.0, 5.0)
-    entrants = posed(junction, inside, car("CAV2", "west-east", 80.0, 8.0)).instance.entrants
-    assert entrants["CAV1"].eta < 0
-    assert entrants["CAV1"].distance == 0
-    assert entrants["CAV1"].committed
-    assert not entrants["CAV2"].committed
+    vehicles = posed(junction, inside, car("CAV2", "west-east", 80.0, 8.0)).instance.vehicles
+    assert vehicles["CAV1"].eta < 0
+    assert vehicles["CAV1"].distance == 0
+    assert vehicles["CAV1"].committed
+    assert not vehicles["CAV2"].committed
 
 
 @pytest.mark.parametrize(("before", "committed"), [(4.0, True), (30.0, False)])
@@ -99,7 +99,7 @@ def test_who_cannot_stop_any_more_goes_first(before: float, committed: bool, jun
     problem = posed(
         junction, car("CAV1", "south-north", zone.entry_i - before, 9.0), car("CAV2", "west-east", 60.0, 9.0)
     ).instance
-    assert problem.entrants["CAV1"].committed is committed
+    assert problem.vehicles["CAV1"].committed is committed
     assert (("CAV1", "CAV2") in problem.before) is committed
     assert ("CAV2", "CAV1") not in problem.before
 
@@ -111,19 +111,19 @@ def test_whoever_drives_ahead_is_the_leader_and_goes_first(junction: Junction) -
         car("CAV2", "south-west", 75.0, 8.0),
         car("CAV3", "west-east", 40.0, 8.0),
     ).instance
-    leaders = {name: e.leader for name, e in problem.entrants.items()}
+    leaders = {name: e.leader for name, e in problem.vehicles.items()}
     assert leaders == {"CAV1": "CAV2", "CAV2": None, "CAV3": None}
     assert ("CAV2", "CAV1") in problem.before
     distance, time = FOLLOWS
     assert problem.separation["CAV2", "CAV1"] == pytest.approx(distance / junction.model.target_speeds[-1] + time)
-    assert problem.entrants["CAV1"].lane == problem.entrants["CAV2"].lane
-    assert problem.entrants["CAV1"].stream != problem.entrants["CAV2"].stream
+    assert problem.vehicles["CAV1"].lane == problem.vehicles["CAV2"].lane
+    assert problem.vehicles["CAV1"].stream != problem.vehicles["CAV2"].stream
 
 
 def test_turning_matters_where_ways_cross(junction: Junction) -> None:
     def turning(route: str, other: str) -> bool:
         problem = posed(junction, car("CAV1", route, 60.0, 8.0), car("CAV2", other, 60.0, 8.0)).instance
-        return problem.entrants["CAV1"].turning
+        return problem.vehicles["CAV1"].turning
 
     assert turning("south-west", "north-south")
     assert not turning("south-east", "west-east"), "they only merge"
@@ -134,13 +134,13 @@ def test_human_drivers_block_the_times_at_which_they_may_pass(junction: Junction
     human = car("HDV1", "west-east", 82.0, 8.0)
     problem = posed(junction, car("CAV1", "south-north", 82.0, 8.0), human)
     ((begin, end),) = problem.passages["CAV1"].values()
-    windows = problem.instance.entrants["CAV1"].windows
+    windows = problem.instance.vehicles["CAV1"].windows
     assert windows
     assert all(begin <= b < e <= end for b, e in windows)
     (zone,) = junction.road_map.zones("south-north", "west-east")
     steady = (zone.point_j - 82.0) / 8.0
     assert begin < steady < end, "when it comes at its speed, it is in the way"
-    assert "HDV1" not in problem.instance.entrants
+    assert "HDV1" not in problem.instance.vehicles
     assert problem.instance.separation == {}
 
 
@@ -151,7 +151,7 @@ def test_a_driver_who_stands_in_the_way_blocks_for_ever(junction: Junction) -> N
     for time in (0.0, 1.0):
         thoughts = junction.think(junction.world(*cars, time=time), tracking=tracking)
     problem = pose(thoughts.moment(), GAP)
-    assert (-FOREVER, FOREVER) in problem.instance.entrants["CAV1"].windows
+    assert (-FOREVER, FOREVER) in problem.instance.vehicles["CAV1"].windows
     assert problem.passages["CAV1"]["HDV1"] == (-FOREVER, FOREVER)
 
 
@@ -164,23 +164,23 @@ def test_every_moment_is_a_problem_that_can_be_solved(
     thoughts = junction.thoughts(*cars)
     problem = pose(thoughts.moment(), GAP)
     instance = problem.instance
-    assert set(instance.entrants) == {name for name, cs in thoughts.conflicts.items() if cs}
-    assert list(instance.entrants) == sorted(instance.entrants)
-    assert set(problem.passages) == set(instance.entrants)
+    assert set(instance.vehicles) == {name for name, cs in thoughts.conflicts.items() if cs}
+    assert list(instance.vehicles) == sorted(instance.vehicles)
+    assert set(problem.passages) == set(instance.vehicles)
     named = {name for pair in (*instance.separation, *instance.before) for name in pair}
-    assert named <= set(instance.entrants)
+    assert named <= set(instance.vehicles)
     for name, cs in thoughts.conflicts.items():
         for c in cs:
-            if c.other in instance.entrants:
+            if c.other in instance.vehicles:
                 assert {(name, c.other), (c.other, name)} <= set(instance.separation)
     assert all(np.isfinite(w) for w in instance.separation.values())
-    assert all(np.isfinite(e.eta) for e in instance.entrants.values())
-    order = repaired(instance, sorted(instance.entrants, key=lambda n: (instance.entrants[n].eta, n)))
-    assert sorted(order) == sorted(instance.entrants)
+    assert all(np.isfinite(e.eta) for e in instance.vehicles.values())
+    order = repaired(instance, sorted(instance.vehicles, key=lambda n: (instance.vehicles[n].eta, n)))
+    assert sorted(order) == sorted(instance.vehicles)
     circle = any((b, a) in instance.before for a, b in instance.before)
     times = schedule(instance, order)
     if times is not None:
-        assert all(times[n] >= instance.entrants[n].eta for n in order)
+        assert all(times[n] >= instance.vehicles[n].eta for n in order)
     else:
         assert circle or len(instance.before) > 2
 

@@ -116,7 +116,7 @@ def test_brute_force_then_mcts_then_the_better_of_the_rules(seed: int, n: int, w
 )
 def test_search_counts_as_the_objective_does(seed: int, n: int, share: float, weight: float) -> None:
     problem, objective = crossroads(seed, n, True), Objective(share, {"CAV0": weight})
-    order = repaired(problem, sorted(problem.entrants))
+    order = repaired(problem, sorted(problem.vehicles))
     coded = Coded(problem, objective)
     assert coded.cost(coded.run(order)) == pytest.approx(objective.value(problem, timed(problem, order)), abs=1e-9)
     assert coded.bound(coded.root()) <= coded.cost(coded.run(order)) + 1e-9

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.reasoning.prediction.forecast import BRAKE, GO, HORIZON, Forecast
-from codriving.reasoning.prediction.human import likely
+from codriving.reasoning.prediction.forecast import BRAKE, GO, HORIZON, Forecast, likely
 from codriving.reasoning.prediction.rollout import rollout
 
 MODEL = DrivingModel((0.0, 3.0, 6.0, 9.0), 1.6, 0.1, 0.5, 50.0)

@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.reasoning.prediction.human import DRIFT, HARD_ACCELERATION, HARD_BRAKING, fastest, likely, slowest
+from codriving.reasoning.prediction.forecast import (
+    DRIFT,
+    HARD_ACCELERATION,
+    HARD_BRAKING,
+    fastest,
+    likely_distances,
+    slowest,
+)
 
 TIMES = np.linspace(0.0, 12.0, 61)
 SPEEDS = st.floats(0.0, 30.0)
@@ -43,7 +50,7 @@ def test_no_way_to_drive_leaves_the_bounds(speed: float, limit: float, pedals: l
 @given(SPEEDS)
 def test_a_driver_is_likely_near_where_its_speed_leads(speed: float) -> None:
     at_once, each_second, at_most = DRIFT
-    least, most = likely(speed, TIMES)
+    least, most = likely_distances(speed, TIMES)
     steady = speed * TIMES
     assert (least <= steady + 1e-9).all()
     assert (steady <= most + 1e-9).all()
@@ -56,7 +63,7 @@ def test_a_driver_is_likely_near_where_its_speed_leads(speed: float) -> None:
 
 
 def test_what_is_likely_lies_within_what_is_possible_at_speed() -> None:
-    least, most = likely(15.0, TIMES)
+    least, most = likely_distances(15.0, TIMES)
     late = TIMES >= 2.0
     assert (slowest(15.0, TIMES)[late] <= least[late]).all()
     assert (most[late] <= fastest(15.0, TIMES, 21.0)[late]).all()

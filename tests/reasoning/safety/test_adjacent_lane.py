@@ -11,44 +11,44 @@ from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
 from codriving.reasoning.safety.assessment import ThreeLayers, progress
-from codriving.reasoning.safety.outlook import Outlook
+from codriving.reasoning.safety.safety_input import SafetyInput
 from codriving.reasoning.safety.same_lane import check_ahead
-from codriving.reasoning.sharing.state_sharing import SensedStates
+from codriving.reasoning.sharing.sharing import SensedStates
 
 LENGTH, WIDTH, LANE = 5.0, 2.0, 4.0
 SIDES = {Action.LANE_LEFT: 0, Action.LANE_RIGHT: 2}
 SPEED = st.floats(15.0, 30.0)
 
 
-def among(highway: Junction, *others: Car, speed: float = 20.0) -> Outlook:
+def among(highway: Junction, *others: Car, speed: float = 20.0) -> SafetyInput:
     """CAV1 on the second lane from the left at 300 m, and some others."""
-    return highway.outlook(car("CAV1", "lane-1", 300.0, speed), *others)
+    return highway.safety_input(car("CAV1", "lane-1", 300.0, speed), *others)
 
 
 def human(lane: int, place: float, speed: float = 20.0, pedal: float = 0.0) -> Car:
     return car("HDV1", f"lane-{lane}", place, speed, pedal=pedal)
 
 
-def allowed(outlook: Outlook) -> set[Action]:
-    return {a.action for a in ThreeLayers().assess(outlook) if a.safe}
+def allowed(given: SafetyInput) -> set[Action]:
+    return {a.action for a in ThreeLayers().assess(given) if a.safe}
 
 
 def test_both_lanes_beside_are_offered_and_free(highway: Junction) -> None:
-    outlook = among(highway)
-    assert outlook.scene.adjacent_lanes == (("begin", "end", 0), ("begin", "end", 2))
-    assert set(outlook.actions) == allowed(outlook) == set(Action)
-    assert check_adjacent(outlook) == {}
+    given = among(highway)
+    assert given.scene.adjacent_lanes == (("begin", "end", 0), ("begin", "end", 2))
+    assert set(given.actions) == allowed(given) == set(Action)
+    assert check_adjacent(given) == {}
 
 
 @pytest.mark.parametrize(("action", "lane"), SIDES.items())
 def test_a_vehicle_beside_removes_the_change_to_its_side_and_nothing_else(
     action: Action, lane: int, highway: Junction
 ) -> None:
-    outlook = among(highway, human(lane, 302.0))
-    found = check_adjacent(outlook)
+    given = among(highway, human(lane, 302.0))
+    found = check_adjacent(given)
     assert set(found) == {action}
     assert all(reason.startswith("adjacent lane: ") and "HDV1" in reason for reason in found[action])
-    assert allowed(outlook) == set(Action) - {action}
+    assert allowed(given) == set(Action) - {action}
 
 
 @pytest.mark.parametrize("place", [240.0, 360.0])
@@ -57,17 +57,17 @@ def test_a_free_gap_stays_allowed(place: float, highway: Junction) -> None:
 
 
 def test_a_lane_change_is_a_way_out_behind_somebody_who_stands(highway: Junction) -> None:
-    outlook = among(highway, human(1, 340.0, 0.0), speed=18.0)
-    assert set(check_ahead(outlook)) >= {Action.IDLE, Action.FASTER}
-    assert check_adjacent(outlook) == {}
-    assert set(SIDES) <= allowed(outlook)
+    given = among(highway, human(1, 340.0, 0.0), speed=18.0)
+    assert set(check_ahead(given)) >= {Action.IDLE, Action.FASTER}
+    assert check_adjacent(given) == {}
+    assert set(SIDES) <= allowed(given)
     # But not once the body would still be on the lane when it comes there.
     assert set(check_adjacent(among(highway, human(1, 318.0, 0.0), speed=18.0))) == set(SIDES)
 
 
 def test_without_lane_changes_there_is_nothing_to_check(junction: Junction) -> None:
-    outlook = junction.outlook(car("CAV1", "south-north", 60.0, 6.0), car("HDV1", "south-west", 66.0, 6.0))
-    assert check_adjacent(outlook) == {}
+    given = junction.safety_input(car("CAV1", "south-north", 60.0, 6.0), car("HDV1", "south-west", 66.0, 6.0))
+    assert check_adjacent(given) == {}
 
 
 def test_a_lane_that_leads_elsewhere_is_not_changed_to(junction: Junction) -> None:
@@ -78,17 +78,17 @@ def test_a_lane_that_leads_elsewhere_is_not_changed_to(junction: Junction) -> No
     off = Route("off", (ids[1], ids[3]), Turn.STRAIGHT, 200, 350)
     fork = Junction(junction.environment)
     fork.road_map = RoadMap(Road("fork", lanes, (on, off)))
-    outlook = fork.outlook(car("CAV1", "on", 100.0, 6.0))
-    assert check_adjacent(outlook) == {Action.LANE_RIGHT: ["adjacent lane: it does not lead where the CAV goes"]}
-    assert progress(outlook, Action.LANE_RIGHT) is None
+    given = fork.safety_input(car("CAV1", "on", 100.0, 6.0))
+    assert check_adjacent(given) == {Action.LANE_RIGHT: ["adjacent lane: it does not lead where the CAV goes"]}
+    assert progress(given, Action.LANE_RIGHT) is None
 
 
 def test_a_vehicle_whose_lane_is_not_known_counts(highway: Junction) -> None:
     for place, removed in ((301.0, {Action.LANE_LEFT}), (240.0, set())):
         world = highway.world(car("CAV1", "lane-1", 300.0, 20.0), human(0, place))
-        outlook = highway.think(world, SensedStates()).outlook("CAV1")
-        assert [n.lane for n in outlook.scene.neighbours] == [None]
-        assert set(check_adjacent(outlook)) == removed
+        given = highway.think(world, SensedStates()).safety_input("CAV1")
+        assert [n.lane for n in given.scene.neighbours] == [None]
+        assert set(check_adjacent(given)) == removed
 
 
 @settings(max_examples=40, deadline=None)
@@ -104,7 +104,7 @@ def test_no_lane_change_that_touches_anybody_within_two_seconds(
     highway: Junction, name: str, lane: int, offset: float, apart: float, mine: float, theirs: float
 ) -> None:
     assume(0 <= LANE * lane + offset <= 3 * LANE)
-    outlook = among(highway, car(name, f"lane-{lane}", 300.0 + apart, theirs, offset=offset), speed=mine)
+    given = among(highway, car(name, f"lane-{lane}", 300.0 + apart, theirs, offset=offset), speed=mine)
     times = np.linspace(0.0, 2.0, 21)
     touches = np.abs(apart + (theirs - mine) * times) < LENGTH
 
@@ -112,7 +112,7 @@ def test_no_lane_change_that_touches_anybody_within_two_seconds(
         """Whether the other one is on a lane, or will be."""
         return lane == k or abs(LANE * (lane - k) + offset) < (LANE + WIDTH) / 2
 
-    removed = check_adjacent(outlook)
+    removed = check_adjacent(given)
     for action, side in SIDES.items():
         # On the lane that it leaves, the CAV is responsible for whoever is ahead, until its body is off it.
         left = on(1) and apart > LENGTH and bool(touches[times <= 1.6].any())
@@ -129,29 +129,33 @@ def test_two_cavs_alongside_never_change_onto_the_lane_between_them(
     thoughts = highway.thoughts(car("CAV1", lanes[0], 300.0, one), car("CAV2", lanes[1], 300.0 + apart, other))
     inwards = (Action.LANE_LEFT, Action.LANE_RIGHT) if swap else (Action.LANE_RIGHT, Action.LANE_LEFT)
     goes = {
-        name for name, action in zip(("CAV1", "CAV2"), inwards, strict=True) if _goes(thoughts.outlook(name), action)
+        name
+        for name, action in zip(("CAV1", "CAV2"), inwards, strict=True)
+        if _goes(thoughts.safety_input(name), action)
     }
     # The one ahead goes; if they are level, the one with the higher id.
     assert goes == {"CAV2" if apart >= 0 else "CAV1"}
 
 
-def _goes(outlook: Outlook, action: Action) -> bool:
-    return action not in check_adjacent(outlook)
+def _goes(given: SafetyInput, action: Action) -> bool:
+    return action not in check_adjacent(given)
 
 
 @settings(max_examples=30, deadline=None)
 @given(st.floats(-60.0, 60.0), SPEED)
 def test_two_cavs_at_one_speed_never_change_into_the_same_gap(highway: Junction, apart: float, speed: float) -> None:
     thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, speed), car("CAV2", "lane-2", 300.0 + apart, speed))
-    if _goes(thoughts.outlook("CAV1"), Action.LANE_RIGHT) and _goes(thoughts.outlook("CAV2"), Action.LANE_LEFT):
+    if _goes(thoughts.safety_input("CAV1"), Action.LANE_RIGHT) and _goes(
+        thoughts.safety_input("CAV2"), Action.LANE_LEFT
+    ):
         assert abs(apart) > LENGTH + 2.0
 
 
 @pytest.mark.xfail(strict=True, reason="a vehicle more than 8 m away on the far side is not looked for, however fast")
 def test_somebody_faster_from_behind_does_not_change_into_the_same_gap(highway: Junction) -> None:
     thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, 28.0), car("CAV2", "lane-2", 312.0, 20.0))
-    assert not _goes(thoughts.outlook("CAV1"), Action.LANE_RIGHT) or not _goes(
-        thoughts.outlook("CAV2"), Action.LANE_LEFT
+    assert not _goes(thoughts.safety_input("CAV1"), Action.LANE_RIGHT) or not _goes(
+        thoughts.safety_input("CAV2"), Action.LANE_LEFT
     )
 
 
@@ -162,8 +166,8 @@ def test_a_human_driver_on_the_far_side_might_change_there_as_well(highway: Junc
 
 def test_who_has_to_change_does_not_wait_for_human_drivers_whom_nothing_urges(merge: Junction) -> None:
     for pedal, goes in ((0.0, True), (-0.29, True), (-0.31, False)):
-        outlook = merge.outlook(
+        given = merge.safety_input(
             car("CAV1", "ramp", 240.0, 15.0, offset=0.0), car("HDV1", "main-0", 240.0, 15.0, pedal=pedal)
         )
-        assert outlook.scene.must_change is not None
-        assert _goes(outlook, Action.LANE_LEFT) is goes
+        assert given.scene.must_change is not None
+        assert _goes(given, Action.LANE_LEFT) is goes

@@ -10,7 +10,7 @@ from worlds import Junction, car, order_of
 from codriving.datatypes.action import Action
 from codriving.datatypes.situation import ActionAssessment
 from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers, least_dangerous, progress
-from codriving.reasoning.safety.outlook import LONGITUDINAL, motions
+from codriving.reasoning.safety.safety_input import LONGITUDINAL
 
 ROUTES = ("south-north", "south-west", "west-east", "west-north", "east-west", "north-east")
 ANYWHERE = st.tuples(st.sampled_from(ROUTES), st.floats(40.0, 125.0), st.floats(0.0, 9.0))
@@ -26,10 +26,10 @@ def test_something_always_stays_and_every_removal_has_reasons(
     junction: Junction, cavs: list[tuple[str, float, float]], humans: list[tuple[str, float, float]]
 ) -> None:
     cars = [car(f"CAV{k}", *c) for k, c in enumerate(cavs)] + [car(f"HDV{k}", *c) for k, c in enumerate(humans)]
-    outlook = junction.outlook(*cars, ego="CAV0")
-    names = set(outlook.others)
-    assessments = ThreeLayers().assess(outlook)
-    assert tuple(a.action for a in assessments) == outlook.actions
+    given = junction.safety_input(*cars, ego="CAV0")
+    names = set(given.vehicles)
+    assessments = ThreeLayers().assess(given)
+    assert tuple(a.action for a in assessments) == given.actions
     assert any(a.safe for a in assessments)
     for a in assessments:
         assert a.safe or a.reasons
@@ -44,42 +44,42 @@ def test_something_always_stays_and_every_removal_has_reasons(
 
 def test_if_nothing_is_safe_the_least_dangerous_is_kept_and_says_so(junction: Junction) -> None:
     # Nose to tail with somebody who stands: nothing is safe any more.
-    outlook = junction.outlook(car("CAV1", "south-north", 60.0, 9.0), car("HDV1", "south-north", 68.0, 0.0))
-    found = by_action(ThreeLayers().assess(outlook))
-    assert [a for a in found if found[a].safe] == [Action.SLOWER] == [least_dangerous(outlook)]
+    given = junction.safety_input(car("CAV1", "south-north", 60.0, 9.0), car("HDV1", "south-north", 68.0, 0.0))
+    found = by_action(ThreeLayers().assess(given))
+    assert [a for a in found if found[a].safe] == [Action.SLOWER] == [least_dangerous(given)]
     assert "least dangerous" in found[Action.SLOWER].reasons[-1]
     assert any(reason.startswith("same lane") for reason in found[Action.SLOWER].reasons)
 
 
 def test_going_on_may_be_the_least_dangerous(junction: Junction) -> None:
     # It is leaving the crossing in front of somebody who does not brake; if it slows down, it is hit.
-    outlook = junction.outlook(
+    given = junction.safety_input(
         car("CAV1", "south-north", 110.0, 6.0), car("HDV1", "west-east", 104.0, 9.0), order=order_of("HDV1 CAV1")
     )
-    assert least_dangerous(outlook) is Action.FASTER
+    assert least_dangerous(given) is Action.FASTER
 
 
 def test_without_the_check_everything_stays(junction: Junction) -> None:
-    outlook = junction.outlook(car("CAV1", "south-north", 60.0, 9.0), car("HDV1", "south-north", 67.0, 0.0))
-    assessments = NoCheck().assess(outlook)
+    given = junction.safety_input(car("CAV1", "south-north", 60.0, 9.0), car("HDV1", "south-north", 67.0, 0.0))
+    assessments = NoCheck().assess(given)
     assert all(a.safe and not a.reasons for a in assessments)
-    assert [a.progress for a in assessments] == [a.progress for a in ThreeLayers().assess(outlook)]
+    assert [a.progress for a in assessments] == [a.progress for a in ThreeLayers().assess(given)]
 
 
 def test_arrivals_are_the_earliest_at_each_conflict(junction: Junction) -> None:
-    outlook = junction.outlook(
+    given = junction.safety_input(
         car("CAV1", "south-north", 60.0, 6.0), car("CAV2", "west-east", 60.0, 6.0), car("CAV3", "east-west", 60.0, 6.0)
     )
-    found = by_action(ThreeLayers().assess(outlook))
-    assert all(len(a.arrivals) == len(outlook.conflicts) == 2 for a in found.values())
-    for k, c in enumerate(outlook.conflicts):
+    found = by_action(ThreeLayers().assess(given))
+    assert all(len(a.arrivals) == len(given.conflicts) == 2 for a in found.values())
+    for k, c in enumerate(given.conflicts):
         times = [found[a].arrivals[k] for a in (Action.FASTER, Action.IDLE, Action.SLOWER)]
         assert times == sorted(times)
         assert c.distances[0] / 9.0 < times[0] < math.inf
 
 
 def test_progress_falls_with_the_eagerness_of_the_action(junction: Junction) -> None:
-    found = by_action(ThreeLayers().assess(junction.outlook(car("CAV1", "south-north", 60.0, 6.0))))
+    found = by_action(ThreeLayers().assess(junction.safety_input(car("CAV1", "south-north", 60.0, 6.0))))
     faster, idle, slower = (found[a].progress for a in (Action.FASTER, Action.IDLE, Action.SLOWER))
     assert faster is not None
     assert idle is not None
@@ -90,7 +90,8 @@ def test_progress_falls_with_the_eagerness_of_the_action(junction: Junction) -> 
 @pytest.mark.parametrize("change", [Action.LANE_LEFT, Action.LANE_RIGHT])
 def test_a_lane_change_keeps_the_speed(change: Action, junction: Junction) -> None:
     thoughts = junction.thoughts(car("CAV1", "south-north", 60.0, 6.0))
-    stops, goes = motions(thoughts.scenes["CAV1"], (*LONGITUDINAL, change), thoughts.forecast)
+    given = thoughts.safety_input("CAV1", actions=(*LONGITUDINAL, change))
+    stops, goes = given.stops, given.goes
     idle = LONGITUDINAL.index(Action.IDLE)
     assert (stops[-1] == stops[idle]).all()
     assert (goes[-1] == goes[idle]).all()
@@ -110,15 +111,15 @@ def test_a_lane_change_keeps_the_speed(change: Action, junction: Junction) -> No
 def test_three_guesses_of_what_others_do_decide_what_is_least_dangerous(
     mine: tuple[float, float], human: tuple[str, float, float], least: Action, junction: Junction
 ) -> None:
-    outlook = junction.outlook(car("CAV1", "south-north", *mine), car("HDV1", *human))
-    assert least_dangerous(outlook) is least
+    given = junction.safety_input(car("CAV1", "south-north", *mine), car("HDV1", *human))
+    assert least_dangerous(given) is least
 
 
 def test_a_lane_change_gets_farther_than_staying_behind_somebody_slow(highway: Junction) -> None:
-    outlook = highway.outlook(
+    given = highway.safety_input(
         car("CAV1", "lane-1", 300.0, 20.0), car("HDV1", "lane-1", 335.0, 15.0), car("HDV2", "lane-2", 335.0, 15.0)
     )
-    found = by_action(ThreeLayers().assess(outlook))
+    found = by_action(ThreeLayers().assess(given))
     left, right, stays = (
         found[Action.LANE_LEFT].progress,
         found[Action.LANE_RIGHT].progress,
@@ -136,8 +137,8 @@ def test_behind_somebody_on_the_lane_that_it_leaves_a_change_gets_less_far_the_n
     highway: Junction,
 ) -> None:
     def gains(place: float) -> float | None:
-        outlook = highway.outlook(car("CAV1", "lane-1", 300.0, 25.0, 30.0), car("HDV1", "lane-1", place, 15.0))
-        return progress(outlook, Action.LANE_LEFT)
+        given = highway.safety_input(car("CAV1", "lane-1", 300.0, 25.0, 30.0), car("HDV1", "lane-1", place, 15.0))
+        return progress(given, Action.LANE_LEFT)
 
     near, far = gains(318.0), gains(380.0)
     assert far is not None
@@ -147,23 +148,23 @@ def test_behind_somebody_on_the_lane_that_it_leaves_a_change_gets_less_far_the_n
 @settings(max_examples=20, deadline=None)
 @given(st.floats(0.0, 25.0), st.floats(0.0, 25.0), st.floats(5.0, 30.0), st.floats(0.0, 30.0))
 def test_a_lane_change_is_never_forced(highway: Junction, ahead: float, behind: float, v: float, w: float) -> None:
-    outlook = highway.outlook(
+    given = highway.safety_input(
         car("CAV1", "lane-1", 300.0, v),
         car("HDV1", "lane-1", 305.0 + ahead, w),
         car("HDV2", "lane-0", 295.0 - behind, w),
         car("HDV3", "lane-2", 300.0, v),
     )
-    found = ThreeLayers().assess(outlook)
+    found = ThreeLayers().assess(given)
     forced = [a.action for a in found if a.safe and a.reasons]
     assert any(a.safe for a in found)
     assert set(forced) <= set(LONGITUDINAL)
 
 
 def test_lane_changes_are_judged_by_the_second_layer_alone(highway: Junction) -> None:
-    outlook = highway.outlook(
+    given = highway.safety_input(
         car("CAV1", "lane-1", 300.0, 18.0), car("HDV1", "lane-1", 340.0, 0.0), car("HDV2", "lane-2", 301.0, 18.0)
     )
-    found = by_action(ThreeLayers().assess(outlook))
+    found = by_action(ThreeLayers().assess(given))
     assert not found[Action.IDLE].safe
     assert found[Action.LANE_LEFT].reasons == ()
     assert found[Action.LANE_RIGHT].reasons

@@ -10,10 +10,10 @@ from worlds import Junction
 from codriving.datatypes.action import Action
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
 from codriving.reasoning.safety.conflict_lane import check_conflicts
-from codriving.reasoning.safety.outlook import Outlook
+from codriving.reasoning.safety.safety_input import SafetyInput
 from codriving.reasoning.safety.same_lane import check_ahead, check_behind
 
-LAYERS: dict[str, Callable[[Outlook], dict[Action, list[str]]]] = {
+LAYERS: dict[str, Callable[[SafetyInput], dict[Action, list[str]]]] = {
     "same_lane": check_ahead,
     "behind": check_behind,
     "adjacent_lane": check_adjacent,
@@ -25,7 +25,7 @@ TABLES = [(name, section) for name in LAYERS for section in sections(Path(__file
 @pytest.mark.parametrize(("layer", "section"), TABLES, ids=[f"{name}: {s.title}" for name, s in TABLES])
 def test_a_layer_removes_what_the_table_says(layer: str, section: Section, road: Callable[[str], Junction]) -> None:
     found = {
-        value: removals(setting(section.scene, value).outlook(road(section.road)), LAYERS[layer])
+        value: removals(setting(section.scene, value).safety_input(road(section.road)), LAYERS[layer])
         for value, _ in section.rows
     }
     assert found == dict(section.rows)

@@ -14,7 +14,7 @@ from codriving.config.compose import compose
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.scene import Start
 from codriving.environment.environment import Environment
-from codriving.methods.single_vehicle.alone import Alone
+from codriving.methods.single_vehicle.method import SingleVehicle
 from codriving.runs.json_files import lines_text
 
 Make = Callable[..., Environment]
@@ -24,9 +24,9 @@ METHODS = ("pidm", "noncoop_game")
 DECISIONS = 14
 
 
-def made(name: str) -> Alone:
+def made(name: str) -> SingleVehicle:
     method = build(compose([f"method={name}"])["method"])
-    assert isinstance(method, Alone)
+    assert isinstance(method, SingleVehicle)
     return method
 
 

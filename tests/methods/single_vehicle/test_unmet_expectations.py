@@ -1,20 +1,20 @@
 """Whoever was expected to brake and does not is not expected to any more, until it does."""
 
-from seeing import game, views
+from seeing import game, seen_each
 from worlds import Junction, car
 
-from codriving.methods.noncoop_game.stubborn import Stubborn
+from codriving.methods.noncoop_game.noncoop_game import UnmetExpectations
 
 
-def test_somebody_is_stubborn_only_if_it_was_to_brake_and_until_it_does() -> None:
-    seen = Stubborn()
-    assert not seen.keeps_on("CAV1", "HDV1", 8.0), "nothing was expected of it"
+def test_a_vehicle_does_not_yield_if_it_was_to_brake_and_until_it_does() -> None:
+    seen = UnmetExpectations()
+    assert not seen.does_not_yield("CAV1", "HDV1", 8.0), "nothing was expected of it"
     seen.expected_to_brake("CAV1", "HDV1", 8.0)
-    assert seen.keeps_on("CAV1", "HDV1", 8.0)
-    assert seen.keeps_on("CAV1", "HDV1", 7.6)
-    assert not seen.keeps_on("CAV2", "HDV1", 8.0), "others have seen nothing yet"
-    assert not seen.keeps_on("CAV1", "HDV1", 7.4)
-    assert not seen.keeps_on("CAV1", "HDV1", 8.0), "it has been seen to brake"
+    assert seen.does_not_yield("CAV1", "HDV1", 8.0)
+    assert seen.does_not_yield("CAV1", "HDV1", 7.6)
+    assert not seen.does_not_yield("CAV2", "HDV1", 8.0), "others have seen nothing yet"
+    assert not seen.does_not_yield("CAV1", "HDV1", 7.4)
+    assert not seen.does_not_yield("CAV1", "HDV1", 8.0), "it has been seen to brake"
 
 
 def wishes(junction: Junction, slowing: float) -> list[str]:
@@ -27,7 +27,7 @@ def wishes(junction: Junction, slowing: float) -> list[str]:
         for k in range(3)
     ]
     driver = game()
-    return [driver.decide(view).reason.partition("; it wishes ")[2] for view in views(junction, moments)]
+    return [driver.decide(*view).reason.partition("; it wishes ")[2] for view in seen_each(junction, moments)]
 
 
 def test_the_game_brakes_for_somebody_who_does_not_and_goes_on_before_somebody_who_does(junction: Junction) -> None:

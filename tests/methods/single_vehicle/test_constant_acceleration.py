@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.methods.noncoop_game.held import held, passage
-from codriving.methods.noncoop_game.passing_game import ACCELERATIONS
+from codriving.methods.noncoop_game.games import ACCELERATIONS, constant_acceleration, passage
 
 TIMES = np.arange(16) * 0.2
 TOP = 9.0
@@ -14,7 +13,7 @@ TOP = 9.0
 
 @given(st.floats(0.0, 10.0), st.floats(0.1, 3.0))
 def test_the_motion_is_that_of_small_steps(speed: float, hold: float) -> None:
-    travelled, last = held(speed, ACCELERATIONS, hold, TOP, TIMES)
+    travelled, last = constant_acceleration(speed, ACCELERATIONS, hold, TOP, TIMES)
     step = 1e-3
     for k, acceleration in enumerate(ACCELERATIONS):
         v, s = speed, 0.0
@@ -28,14 +27,14 @@ def test_the_motion_is_that_of_small_steps(speed: float, hold: float) -> None:
 
 @pytest.mark.parametrize("speed", [0.0, 9.0, 11.0])
 def test_no_number_is_undefined_at_rest_or_beyond_the_top(speed: float) -> None:
-    travelled, last = held(speed, ACCELERATIONS, 1.0, TOP, TIMES)
+    travelled, last = constant_acceleration(speed, ACCELERATIONS, 1.0, TOP, TIMES)
     assert np.isfinite(travelled).all()
     assert (last >= 0).all()
     assert (last <= max(TOP, speed)).all()
 
 
 def test_passage_is_now_within_or_beyond_the_horizon_or_never() -> None:
-    travelled, last = held(5.0, np.array([0.0, -5.0]), 1.0, TOP, TIMES)
+    travelled, last = constant_acceleration(5.0, np.array([0.0, -5.0]), 1.0, TOP, TIMES)
     assert passage(0.0, travelled, last, TIMES).tolist() == [0.0, 0.0]
     assert passage(-3.0, travelled, last, TIMES).tolist() == [0.0, 0.0]
     assert passage(7.0, travelled, last, TIMES) == pytest.approx([1.4, np.inf])

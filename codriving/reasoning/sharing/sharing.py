@@ -1,0 +1,94 @@
+"""State and intent sharing, SAE J3216 classes A and B: what each CAV is told of the others (Section III-C.1 and 2)."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import hypot
+
+from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.vehicle import Intent, VehicleState
+from codriving.datatypes.world import WorldState
+from codriving.geometry.box import TRUE
+
+USUAL_LENGTH = TRUE.length
+"""Length that is assumed of a vehicle which is only sensed [m]."""
+
+Detections = dict[str, tuple[TrackedVehicle, ...]]
+"""Vehicles that each CAV knows of, by id of the CAV."""
+
+
+class StateSharing(ABC):
+    """Turns the world into what each CAV knows of it."""
+
+    @abstractmethod
+    def detections(self, world: WorldState, model: DrivingModel) -> Detections:
+        """Return the vehicles that each CAV knows of."""
+
+
+class SharedStates(StateSharing):
+    """CAVs share their own states, and those of the human drivers that any of them perceives."""
+
+    def detections(self, world: WorldState, model: DrivingModel) -> Detections:
+        """Return the same full states for all: every CAV, and every HDV within range of at least one CAV."""
+        cavs = world.cavs
+        seen = [h for h in world.hdvs if any(_within(c, h, model.detection_range) for c in cavs)]
+        known = tuple(
+            TrackedVehicle(v.id, v.kind, v.x, v.y, v.speed, v.heading, v.acceleration, v.lane, v.length)
+            for v in sorted((*cavs, *seen), key=lambda v: v.id)
+        )
+        return {cav.id: tuple(v for v in known if v.id != cav.id) for cav in cavs}
+
+
+@dataclass(frozen=True, slots=True)
+class SensedStates(StateSharing):
+    """Without state sharing: position and speed of vehicles within the detection range (paper Section IV-B).
+
+    Which lane they are on stays open, since a simulator knows by the route on which of two lanes, one above the other,
+    a vehicle is; and so does who drives.
+    """
+
+    headings: bool = False  # Whether headings are sensed as well
+
+    def detections(self, world: WorldState, model: DrivingModel) -> Detections:
+        """Return what each CAV's own sensors tell."""
+        return {
+            cav.id: tuple(
+                TrackedVehicle(
+                    v.id, None, v.x, v.y, v.speed, v.heading if self.headings else None, None, None, USUAL_LENGTH
+                )
+                for v in world.vehicles
+                if v.id != cav.id and _within(cav, v, model.detection_range)
+            )
+            for cav in world.cavs
+        }
+
+
+def _within(one: VehicleState, other: VehicleState, distance: float) -> bool:
+    return hypot(one.x - other.x, one.y - other.y) <= distance
+
+
+@dataclass(frozen=True, slots=True)
+class IntentSharing:
+    """Which intents are known, and whether conflicts can be found at all.
+
+    Attributes:
+        shared: Whether every CAV tells its route, target lane and target speed; human drivers never do.
+        finds_conflicts: Whether conflicts are found, with the routes that are shared or that the map allows.
+    """
+
+    shared: bool
+    finds_conflicts: bool
+
+    def intents(self, world: WorldState) -> Mapping[str, Intent]:
+        """Return the intents that every CAV knows of the others."""
+        return world.intents if self.shared else {}
+
+
+SHARED_INTENTS = IntentSharing(shared=True, finds_conflicts=True)
+
+HIDDEN_INTENTS = IntentSharing(shared=False, finds_conflicts=False)
+"""Without intent sharing, no conflicts between others and oneself can be detected (paper Section IV-B)."""
+
+GUESSED_INTENTS = IntentSharing(shared=False, finds_conflicts=True)
+"""Nothing is shared, and conflicts are found with all ways that the map allows."""
