@@ -80,6 +80,10 @@ class SceneDescription:
         """Return a neighbour by id, or None if the ego vehicle does not know of it."""
         return next((n for n in self.neighbours if n.id == name), None)
 
+    def next_in(self, role: Role) -> TrackedVehicle | None:
+        """Return the vehicle that drives next ahead (leading) or behind (rearing) on the lane, or None."""
+        return next((n for n in self.neighbours if n.role is role), None)
+
     def vehicles(self) -> dict[str, TrackedVehicle]:
         """Return the ego vehicle and its neighbours, by id and in the order of the ids."""
         v = self.ego

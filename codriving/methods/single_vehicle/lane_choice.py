@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
+from codriving.datatypes.scene_description import Role, TrackedVehicle
 from codriving.errors import require_range
 from codriving.reasoning.moment import Moment
 from codriving.reasoning.prediction.idm import IntelligentDriver
@@ -151,20 +151,9 @@ class LaneChoice:
 
     def gain(self, moment: Moment, ego: str, side: Side, idm: IntelligentDriver) -> float:
         """Return MOBIL's incentive: what the vehicle gains, and politely what those behind it do [m/s2]."""
-        scene, top = moment.scenes[ego], moment.forecast.model.top_speed
-        speed, bodies = scene.ego.speed, scene.ego.length
-        here_ahead, here_behind = role(scene, Role.LEADING), role(scene, Role.REARING)
-        own = _follow(idm, speed, top, side.ahead) - _follow(idm, speed, top, here_ahead)
-        others = 0.0
-        if side.behind is not None and side.behind.gap is not None:
-            free = None if side.ahead is None else (side.ahead.gap or 0.0) + side.behind.gap + bodies
-            before = idm.accelerate(side.behind.speed, top, free, side.ahead.speed if side.ahead else 0.0)
-            others += idm.accelerate(side.behind.speed, top, side.behind.gap, speed) - before
-        if here_behind is not None and here_behind.gap is not None:
-            free = None if here_ahead is None else (here_ahead.gap or 0.0) + here_behind.gap + bodies
-            after = idm.accelerate(here_behind.speed, top, free, here_ahead.speed if here_ahead else 0.0)
-            others += after - idm.accelerate(here_behind.speed, top, here_behind.gap, speed)
-        return own + self.politeness * others
+        scene = moment.scenes[ego]
+        here, there = (scene.next_in(Role.LEADING), scene.next_in(Role.REARING)), (side.ahead, side.behind)
+        return idm.incentive(scene.ego, moment.forecast.model.top_speed, here, there, self.politeness)
 
 
 def look(moment: Moment, ego: str, action: Action, alongside: float) -> Side | None:
@@ -190,15 +179,4 @@ def look(moment: Moment, ego: str, action: Action, alongside: float) -> Side | N
             if any(way == far and abs(at - place) < alongside for way, at in n.routes):
                 near = n.id
                 break
-    return Side(lane, role(there, Role.LEADING), role(there, Role.REARING), near)
-
-
-def role(scene: SceneDescription, wanted: Role) -> TrackedVehicle | None:
-    """Return who drives next ahead or behind."""
-    return next((n for n in scene.neighbours if n.role is wanted), None)
-
-
-def _follow(idm: IntelligentDriver, speed: float, top: float, ahead: TrackedVehicle | None) -> float:
-    if ahead is None or ahead.gap is None:
-        return idm.accelerate(speed, top)
-    return idm.accelerate(speed, top, ahead.gap, ahead.speed)
+    return Side(lane, there.next_in(Role.LEADING), there.next_in(Role.REARING), near)

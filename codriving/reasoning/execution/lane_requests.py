@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
+from codriving.datatypes.scene_description import Role, SceneDescription
 from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.protocol import Ordering
 from codriving.reasoning.ordering.request import Request
@@ -99,36 +99,9 @@ class LaneRequests:
 
 
 def incentive(scene: SceneDescription, there: SceneDescription, moment: Moment) -> float:
-    """Return what a lane change gains: MOBIL's incentive (Kesting, Treiber and Helbing, 2007).
-
-    Returns:
-        Gain of the CAV, and with the weight of politeness of those behind it on both lanes [m/s2].
-    """
-    top = moment.forecast.model.target_speeds[-1]
-    ahead, behind = _role(scene, Role.LEADING), _role(scene, Role.REARING)
-    new_ahead, new_behind = _role(there, Role.LEADING), _role(there, Role.REARING)
-    ego = scene.ego.speed
-    own = _behind(ego, top, new_ahead) - _behind(ego, top, ahead)
-    others = 0.0
-    if new_behind is not None and new_behind.gap is not None:
-        free = None if new_ahead is None or new_ahead.gap is None else new_ahead.gap + new_behind.gap + BODY
-        before = DRIVER.accelerate(new_behind.speed, top, free, new_ahead.speed if new_ahead else 0.0)
-        others += DRIVER.accelerate(new_behind.speed, top, new_behind.gap, ego) - before
-    if behind is not None and behind.gap is not None:
-        free = None if ahead is None or ahead.gap is None else ahead.gap + behind.gap + BODY
-        after = DRIVER.accelerate(behind.speed, top, free, ahead.speed if ahead else 0.0)
-        others += after - DRIVER.accelerate(behind.speed, top, behind.gap, ego)
-    return own + POLITENESS * others
-
-
-def _role(scene: SceneDescription, role: Role) -> TrackedVehicle | None:
-    return next((n for n in scene.neighbours if n.role is role), None)
-
-
-def _behind(speed: float, top: float, ahead: TrackedVehicle | None) -> float:
-    if ahead is None or ahead.gap is None:
-        return DRIVER.accelerate(speed, top)
-    return DRIVER.accelerate(speed, top, ahead.gap, ahead.speed)
+    """Return MOBIL's incentive of a lane change, for the CAV and those behind it on both lanes [m/s2]."""
+    now, then = ((s.next_in(Role.LEADING), s.next_in(Role.REARING)) for s in (scene, there))
+    return DRIVER.incentive(scene.ego, moment.forecast.model.top_speed, now, then, POLITENESS)
 
 
 def _overlaps(

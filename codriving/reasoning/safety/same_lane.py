@@ -77,7 +77,7 @@ def check_behind(given: SafetyInput) -> dict[Action, list[str]]:
     Returns:
         Reasons by action; no entry where the action is safe.
     """
-    behind = next((n for n in given.scene.neighbours if n.role is Role.REARING), None)
+    behind = given.scene.next_in(Role.REARING)
     if behind is None or behind.gap is None:
         return {}
     found: dict[Action, list[str]] = {}
