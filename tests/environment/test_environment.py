@@ -15,11 +15,13 @@ from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
-from codriving.environment.traffic.body_ahead import BODY_MARGIN, body_ahead
+from codriving.environment.traffic.body_ahead import body_ahead
 from codriving.environment.traffic.driver_profile import DriverProfile
 from codriving.environment.traffic.way import way
 from codriving.errors import ConfigError, EpisodeError, ScenarioError
 from codriving.geometry.road_map import road_map
+
+BODY_MARGIN = 0.6
 
 Build = Callable[..., Environment]
 

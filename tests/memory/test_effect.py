@@ -10,7 +10,6 @@ from remembered import conflict, crossing_way, moment, vehicle, without_conflict
 from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Effect, Verdict
 from codriving.memory.effect import (
-    HORIZON,
     LESSONS,
     DecisionHistory,
     OwnCollision,
@@ -19,6 +18,8 @@ from codriving.memory.effect import (
     own_change,
     verdict_of,
 )
+
+HORIZON = 3.0
 
 ALONG = [Action.SLOWER, Action.IDLE, Action.FASTER]
 speeds = st.floats(0.6, 12.0)

@@ -11,8 +11,10 @@ from worlds import LAG, Junction, Thoughts, car, order_of
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
 from codriving.reasoning.prediction.clearance import first_overlap
-from codriving.reasoning.prediction.expectation import HEADWAY, Expected, expect, is_behind, keeps_order, worth
+from codriving.reasoning.prediction.expectation import Expected, expect, is_behind, keeps_order, worth
 from codriving.reasoning.prediction.plans import FIRST, HOLDS, PLANS, ROLLS, STARTS_WITH, WAITS
+
+HEADWAY = 0.8
 
 
 def expected(

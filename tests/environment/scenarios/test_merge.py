@@ -12,10 +12,13 @@ from starting import check_people, check_room, scenario
 
 from codriving.datatypes.conflict import Relation
 from codriving.datatypes.vehicle import Kind
-from codriving.environment.scenarios.merge import PAST_MERGE, TAPER, Merge
+from codriving.environment.scenarios.merge import Merge
 from codriving.errors import ConfigError, ScenarioError
 from codriving.geometry.box import PLANNING
 from codriving.geometry.road_map import RoadMap, road_map
+
+PAST_MERGE = 80.0
+TAPER = 40.0
 
 
 def merge(**change: Any) -> Merge:

@@ -12,8 +12,11 @@ from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.datatypes.world import WorldState
 from codriving.methods.learned.features import Features, Observation
-from codriving.methods.learned.layout import FAR, JUNCTION, LANES, NEAR, SLOTS, family_of, feature_count, feature_names
+from codriving.methods.learned.layout import JUNCTION, LANES, SLOTS, family_of, feature_count, feature_names
 from codriving.methods.learned.slots import EQUAL, GIVES_WAY, GOES_FIRST
+
+FAR = 7.0
+NEAR = 4.5
 
 NEXT = {"south": "west", "west": "north", "north": "east", "east": "south"}
 """A quarter turn, clockwise."""

@@ -12,9 +12,12 @@ import pytest
 from safetensors.numpy import load_file, save_file
 
 from codriving.errors import WeightsError
-from codriving.methods.learned.layout import FAMILIES, FAR, JUNCTION, LANES, NEAR, VERSION, feature_count
+from codriving.methods.learned.layout import FAMILIES, JUNCTION, LANES, VERSION, feature_count
 from codriving.methods.learned.network import Network
 from codriving.methods.learned.weights import Purpose, Trained, load, save, shipped, sidecar
+
+FAR = 7.0
+NEAR = 4.5
 
 PURPOSE = Purpose(
     method="madqn",

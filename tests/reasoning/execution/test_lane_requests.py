@@ -14,10 +14,14 @@ from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.methods.fcfs import FirstComeFirstServed
-from codriving.reasoning.execution.lane_requests import COOL_DOWN, POLITENESS, THRESHOLD, LaneRequests, incentive
+from codriving.reasoning.execution.lane_requests import LaneRequests, incentive
 from codriving.reasoning.ordering.protocol import Ordering
 from codriving.reasoning.ordering.request import Request, best_subset, in_order
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
+
+COOL_DOWN = 2.0
+POLITENESS = 0.3
+THRESHOLD = 0.2
 
 LEFT, RIGHT = Action.LANE_LEFT, Action.LANE_RIGHT
 NOBODY = PassingOrder((), ())

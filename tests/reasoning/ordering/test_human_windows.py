@@ -6,7 +6,9 @@ from dataclasses import replace
 import pytest
 from worlds import Junction, Thoughts, car
 
-from codriving.reasoning.ordering.problem import CERTAIN_GAP, GAP, is_blocked, lag_length, passes_first, window
+from codriving.reasoning.ordering.problem import GAP, is_blocked, lag_length, passes_first, window
+
+CERTAIN_GAP = 0.4
 
 
 def meeting(junction: Junction, place: float, speed: float, cav: float = 85.0) -> Thoughts:

@@ -8,9 +8,12 @@ from worlds import Car, Junction, car
 
 from codriving.geometry.box import TRUE
 from codriving.geometry.zone import ConflictZone
-from codriving.reasoning.ordering.problem import COMMITTED, FOLLOWS, FOREVER, Problem, pose
+from codriving.reasoning.ordering.problem import COMMITTED, Problem, pose
 from codriving.reasoning.ordering.schedule import repaired, schedule
 from codriving.reasoning.sharing.tracking import Tracking
+
+FOLLOWS = (7.0, 0.5)
+FOREVER = 1000.0
 
 ROUTES = tuple(
     f"{a}-{b}" for a in ("south", "west", "north", "east") for b in ("south", "west", "north", "east") if a != b

@@ -17,7 +17,6 @@ from codriving.methods.mcts import MonteCarloTreeSearch
 from codriving.methods.order_search import Coded, joined
 from codriving.reasoning.ordering.protocol import OrderRule
 from codriving.reasoning.ordering.schedule import (
-    LONGEST_WAIT,
     Objective,
     after_windows,
     evacuation_time,
@@ -26,6 +25,8 @@ from codriving.reasoning.ordering.schedule import (
     timed,
     total_delay,
 )
+
+LONGEST_WAIT = 60.0
 
 RULES: dict[str, Callable[[], OrderRule]] = {
     "fcfs": FirstComeFirstServed,
