@@ -41,7 +41,10 @@ def main() -> int:
         outcomes.append((change, outcome))
         if outcome.noticed and not options.verbose:
             continue
-        print(f"{'noticed' if outcome.noticed else 'SURVIVES'} {_line(change)}  [{outcome.by}]", flush=True)
+        print(
+            f"{len(outcomes):4d} {'noticed' if outcome.noticed else 'SURVIVES'} {_line(change)}  [{outcome.by}]",
+            flush=True,
+        )
     return _report(outcomes, time.monotonic() - began, options.known)
 
 

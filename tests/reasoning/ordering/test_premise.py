@@ -66,3 +66,12 @@ def test_circle_is_found_with_everybody_before_the_next() -> None:
     assert circle is not None
     assert set(pairwise(circle)) <= pairs
     assert find_circle(pairs - {("B", "C")}) is None
+
+
+@pytest.mark.parametrize(
+    ("etas", "holds"), [((3.0, 2.1), True), ((3.0, 3.9), True), ((3.0, 4.1), False), ((9.0, 2.0), True)]
+)
+def test_the_later_one_of_a_pair_may_become_the_earlier_one_by_a_second(etas: tuple[float, float], holds: bool) -> None:
+    # Of the pair (A, B) B was the earlier one, by half a second.
+    then = premise(instance(A=3.0, B=2.5), [("A", "B")])
+    assert then.still_holds(premise(instance(A=etas[0], B=etas[1]), [("A", "B")])) is holds
