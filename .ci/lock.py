@@ -6,6 +6,7 @@ are kept as long as the version stays.
 """
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -58,7 +59,9 @@ def torch(version: str, entry: str) -> str:
             report = Path(folder) / "report.json"
             command = [str(BIN / "pip"), "install", "--dry-run", "--quiet", "--ignore-installed", "--target", folder]
             command += ["--report", str(report), *asked, f"torch=={version}"]
-            subprocess.run(command, check=True, env={"PIP_CONFIG_FILE": "/dev/null", "PIP_FIND_LINKS": ""})
+            subprocess.run(
+                command, check=True, env={**os.environ, "PIP_CONFIG_FILE": "/dev/null", "PIP_FIND_LINKS": ""}
+            )
             (found,) = json.loads(report.read_text(encoding="utf-8"))["install"]
             hashes.add(f"sha256:{found['download_info']['archive_info']['hashes']['sha256']}")
     return " \\\n".join([f"torch=={version}", *(f"    --hash={h}" for h in sorted(hashes))])

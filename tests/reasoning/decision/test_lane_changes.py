@@ -1,10 +1,13 @@
 """When the built-in decider changes lanes."""
 
+from dataclasses import replace
+
 import pytest
 from worlds import Car, Junction, car
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.scene_description import LaneChange
 from codriving.datatypes.situation import ActionAssessment, Decision, Situation
 from codriving.reasoning.decision.rules import decide_one
 
@@ -84,3 +87,23 @@ def test_no_lane_change_when_nothing_is_safe(highway: Junction) -> None:
     decision = decide(highway, car("CAV1", "lane-1", 300.0, 20.0), {IDLE: 100.0}, forced=True)
     assert decision.action is IDLE
     assert "least dangerous" in decision.reason
+
+
+@pytest.mark.parametrize(
+    ("index", "gains", "action"),
+    [
+        (0, {IDLE: 100.0, LEFT: 90.0, RIGHT: 200.0}, LEFT),
+        (2, {IDLE: 100.0, LEFT: 200.0, RIGHT: 90.0}, RIGHT),
+        (2, {IDLE: 100.0, LEFT: 200.0, RIGHT: 84.0}, IDLE),
+        (0, {IDLE: 100.0, RIGHT: 200.0}, IDLE),
+        (1, {IDLE: 100.0, LEFT: 200.0, RIGHT: 200.0}, IDLE),
+    ],
+)
+def test_a_route_asks_for_the_side_on_which_its_lane_is(
+    index: int, gains: dict[Action, float | None], action: Action, highway: Junction
+) -> None:
+    # CAV1 drives on lane 1; its route goes on along another one.
+    scene = highway.thoughts(car("CAV1", "lane-1", 300.0, 20.0)).scenes["CAV1"]
+    scene = replace(scene, must_change=LaneChange(("begin", "end", index), 50.0))
+    made = tuple(ActionAssessment(a, True, (), (), gain) for a, gain in gains.items())
+    assert decide_one(Situation(scene, (), PassingOrder((), ()), (), made)).action is action

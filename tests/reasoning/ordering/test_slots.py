@@ -55,6 +55,7 @@ def test_a_slot_is_moved_out_of_one_interval_into_the_next_and_out_of_that_too()
         ({"B": 4.0, "A": 5.0}, {BEFORE: -0.9, AFTER: 1.0}, [], "BA"),
         # Both ways round fit, or none does: the times tell.
         ({"B": 4.0, "A": 5.0}, {BEFORE: -1.5, AFTER: 0.5}, [], "BA"),
+        ({"B": 4.0, "A": 5.0}, {BEFORE: -1.5, AFTER: 1.0}, [], "BA"),
         ({"B": 4.0, "A": 5.0}, {BEFORE: 1.0, AFTER: 2.0}, [], "BA"),
         ({"A": 4.0, "B": 5.0}, {BEFORE: 2.0, AFTER: 2.0}, [], "AB"),
         # Only one way round is known.
