@@ -1,8 +1,8 @@
 """Write requirements.lock and requirements-train.lock, with hashes: run by ``make lock``.
 
 The hashes are those of every file of a version, so that no other file is installed under its name. Of PyTorch the lock
-holds the wheels for Python 3.11 on the usual platforms, and those for the CPU alone, which come from another index and
-are kept as long as the version stays.
+holds wheels for Python 3.11: on Linux and x86 the one for the CPU alone, which comes from another index and is kept as
+long as the version stays, and elsewhere those of PyPI.
 """
 
 import json
@@ -19,14 +19,14 @@ COMPILE = [
     *(str(BIN / "pip-compile"), "--quiet", "--generate-hashes", "--allow-unsafe", "--strip-extras", "--no-annotate"),
     *("--no-header", "--no-emit-index-url", "--no-emit-find-links", "--no-emit-trusted-host"),
 ]
-PLATFORMS = ("manylinux_2_28_x86_64", "manylinux_2_28_aarch64", "macosx_14_0_arm64")
+PLATFORMS = ("manylinux_2_28_aarch64", "macosx_14_0_arm64")
 CUDA = ("nvidia-", "cuda-", "triton")
 """Beginnings of the packages that only a wheel of PyTorch for GPUs needs."""
 
 LOCK = "# Exact versions of everything that codriving[dev] needs, for Python 3.11. Made by: make lock\n"
 TRAIN = """\
 # Exact versions of what codriving[train] needs beyond requirements.lock, for Python 3.11. Made by: make lock
-# Networks of this size are trained on the CPU. On Linux the wheel without CUDA is meant, from PyTorch's own index:
+# Networks of this size are trained on the CPU: on Linux by the wheel without CUDA, from its own index:
 #     PIP_EXTRA_INDEX_URL=https://download.pytorch.org/whl/cpu make torch
 """
 
@@ -59,9 +59,8 @@ def torch(version: str, entry: str) -> str:
             report = Path(folder) / "report.json"
             command = [str(BIN / "pip"), "install", "--dry-run", "--quiet", "--ignore-installed", "--target", folder]
             command += ["--report", str(report), *asked, f"torch=={version}"]
-            subprocess.run(
-                command, check=True, env={**os.environ, "PIP_CONFIG_FILE": "/dev/null", "PIP_FIND_LINKS": ""}
-            )
+            index = {"PIP_CONFIG_FILE": os.devnull, "PIP_FIND_LINKS": ""}
+            subprocess.run(command, check=True, env={**os.environ, **index})
             (found,) = json.loads(report.read_text(encoding="utf-8"))["install"]
             hashes.add(f"sha256:{found['download_info']['archive_info']['hashes']['sha256']}")
     return " \\\n".join([f"torch=={version}", *(f"    --hash={h}" for h in sorted(hashes))])
