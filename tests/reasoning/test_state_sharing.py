@@ -5,7 +5,9 @@ from dataclasses import replace
 from worlds import Car, Junction, car
 
 from codriving.datatypes.vehicle import Kind
-from codriving.reasoning.sharing.sharing import USUAL_LENGTH, SensedStates, SharedStates
+from codriving.reasoning.sharing.sharing import SensedStates, SharedStates
+
+USUAL_LENGTH = 5.0
 
 NOT_SENSED = {"kind", "heading", "acceleration", "lane"}
 

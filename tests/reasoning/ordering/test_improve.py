@@ -8,8 +8,11 @@ from hypothesis import strategies as st
 
 from codriving.datatypes.order import PassingOrder, Precedence
 from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
-from codriving.reasoning.ordering.coordinator import SAVES, SWAP, cost, improve
+from codriving.reasoning.ordering.coordinator import cost, improve
 from codriving.reasoning.ordering.schedule import start_time
+
+SAVES = 0.3
+SWAP = 1.0
 
 NAMES = ("a", "b", "c", "d", "e")
 TIMES = st.floats(-2.0, 20.0).map(lambda t: round(t, 2))

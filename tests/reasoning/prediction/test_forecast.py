@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.reasoning.prediction.forecast import BRAKE, GO, HORIZON, Forecast, likely
+from codriving.reasoning.prediction.forecast import BRAKE, GO, Forecast, likely_distances
 from codriving.reasoning.prediction.rollout import rollout
+
+HORIZON = 10.0
 
 MODEL = DrivingModel((0.0, 3.0, 6.0, 9.0), 1.6, 0.1, 0.5, 50.0)
 SPEEDS = st.floats(0.0, 9.0)
@@ -70,7 +72,7 @@ def test_human_drivers_have_wider_bounds_than_cavs() -> None:
 
 def test_what_a_driver_is_likely_to_do_is_sampled_like_everything_else() -> None:
     forecast = Forecast(MODEL)
-    for ours, theirs in zip(forecast.likely(7.0), likely(7.0, forecast.times), strict=True):
+    for ours, theirs in zip(forecast.likely(7.0), likely_distances(7.0, forecast.times), strict=True):
         assert np.array_equal(ours, theirs)
     least, most = forecast.likely(7.0)
     reach = forecast.reach(7.0, False)

@@ -6,13 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from codriving.reasoning.prediction.forecast import (
-    DRIFT,
-    HARD_ACCELERATION,
-    HARD_BRAKING,
     fastest,
     likely_distances,
     slowest,
 )
+
+DRIFT = (1.0, 0.75, 6.0)
+HARD_ACCELERATION = 1.5
+HARD_BRAKING = 6.0
 
 TIMES = np.linspace(0.0, 12.0, 61)
 SPEEDS = st.floats(0.0, 30.0)
