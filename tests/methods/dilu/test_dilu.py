@@ -104,7 +104,7 @@ def test_second_answer_counts_and_is_told_what_may_be_chosen(junction: Junction)
     assert "LANE_LEFT is not one of: SLOWER, IDLE, FASTER" in chat.questions[1].messages[-1].content
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.one_of(
         st.text(max_size=200),

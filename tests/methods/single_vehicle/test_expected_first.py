@@ -30,7 +30,7 @@ def _real(e: Encounter, me: Car, you: Car) -> bool:
 ways = st.tuples(st.sampled_from(ROUTES), st.floats(60.0, 118.0), st.floats(0.0, 9.0))
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(ways, ways)
 def test_two_never_both_go_first(
     junction: Junction, one: tuple[str, float, float], other: tuple[str, float, float]

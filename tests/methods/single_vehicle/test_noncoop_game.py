@@ -73,7 +73,7 @@ def test_of_two_who_meet_at_once_not_both_accelerate(junction: Junction) -> None
 ways = st.tuples(st.sampled_from(ROUTES), st.floats(60.0, 118.0), st.floats(0.0, 9.0))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(ways, ways)
 def test_payoffs_are_defined_and_the_answer_is_a_best_response(
     junction: Junction, one: tuple[str, float, float], other: tuple[str, float, float]
