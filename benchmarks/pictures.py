@@ -9,7 +9,7 @@ from time import perf_counter, process_time
 
 from codriving.config.choices import choices
 from codriving.experiment import run_frames
-from codriving.experiment.stored import find_episode, screening
+from codriving.experiment.stored import find_episode, read_film, road_of
 
 RATE, SECONDS = Fraction(25), 10
 SCALES = (1.0, 2.0)
@@ -28,8 +28,9 @@ def measure(scenario: str, folder: Path) -> dict[str, float]:
     tokens = [f"scenario={scenario}", "episodes=1", f"scenario.time_limit={SECONDS}", "launcher=serial"]
     results = run_frames(*tokens, f"output={folder}", f"run={scenario}")
     found: dict[str, float] = {}
+    episode = find_episode(results.folder, None, None)
     for scale in SCALES:
-        show = screening(find_episode(results.folder, None, None), scale)
+        show = read_film(episode.folder, road_of(episode.cell), scale)
         show.frame(0.0)
         count, before = 0, process_time()
         for _ in show.frames(RATE, 1.0):

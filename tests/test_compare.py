@@ -9,8 +9,9 @@ import pytest
 
 import codriving
 from codriving.config.choices import TAKING_PART
-from codriving.experiment import run_comparison
-from codriving.experiment.comparison import EXPERIMENT
+from codriving.experiment import compare as command
+from codriving.experiment import run_command
+from codriving.experiment.compare import EXPERIMENT
 
 PACKAGE = "toy_methods"
 SOURCE = '''"""Methods for tests."""
@@ -75,7 +76,7 @@ def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def compare(own: Path, table: str, *tokens: str) -> Path:
-    assert run_comparison(table, [*BOTH, f"output={own.parent}", *tokens], own) == 0
+    assert run_command(command(table), [*BOTH, f"output={own.parent}", *tokens], own) == 0
     return own.parent / EXPERIMENT[table] / "x"
 
 

@@ -8,7 +8,7 @@ import pytest
 import codriving
 from codriving.config.choices import choices
 from codriving.errors import ConfigError, RunFolderError
-from codriving.experiment import run_ablation, run_experiment
+from codriving.experiment.run import ABLATE, run_command, run_experiment
 
 SHORT = ("scenario.time_limit=3", "launcher=serial")
 TABLES = ("episodes.csv", "summary.csv", "summary.md")
@@ -128,7 +128,7 @@ def test_an_ablation_of_several_scenarios_keeps_their_rows_together(
 ) -> None:
     names = list(choices("scenario"))[:2]
     tokens = [f"scenario={','.join(names)}", "episodes=1", "scenario.cavs=2", *SHORT, f"output={tmp_path}", "run=x"]
-    assert run_ablation(tokens) == 0
+    assert run_command(ABLATE, tokens) == 0
     summary = rows(tmp_path / "ablate" / "x" / "summary.csv")
     assert [row["scenario"] for row in summary] == [name for name in names for _ in range(7)]
     assert [row["variant"] for row in summary[:7]] == [row["variant"] for row in summary[-7:]]

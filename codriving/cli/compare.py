@@ -24,12 +24,6 @@ def compare(
     baselines: each method against codriving. single-vehicle: those by which each CAV is on its own. all: both.
     load: baselines with 4, 6, 8 and 12 CAVs. method=NAME adds a method of your own.
     """
-    if cfg:
-        from codriving.cli.config_page import print_configs
-        from codriving.experiment.comparison import comparison
+    from codriving import experiment
 
-        print_configs(comparison(table, overrides or [], config_dir), config_dir)
-        return
-    from codriving.experiment import run_comparison
-
-    raise typer.Exit(run_comparison(table, overrides or [], config_dir))
+    raise typer.Exit(experiment.run_command(experiment.compare(table), overrides or [], config_dir, cfg))

@@ -11,12 +11,6 @@ def learn(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowCo
     interactions=0,2,5,10,20 says after how many; scenario=all and three CDA levels are tested unless you name some.
     The same command with the same run=NAME goes on where it was interrupted.
     """
-    if cfg:
-        from codriving.cli.config_page import print_configs
-        from codriving.experiment.learn import shown_points
-
-        print_configs(shown_points(overrides or [], config_dir), config_dir)
-        return
     from codriving.experiment.learn import run_learn
 
-    raise typer.Exit(run_learn(overrides or [], config_dir))
+    raise typer.Exit(run_learn(overrides or [], config_dir, cfg))

@@ -26,15 +26,10 @@ def build(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowCo
 
     The same command with the same run=NAME goes on where it was interrupted, or grows it by more interactions.
     """
-    if cfg:
-        from codriving.cli.config_page import print_configs
-        from codriving.experiment.memory_build import build_points
+    from codriving.experiment.memory_build import BUILD
+    from codriving.experiment.run import run_command
 
-        print_configs(build_points(overrides or [], config_dir), config_dir)
-        return
-    from codriving.experiment.memory_build import run_build
-
-    raise typer.Exit(run_build(overrides or [], config_dir))
+    raise typer.Exit(run_command(BUILD, overrides or [], config_dir, cfg))
 
 
 @memory.command(epilog="Example: codriving memory show outputs/memory/learnt/memory/intersection-codriving-full.sqlite")

@@ -10,12 +10,6 @@ def run(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConf
 
     The same command with the same run=NAME goes on where it was interrupted.
     """
-    if cfg:
-        from codriving.cli.config_page import print_configs
-        from codriving.config.sweep import expand
+    from codriving.experiment.run import RUN, run_command
 
-        print_configs(expand(overrides or [], config_dir), config_dir)
-        return
-    from codriving.experiment import run_experiment
-
-    raise typer.Exit(run_experiment(overrides or [], config_dir))
+    raise typer.Exit(run_command(RUN, overrides or [], config_dir, cfg))

@@ -10,7 +10,7 @@ from codriving.config.locate import conf_dir, experiments_root
 from codriving.config.overrides import prepare
 from codriving.config.plugins import find_beside, gathered
 from codriving.config.rules import check_rules
-from codriving.config.schema import check_root
+from codriving.config.schema import GROUPS, check_root
 from codriving.config.texts import texts
 from codriving.errors import ConfigError
 
@@ -18,6 +18,18 @@ _ENVIRONMENT = re.compile(r"\$\{\s*oc\.env\b")
 
 
 def compose(overrides: Sequence[str], config_dir: Path | None = None) -> dict[str, Any]:
+    """Compose the config that the overrides ask for, without the names of its YAMLs.
+
+    Args:
+        overrides: ``key=value`` tokens.
+
+    Raises:
+        ConfigError: If anything in the overrides or in a YAML file cannot be used.
+    """
+    return compose_named(overrides, config_dir)[0]
+
+
+def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[dict[str, Any], dict[str, str]]:
     """Compose the config that the overrides ask for.
 
     The keys, types and ranges of the root and the rules between keys are checked here; those of each node are checked
@@ -27,7 +39,8 @@ def compose(overrides: Sequence[str], config_dir: Path | None = None) -> dict[st
         overrides: ``key=value`` tokens; groups take the name of one of their YAML files.
 
     Returns:
-        The config with every reference resolved, made of dicts, lists, texts, numbers, booleans and None.
+        The config with every reference resolved, made of dicts, lists, texts, numbers, booleans and None; and the name
+        of the YAML that each group is set to.
 
     Raises:
         ConfigError: If anything in the overrides or in a YAML file cannot be used.
@@ -35,7 +48,7 @@ def compose(overrides: Sequence[str], config_dir: Path | None = None) -> dict[st
     from hydra import compose as hydra_compose
     from hydra import initialize_config_dir
     from hydra.errors import HydraException
-    from omegaconf import OmegaConf
+    from omegaconf import OmegaConf, open_dict
     from omegaconf.errors import OmegaConfBaseException
     from yaml import YAMLError
 
@@ -45,7 +58,11 @@ def compose(overrides: Sequence[str], config_dir: Path | None = None) -> dict[st
     tokens = [_search_path(config_dir), *prepare(overrides, config_dir)]
     try:
         with initialize_config_dir(str(conf_dir()), version_base="1.3"):
-            config = hydra_compose("config", overrides=tokens)
+            config = hydra_compose("config", overrides=tokens, return_hydra_config=True)
+        chosen = config.hydra.runtime.choices
+        choices = {group: str(chosen[group]) for group in GROUPS if chosen.get(group) is not None}
+        with open_dict(config):
+            del config["hydra"]
         _refuse_environment(OmegaConf.to_container(config, resolve=False))
         resolved = OmegaConf.to_container(config, resolve=True)
     except (HydraException, OmegaConfBaseException, YAMLError) as err:
@@ -56,7 +73,7 @@ def compose(overrides: Sequence[str], config_dir: Path | None = None) -> dict[st
     check_root(plain)
     check_rules(plain)
     find_beside(plain["plugins"], config_dir)
-    return plain
+    return plain, choices
 
 
 def _search_path(config_dir: Path | None) -> str:

@@ -24,5 +24,5 @@ def check_rules(resolved: Mapping[str, Any]) -> None:
         raise ConfigError(f"workers must be auto or 1 with launcher=serial, got {resolved['workers']}")
 
 
-SERIAL = "codriving.experiment.episodes.launcher.Serial"
+SERIAL = "codriving.experiment.launchers.Serial"
 """The launcher that has no other process than this one."""

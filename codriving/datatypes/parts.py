@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, TypeAlias
 
 from codriving.datatypes.action import Action
@@ -181,6 +182,13 @@ class Method(ABC):
             UserError: With the reason.
         """
         return None
+
+    def files(self, road: Road) -> Mapping[str, Path]:
+        """Return the files whose content decides what is driven on a road, by what they are.
+
+        A run whose files have changed does not go on in its folder.
+        """
+        return {}
 
     @abstractmethod
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:

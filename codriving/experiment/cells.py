@@ -2,17 +2,18 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from codriving.config.build import build
-from codriving.config.show import fingerprint, relevant, show
+from codriving.config.show import show
 from codriving.config.sweep import Point
 from codriving.errors import ConfigError
-from codriving.experiment.episodes.unit import Labels
-from codriving.experiment.naming import folder_name
-from codriving.experiment.swept import swept_values
-from codriving.runs.manifest import CellEntry
-from codriving.runs.redaction import flat, redact
+from codriving.experiment.contents import contents
+from codriving.experiment.episode import Labels
+from codriving.experiment.naming import folder_name, swept_values
+from codriving.runs.identity import CHOICES, CellEntry, NamedFile, fingerprint, settings_of
+from codriving.runs.redaction import redact
 
 
 @dataclass(frozen=True)
@@ -24,16 +25,20 @@ class Cell:
     resolved: Mapping[str, Any]
     metrics: str = "standard"
     swept: Mapping[str, str] = field(default_factory=dict)
+    choices: Mapping[str, str] = field(default_factory=dict)
+    files: tuple[NamedFile, ...] = ()
 
     @property
     def config_text(self) -> str:
         """Its config as YAML, without secrets."""
         return show(redact(self.resolved))
 
-    @property
+    @cached_property
     def fingerprint(self) -> str:
-        """What tells its config from all others."""
-        return fingerprint(self.resolved)
+        """What tells it from all others."""
+        labels = self.labels
+        names = (labels.scenario, labels.method, labels.variant, labels.reasoner)
+        return fingerprint(names, self.choices, self.resolved, self.files)
 
     def entry(self) -> CellEntry:
         """Describe it for the manifest."""
@@ -45,12 +50,19 @@ class Cell:
             reasoner=self.labels.reasoner,
             fingerprint=self.fingerprint,
             swept=dict(self.swept),
-            settings=flat(redact(relevant(self.resolved))),
+            settings=settings_of(self.resolved),
+            choices={group: name for group, name in self.choices.items() if group in (*CHOICES, "cda")},
+            files=self.files,
         )
 
 
-def make_cell(resolved: Mapping[str, Any], point: Point | None = None) -> Cell:
+def make_cell(
+    resolved: Mapping[str, Any], point: Point | None = None, choices: Mapping[str, str] | None = None
+) -> Cell:
     """Make the cell of a config; its labels are what its objects call themselves.
+
+    Args:
+        choices: Name of the YAML of each group.
 
     Raises:
         ConfigError: If an object cannot be built or has no name.
@@ -68,7 +80,9 @@ def make_cell(resolved: Mapping[str, Any], point: Point | None = None) -> Cell:
         memory=_label(method, "remembers", "method") if hasattr(method, "remembers") else "",
     )
     metrics = _label(build(resolved["metrics"], plugins, "metrics"), "name", "metrics")
-    return Cell(folder_name(labels), labels, resolved, metrics, swept_values(point.swept, resolved) if point else {})
+    swept = swept_values(point.swept, resolved) if point else {}
+    files = contents(resolved, method.files(scenario.road))
+    return Cell(folder_name(labels), labels, resolved, metrics, swept, choices or {}, files)
 
 
 def _check_road(method: object, scenario: Any) -> None:  # noqa: ANN401 - any scenario

@@ -1,16 +1,42 @@
-"""The faces of a comparison: what `codriving compare` prints and keeps, and data frames for Python."""
+"""`codriving compare`: methods on the same seeds, as cells, as tables and figures, and as data frames for Python."""
 
-from collections.abc import Sequence
+import json
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from codriving.experiment.compared import FURTHER
-from codriving.experiment.comparison import comparison
-from codriving.experiment.run import command, drive
+from codriving.config.choices import TABLES, TAKING_PART, choices
+from codriving.config.locate import experiments_dir
+from codriving.config.overrides import check_choice, parse
+from codriving.config.sweep import Point, expand
+from codriving.errors import ConfigError
+from codriving.experiment.cells import Cell
+from codriving.experiment.drive import Driven, Outputs, drive
+from codriving.experiment.plan import make_plan
+from codriving.experiment.run import Command
+from codriving.reports.comparison import METHOD_CHOICE, comparison_rows, comparison_table, print_comparison, print_pairs
+from codriving.reports.figures import load_figure
+from codriving.reports.load import load_rows, load_table, print_loads
+from codriving.reports.paper import read_paper
+from codriving.reports.printed import markdown_text
+from codriving.reports.results import CellResults
+from codriving.reports.timing import cpu_per_decision
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+
+BASELINES, SINGLE_VEHICLE, ALL, LOAD = "baselines", "single-vehicle", "all", "load"
+
+EXPERIMENT = {BASELINES: "compare", SINGLE_VEHICLE: "compare-single-vehicle", ALL: "compare-all", LOAD: "load"}
+"""The folder of each table's runs, if the user names none."""
+
+CAVS = "scenario.cavs"
+"""The key that the load is."""
+
+LOADED = ("scenario=intersection,roundabout", f"{CAVS}=4,6,8,12")
+"""What `codriving compare load` drives, as far as the user does not set it."""
 
 
 @dataclass(frozen=True)
@@ -27,21 +53,17 @@ class Comparison:
     folder: Path
 
 
-def run_comparison(table: str | None, overrides: Sequence[str], config_dir: Path | None = None) -> int:
-    """Drive all methods on the same seeds and print how they compare: ``codriving compare``.
-
-    Args:
-        table: ``baselines``, ``single-vehicle``, ``all`` or ``load``.
-        overrides: ``key=value`` tokens that hold for every cell; ``method=`` adds methods.
-
-    Returns:
-        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
+def compare(table: str | None) -> Command:
+    """Return the command of a table of ``codriving compare``.
 
     Raises:
-        UserError: If the table, the config or the run folder cannot be used.
+        ConfigError: If there is no such table.
     """
-    points = comparison(table, overrides, config_dir)
-    return command(f"compare {table}", points, overrides, config_dir, FURTHER[str(table)])
+    if table is None or table not in TABLES:
+        given = "compare needs the name of a table" if table is None else f"unknown table {table!r}"
+        raise ConfigError(f"{given}; write codriving compare TABLE [KEY=VALUE]..., tables: {', '.join(TABLES)}")
+    make_outputs = make_loads if table == LOAD else partial(make_comparison, table)
+    return Command(f"compare {table}", partial(comparison, table), make_outputs=make_outputs)
 
 
 def compare_frames(table: str, *overrides: str, config_dir: Path | None = None) -> Comparison:
@@ -49,12 +71,106 @@ def compare_frames(table: str, *overrides: str, config_dir: Path | None = None) 
 
     Args:
         table: ``baselines``, ``single-vehicle``, ``all`` or ``load``.
-        *overrides: ``key=value`` tokens.
+        *overrides: ``key=value`` tokens that hold for every cell; ``method=`` adds methods.
 
     Raises:
         UserError: If the table, the config or the run folder cannot be used.
         KeyboardInterrupt: If the user stops it; finished episodes are kept.
     """
-    finished = drive(comparison(table, overrides, config_dir), config_dir, FURTHER[table])
-    (own,) = finished.extra.tables
+    command = compare(table)
+    finished = drive(make_plan(command.points(overrides, config_dir), config_dir), command.make_outputs)
+    (own,) = finished.outputs.tables
     return Comparison(own.frame(), finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
+
+
+def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
+    """Find out what a comparison consists of.
+
+    Every method of the table that has a YAML takes part. ``method=`` adds others to them.
+
+    Args:
+        overrides: ``key=value`` tokens that hold for every cell; with several values, for one block of rows each.
+
+    Raises:
+        ConfigError: If an override cannot be read.
+    """
+    keys = [parse(token).key_or_group for token in overrides]
+    added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
+    others = [token for token, key in zip(overrides, keys, strict=True) if key != "method"]
+    if table == LOAD:
+        others = [*(token for token in LOADED if token.partition("=")[0] not in keys), *others]
+    # Asked for once more on the command line, it is the user's.
+    base = () if "experiment" in keys else (f"experiment={EXPERIMENT[table]}",)
+    methods = _methods(table, added, config_dir)
+    return [
+        Point((*base, *point.overrides, f"method={name}"), {**point.swept, "method": name}, point.removed)
+        for point in expand(others, config_dir)
+        for name in methods
+    ]
+
+
+def _methods(table: str, added: Sequence[str], config_dir: Path | None) -> list[str]:
+    """The methods that take part: those of the table that exist, then what the user adds."""
+    own = [point.overrides[0].partition("=")[2] for token in added for point in expand([token], config_dir)]
+    known = choices("method", config_dir)
+    for name in own:
+        check_choice("method", name, config_dir)
+    return list(dict.fromkeys([*(name for name in TAKING_PART[table] if name in known), *own]))
+
+
+def setting(resolved: Mapping[str, Any]) -> str:
+    """Mark the setting of a cell: cells with the same mark differ in the method alone."""
+    return json.dumps(
+        {key: value for key, value in resolved.items() if key not in ("method", "plugins")}, sort_keys=True
+    )
+
+
+def make_comparison(table: str, driven: Driven) -> Outputs:
+    """Make a comparison of methods.
+
+    Returns:
+        ``comparison.csv`` and ``comparison.md``, and what is printed: the same with computing times.
+    """
+    paper, metrics = read_paper(experiments_dir()), driven.metrics
+    blocks: dict[str, list[CellResults]] = {}
+    for cell, results in _results(driven):
+        blocks.setdefault(setting(cell.resolved), []).append(results)
+    rows = [row for block in blocks.values() for row in comparison_rows(block, TAKING_PART[table], paper)]
+    swept = tuple(dict.fromkeys(key for block in blocks.values() for results in block for key in results.swept))
+    whole = comparison_table(rows, swept)
+    kept, printed = (print_comparison(rows, metrics, swept, screen) for screen in (False, True))
+    against = print_pairs(rows, metrics, swept)
+    page = markdown_text(kept) + (f"\n{markdown_text(against, level=2)}" if against else "")
+    files = {"comparison.csv": whole.csv().encode(), "comparison.md": page.encode()}
+    return Outputs(files, (printed, against) if against else (printed,), (whole,))
+
+
+def make_loads(driven: Driven) -> Outputs:
+    """Make the table and the figure of loads.
+
+    Returns:
+        ``load.csv``, ``load.md`` and ``figures/load.*``, and what is printed: the table with computing times.
+    """
+    cells = [(int(cell.resolved["scenario"]["cavs"]), results) for cell, results in _results(driven, without=CAVS)]
+    loads = list(dict.fromkeys(cavs for cavs, _ in cells))
+    rows = load_rows(cells, TAKING_PART[LOAD])
+    swept = tuple(dict.fromkeys(key for _, results in cells for key in results.swept))
+    table = load_table(rows, loads, swept)
+    kept, printed = (print_loads(rows, loads, driven.metrics, swept, screen) for screen in (False, True))
+    files = {"load.csv": table.csv().encode(), "load.md": markdown_text(kept).encode()}
+    figures = {f"figures/{name}": content for name, content in load_figure(rows, loads, driven.metrics).items()}
+    return Outputs({**files, **figures}, (printed,), (table,))
+
+
+def _results(driven: Driven, without: str = "") -> Iterator[tuple[Cell, CellResults]]:
+    dropped = {without}
+    if len({_row(cell) for cell in driven.cells}) == len(driven.cells):
+        dropped.add(METHOD_CHOICE)
+    for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True):
+        swept = {key: value for key, value in cell.swept.items() if key not in dropped}
+        yield cell, CellResults(records, swept, cpu=cpu_per_decision(timings), metric=cell.metrics)
+
+
+def _row(cell: Cell) -> tuple[object, ...]:
+    """What tells a row from the others without the choice of its method."""
+    return (cell.labels, *(pair for pair in cell.swept.items() if pair[0] != METHOD_CHOICE))

@@ -1,19 +1,20 @@
 """A film of each episode of a run, beside its record: ``render=true``."""
 
 import traceback
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
+from codriving.config.build import build
 from codriving.datatypes.outcome import Ending
 from codriving.errors import UserError
-from codriving.experiment.episodes.unit import Unit
-from codriving.experiment.stored import StoredEpisode, screening
+from codriving.experiment.stored import read_film
+from codriving.experiment.worker import AfterEpisode, Unit
 from codriving.runs.atomic import whole_file, write_text
-from codriving.runs.episode_folder import RECORD, read_record
-from codriving.runs.manifest import CellEntry
-from codriving.runs.run_folder import EPISODES
+from codriving.runs.episode_folder import RECORD, episode_folder, read_record
 from codriving.runs.trajectory_file import TRAJECTORY
 
 FILM, FILM_ERROR = "replay.mp4", "replay-error.txt"
@@ -23,11 +24,11 @@ _RATE = Fraction(25)
 
 
 @dataclass(frozen=True)
-class FilmEpisode:
+class FilmEpisode(AfterEpisode):
     """Makes the film of an episode from what was kept of it; records are read and never written."""
 
     folder: Path
-    cells: dict[str, CellEntry]
+    configs: Mapping[str, Mapping[str, Any]]
 
     def path(self, unit: Unit) -> Path:
         """Where the film of an episode is, or will be."""
@@ -38,7 +39,7 @@ class FilmEpisode:
         folder = self._place(unit)
         return (folder / TRAJECTORY).exists() and not self.path(unit).exists()
 
-    def kept(self, unit: Unit) -> Ending | None:
+    def saved(self, unit: Unit) -> Ending | None:
         """Tell how an episode ended that need not be driven again.
 
         Returns:
@@ -56,7 +57,8 @@ class FilmEpisode:
             return
         folder = self._place(unit)
         try:
-            show = screening(StoredEpisode(self.cells[unit.cell], unit.seed, folder))
+            config = self.configs[unit.cell]
+            show = read_film(folder, build(config["scenario"], config["plugins"], "scenario").road)
             # The unfinished film lies in the folder of the cell, which is swept when the run goes on.
             with whole_file(folder / FILM, beside=folder.parent) as partial:
                 show.write(partial, "mp4", _RATE, 1.0)
@@ -73,4 +75,4 @@ class FilmEpisode:
             write_text(self._place(unit) / FILM_ERROR, trace or f"{error}\n")
 
     def _place(self, unit: Unit) -> Path:
-        return self.folder / EPISODES / unit.cell / str(unit.seed)
+        return episode_folder(self.folder, unit.cell, unit.seed)

@@ -9,13 +9,12 @@ from pathlib import Path
 from codriving.config.locate import experiments_dir
 from codriving.config.overrides import parse
 from codriving.config.sweep import Point, expand
-from codriving.errors import ConfigError, ModelError
-from codriving.experiment.further import Driven, Further
+from codriving.errors import ConfigError
+from codriving.experiment.drive import Driven, HaltedError, Interrupted, Outputs, drive
 from codriving.experiment.memory_build import FIRST_SEED, refuse_forgetful
 from codriving.experiment.plan import make_plan
 from codriving.experiment.remembering import memory_file
-from codriving.experiment.run import INTERRUPTED, drive_plan, report, resume_command
-from codriving.experiment.stopping import HaltedError, Interrupted
+from codriving.experiment.run import print_configs, report, resume_command, stopped
 from codriving.reports.figures import learning_figure
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
 from codriving.reports.paper import read_learning
@@ -38,11 +37,12 @@ RECALLED = ("memory.shots", "memory.least_similarity")
 """Settings of the memory that hold while it is built and while it is tested."""
 
 
-def run_learn(overrides: Sequence[str], config_dir: Path | None = None) -> int:
+def run_learn(overrides: Sequence[str], config_dir: Path | None = None, show_only: bool = False) -> int:
     """Build memories, test with them, and print how success depends on what was learnt: ``codriving learn``.
 
     Args:
         overrides: ``key=value`` tokens, among them ``interactions=0,2,5``.
+        show_only: Print the configs with which it learns and drive nothing: the files of the tests are yet to be made.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -52,6 +52,9 @@ def run_learn(overrides: Sequence[str], config_dir: Path | None = None) -> int:
     """
     sizes, others = _sizes(overrides)
     points = settings_of(others, config_dir)
+    if show_only:
+        print_configs(build_points(points, max(SIZES), "learn"), config_dir)
+        return 0
     # One name for both runs, so that the same command goes on with both.
     named = [t.partition("=")[2] for t in others if t.partition("=")[0] == "run"]
     run = named[-1] if named else datetime.now().strftime("%Y-%m-%d_%H%M%S")
@@ -60,35 +63,18 @@ def run_learn(overrides: Sequence[str], config_dir: Path | None = None) -> int:
         builds = make_plan(build_points(points, max(sizes), run), config_dir)
         refuse_forgetful(builds)
         print(f"Learning: {builds.episodes} interactions in each of {len(builds.cells)} settings.", file=sys.stderr)
-        learnt = drive_plan(builds)
+        learnt = drive(builds)
         if learnt.failed:
             report(learnt, again)
             return 1
         files = [memory_file(learnt.folder, cell.folder) for cell in builds.cells]
         tests = make_plan(frozen_points(points, files, sizes, run), config_dir)
         print(f"Testing: {tests.episodes} episodes in each of {len(tests.cells)} cells.", file=sys.stderr)
-        finished = drive_plan(tests, lambda driven: learned(driven, len(points)))
-    except Interrupted as stop:
-        print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)
-        print(f"Go on with: {again}", file=sys.stderr)
-        return INTERRUPTED
-    except HaltedError as stop:
-        raise ModelError(f"{stop.text}; go on with: {again}") from stop
+        finished = drive(tests, lambda driven: learned(driven, len(points)))
+    except (Interrupted, HaltedError) as stop:
+        return stopped(stop, again)
     report(finished, again)
     return 1 if finished.failed or finished.unfilmed else 0
-
-
-def shown_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
-    """Give the configs of the tests for ``--cfg``, without the files of memories that are yet to be built.
-
-    Args:
-        overrides: ``key=value`` tokens.
-
-    Raises:
-        ConfigError: If a token cannot be used.
-    """
-    _, others = _sizes(overrides)
-    return list(build_points(settings_of(others, config_dir), max(SIZES), "learn"))
 
 
 def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:
@@ -134,7 +120,7 @@ def frozen_points(points: Sequence[Point], files: Sequence[Path], sizes: Sequenc
     return cells
 
 
-def learned(driven: Driven, settings: int) -> Further:
+def learned(driven: Driven, settings: int) -> Outputs:
     """Make the learning table and figure.
 
     Returns:
@@ -159,7 +145,7 @@ def learned(driven: Driven, settings: int) -> Further:
     display = print_learning(rows, driven.metrics, swept)
     figures = {f"figures/{name}": content for name, content in learning_figure(rows, paper, driven.metrics).items()}
     files = {"learn.csv": table.csv().encode(), "learn.md": markdown_text(display).encode(), **figures}
-    return Further(files, (display,), (table,))
+    return Outputs(files, (display,), (table,))
 
 
 def _sizes(overrides: Sequence[str]) -> tuple[list[int], list[str]]:

@@ -6,10 +6,10 @@ from pathlib import Path
 from codriving.config.overrides import parse
 from codriving.config.sweep import Point, expand
 from codriving.errors import ConfigError
-from codriving.experiment.further import Driven, Further
+from codriving.experiment.drive import Driven, Outputs
 from codriving.experiment.plan import Plan
 from codriving.experiment.remembering import learns, memory_file
-from codriving.experiment.run import command
+from codriving.experiment.run import Command
 from codriving.memory.reading import read_memory
 from codriving.reports.built_memory import BuiltMemory, print_built
 from codriving.reports.printed import markdown_text
@@ -25,22 +25,6 @@ TABLE_SEEDS = range(1000)
 
 MOST = 10_000
 """Most interactions of one command."""
-
-
-def run_build(overrides: Sequence[str], config_dir: Path | None = None) -> int:
-    """Drive episodes with ``memory=online`` and print what was learnt: ``codriving memory build``.
-
-    Args:
-        overrides: ``key=value`` tokens, among them ``interactions=N``.
-
-    Returns:
-        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
-
-    Raises:
-        UserError: If the config or the run folder cannot be used.
-    """
-    points = build_points(overrides, config_dir)
-    return command("memory build", points, overrides, config_dir, built, refuse_forgetful)
 
 
 def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
@@ -86,7 +70,7 @@ def interactions_of(text: str) -> int:
     return int(text)
 
 
-def built(driven: Driven) -> Further:
+def built(driven: Driven) -> Outputs:
     """Say what was learnt.
 
     Returns:
@@ -101,7 +85,7 @@ def built(driven: Driven) -> Further:
         name = f"{labels.method} {labels.variant}".strip()
         rows.append(BuiltMemory(labels.scenario, name, labels.reasoner, cell.swept, reading))
     display = print_built(rows)
-    return Further({"memory.md": markdown_text(display).encode()}, (display,))
+    return Outputs({"memory.md": markdown_text(display).encode()}, (display,))
 
 
 def refuse_forgetful(plan: Plan) -> None:
@@ -117,3 +101,6 @@ def refuse_forgetful(plan: Plan) -> None:
 
 def _is_count(token: str) -> bool:
     return token.partition("=")[0].lstrip("+") == INTERACTIONS
+
+
+BUILD = Command("memory build", build_points, refuse_forgetful, built)

@@ -1,19 +1,25 @@
-"""Cells with one folder each, whose names a person finds and every file system takes."""
+"""What tells the cells of a run apart: a folder of its own for each, and a column for what no label shows."""
 
+import json
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from codriving.experiment.episodes.unit import Labels
-from codriving.experiment.swept import shown_apart
+from codriving.config.choices import LISTED
+from codriving.experiment.episode import Labels
+from codriving.runs.redaction import redact
 
 if TYPE_CHECKING:
     from codriving.experiment.cells import Cell
 
 LONGEST = 100
 """Characters of a folder's name; Windows allows 260 for a whole path."""
+
+_LABELS = {"scenario": "scenario", "method": "method"}
+_LABELS_BELOW = {"cda": "variant", "method": "variant", "llm": "reasoner"}
+"""The label in which a group, or a key of it, may show."""
 
 
 def folder_name(labels: Labels, swept: Mapping[str, str] | None = None, reasoner: bool = False) -> str:
@@ -63,7 +69,7 @@ def _apart(names: Sequence[str], longer: Sequence[str]) -> list[str]:
 
 
 def repeated(cells: Sequence["Cell"]) -> tuple[str, ...]:
-    """Say which values of a sweep come to the same config as others, for nobody to look for their rows."""
+    """Say which values of a sweep come to the same config as others, whose rows would be looked for in vain."""
     first: dict[str, Cell] = {}
     notes: dict[str, None] = {}
     for cell in cells:
@@ -76,3 +82,48 @@ def repeated(cells: Sequence["Cell"]) -> tuple[str, ...]:
             name = f"{cell.labels.method} {cell.labels.variant}".strip()
             notes[f"{name}: {ours} is the same configuration as {theirs} and has no row of its own."] = None
     return tuple(notes)
+
+
+def swept_values(swept: Mapping[str, str], resolved: Mapping[str, Any]) -> dict[str, str]:
+    """Read off a config what stands in it for the keys that were given several values."""
+    plain = redact(resolved)
+    return {key: typed if key in LISTED else _config_value(plain, key, typed) for key, typed in swept.items()}
+
+
+def _config_value(node: object, key: str, typed: str) -> str:
+    for part in key.split("."):
+        if isinstance(node, Mapping) and part in node:
+            node = node[part]
+        elif isinstance(node, list) and part.isdigit() and int(part) < len(node):
+            node = node[int(part)]
+        else:
+            return typed
+    return node if isinstance(node, str) else json.dumps(node, ensure_ascii=False)
+
+
+def shown_apart(cells: Sequence[tuple[Labels, Mapping[str, str]]]) -> list[dict[str, str]]:
+    """Keep of the swept keys those that need a column of their own.
+
+    Returns:
+        The values of these keys for each cell, by the head of their column.
+    """
+    keys = list(dict.fromkeys(key for _, swept in cells for key in swept))
+    kept = [key for key in keys if _needs_column(key, cells)]
+    return [{_head(key): swept[key] for key in kept if key in swept} for _, swept in cells]
+
+
+def _needs_column(key: str, cells: Sequence[tuple[Labels, Mapping[str, str]]]) -> bool:
+    if len({swept.get(key) for _, swept in cells}) == 1:
+        return False
+    label = _LABELS.get(key) or _LABELS_BELOW.get(key.partition(".")[0])
+    if label is None:
+        return True
+    values = defaultdict(set)
+    for labels, swept in cells:
+        values[getattr(labels, label)].add(swept.get(key))
+    return any(len(several) > 1 for several in values.values())
+
+
+def _head(key: str) -> str:
+    """A choice of scenario may have the name of another one: two files for one class."""
+    return f"{key}_choice" if key in _LABELS else key

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from codriving.config.build import TARGET, build
-from codriving.experiment.episodes.unit import Objects
+from codriving.experiment.worker import Objects
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ def modules_to_preload(configs: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
     """
     used = {target.rpartition(".")[0] for config in configs for target in _targets(config)}
     ours = {module for module in used if module.startswith("codriving.")}
-    return ("codriving.experiment.episodes.process", "codriving.experiment.keep", __name__, *sorted(ours))
+    return ("codriving.experiment.processes", __name__, *sorted(ours))
 
 
 def _targets(node: object) -> Iterator[str]:

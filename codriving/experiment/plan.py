@@ -1,19 +1,29 @@
-"""What is to be run: cells, seeds and where to, worked out before anything is driven."""
+"""What is to be run, worked out and checked before anything is driven; a refusal names the cell it is about."""
 
 import csv
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from codriving.config.build import build
+from codriving.config.compose import compose_named
+from codriving.config.schema import ROOT
 from codriving.config.sweep import Point
+from codriving.config.validate import validate
+from codriving.errors import ConfigError
 from codriving.experiment.cells import Cell, make_cell
-from codriving.experiment.configs import composed, each_cell, validated
-from codriving.experiment.episodes.launcher import Launcher
+from codriving.experiment.launchers import Launcher
 from codriving.experiment.naming import distinct, repeated
 from codriving.experiment.objects import modules_to_preload
 from codriving.experiment.remembering import pinned
+from codriving.runs.redaction import MASK, redact
+
+T = TypeVar("T")
+
+SHARED = (*(name for name in ROOT if name not in ("plugins", "prompts")), "launcher")
+"""What all cells of a run have in common; classes may belong to one scenario alone, templates to one cell."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +63,7 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
     Raises:
         ConfigError: If an override, a value or a combination cannot be used.
     """
-    configs = composed(points, config_dir)
+    configs, choices = composed(points, config_dir)
     first = configs[0]
     launcher: Launcher = build(first["launcher"], first["plugins"], "launcher")
     if not _is_complete(first, len(configs)):
@@ -61,8 +71,8 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
         launcher.prepare(first["workers"], first["episodes"] * len(configs), modules_to_preload(configs))
     validated(points, configs)
     configs = each_cell(points, configs, pinned)
-    pairs = list(zip(configs, points, strict=True))
-    cells = each_cell(points, pairs, lambda pair: make_cell(*pair))
+    parts = list(zip(configs, points, choices, strict=True))
+    cells = each_cell(points, parts, lambda part: make_cell(*part))
     return Plan(
         cells=distinct(cells),
         first_seed=first["seed"],
@@ -88,3 +98,78 @@ def _is_complete(config: Mapping[str, Any], cells: int) -> bool:
     except (OSError, ValueError, csv.Error):
         return False
     return rows >= int(config["episodes"]) * cells
+
+
+def composed(
+    points: Sequence[Point], config_dir: Path | None = None
+) -> tuple[list[dict[str, Any]], list[dict[str, str]]]:
+    """Compose the config of every cell; one after another, since Hydra's state is global.
+
+    Returns:
+        The configs, and of each the names of its YAMLs.
+
+    Raises:
+        ConfigError: If one cannot be composed, or what belongs to the run as a whole differs between cells.
+    """
+    pairs = each_cell(points, points, lambda point: compose_named(point.overrides, config_dir))
+    configs = [config for config, _ in pairs]
+    for point, config in zip(points, configs, strict=True):
+        for key in SHARED:
+            if config[key] != configs[0][key]:
+                one, other = _plain(configs[0][key]), _plain(config[key])
+                raise ConfigError(
+                    f"{key} is {one} in the cell {cell_name(points[0])} and {other} in the cell {cell_name(point)}; "
+                    f"it belongs to the run as a whole, so set {key} on the command line"
+                )
+    return configs, [choices for _, choices in pairs]
+
+
+def validated(points: Sequence[Point], configs: Sequence[Mapping[str, Any]]) -> None:
+    """Check every node of every cell by building it.
+
+    Raises:
+        ConfigError: With the full key, the rule, the value that broke it and the cell.
+    """
+    each_cell(points, configs, validate)
+
+
+def each_cell(points: Sequence[Point], given: Sequence[Any], work: Callable[[Any], T]) -> list[T]:
+    """Do the same for every cell.
+
+    Raises:
+        ConfigError: The first refusal, with the cell it is about, unless all cells are refused for one reason.
+    """
+    done: list[T] = []
+    refusals: dict[int, ConfigError] = {}
+    for index, item in enumerate(given):
+        try:
+            done.append(work(item))
+        except ConfigError as err:
+            refusals[index] = err
+        if refusals and (done or len(set(map(str, refusals.values()))) > 1):
+            break
+    if not refusals:
+        return done
+    index, first = next(iter(refusals.items()))
+    if len(refusals) == len(given) and len(set(map(str, refusals.values()))) == 1:
+        raise first
+    raise type(first)(f"in the cell {cell_name(points[index])}: {first}") from first
+
+
+def cell_name(point: Point) -> str:
+    """Name a cell by what tells it from the others."""
+    masked = redact({key: _number(text) for key, text in point.swept.items()})
+    shown = [f"{key}={MASK if masked[key] == MASK else text}" for key, text in point.swept.items()]
+    return " ".join([*shown, *point.removed]) or "with nothing removed"
+
+
+def _number(text: str) -> object:
+    """A number as such: it gives nothing away, whatever its key is called."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _plain(value: object) -> str:
+    return value if isinstance(value, str) else json.dumps(value, default=str)

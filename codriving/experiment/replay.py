@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from codriving.errors import ConfigError, RunFolderError
-from codriving.experiment.stored import find_episode, screening
+from codriving.experiment.stored import find_episode, read_film, road_of
 from codriving.runs.atomic import whole_file
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def replay(run: Path, options: ReplayOptions) -> str:
     episode = find_episode(run, options.cell, options.episode)
     name = f"replay.{kind}" if options.frame is None else f"frame-{options.frame:g}s.png"
     path = _target(options, episode.folder / name)
-    show = screening(episode, options.scale, options.config_dir)
+    show = read_film(episode.folder, road_of(episode.cell, options.config_dir), options.scale)
     if options.frame is not None and options.frame > show.duration:
         raise ConfigError(f"--frame must be 0 to {show.duration:.1f} s, when the episode ended, got {options.frame:g}")
     try:

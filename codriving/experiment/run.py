@@ -1,26 +1,19 @@
-"""The faces of an experiment: for the command line, which prints, and for Python, which gets data frames."""
+"""The commands that drive cells: for the command line, which prints, and for Python, which gets data frames."""
 
 import shlex
 import sys
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from codriving.config.locate import experiments_dir
+from codriving.config.show import show
 from codriving.config.sweep import Point, expand
 from codriving.errors import ConfigError, ModelError
-from codriving.experiment.ablation import ablation_points
 from codriving.experiment.cells import Cell
-from codriving.experiment.episodes.progress import Progress, show_progress
-from codriving.experiment.execute import Finished, execute
-from codriving.experiment.further import Driven, Further
-from codriving.experiment.objects import BuildObjects, modules_to_preload
-from codriving.experiment.plan import Plan, make_plan
-from codriving.experiment.stopping import HaltedError, Interrupted
-from codriving.reports.paper import read_paper
+from codriving.experiment.drive import Driven, Finished, HaltedError, Interrupted, Outputs, drive
+from codriving.experiment.plan import Plan, cell_name, composed, make_plan, validated
 from codriving.reports.printed import print_table
 
 if TYPE_CHECKING:
@@ -28,6 +21,36 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 """Exit code of a process that the user stopped (128 + SIGINT)."""
+
+OWN_ORDERS = ("own_view", "same_rule", "independent")
+"""The readings of "each CAV generates its expected passing order"; all are reported, none is chosen afterwards."""
+
+REMOVALS: tuple[tuple[str, ...], ...] = (
+    (),
+    ("cda.state_sharing=false",),
+    ("cda.intent_sharing=false",),
+    # An order that was not negotiated cannot bind.
+    *(("cda.negotiation=false", "cda.binding=false", f"cda.own_order={order}") for order in OWN_ORDERS),
+    ("cda.safety_check=false",),
+)
+"""What each cell of the ablation changes (paper, ablation study)."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command that drives cells and prints their tables.
+
+    Attributes:
+        name: What is typed after ``codriving``.
+        points: Gives the configs that ``key=value`` tokens, with a folder of YAMLs of the user's or None, stand for.
+        check: Refuses a plan with a ``ConfigError``.
+        make_outputs: What it makes of its episodes beyond the tables of every run.
+    """
+
+    name: str
+    points: Callable[[Sequence[str], Path | None], Sequence[Point]]
+    check: Callable[[Plan], None] = lambda _: None
+    make_outputs: Callable[[Driven], Outputs] = lambda _: Outputs()
 
 
 @dataclass(frozen=True)
@@ -39,11 +62,14 @@ class Results:
     folder: Path
 
 
-def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> int:
-    """Run one cell, or one for each combination of several values, and print the table: ``codriving run``.
+def run_command(
+    command: Command, overrides: Sequence[str], config_dir: Path | None = None, show_only: bool = False
+) -> int:
+    """Drive the cells of a command, print their table, say how to go on.
 
     Args:
         overrides: ``key=value`` tokens.
+        show_only: Print the config of every cell and drive nothing.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -51,23 +77,51 @@ def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> 
     Raises:
         UserError: If the config or the run folder cannot be used.
     """
-    return command("run", expand(overrides, config_dir), overrides, config_dir)
+    points = command.points(overrides, config_dir)
+    if show_only:
+        print_configs(points, config_dir)
+        return 0
+    plan = make_plan(points, config_dir)
+    command.check(plan)
+    try:
+        finished = drive(plan, command.make_outputs)
+    except (Interrupted, HaltedError) as stop:
+        return stopped(stop, resume_command(command.name, overrides, config_dir, stop.folder.name))
+    report(finished, resume_command(command.name, overrides, config_dir, finished.folder.name))
+    return 1 if finished.failed or finished.unfilmed else 0
 
 
-def run_ablation(overrides: Sequence[str], config_dir: Path | None = None) -> int:
-    """Run the full method and each sub-module removed, and print one table: ``codriving ablate``.
+def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> int:
+    """Do what ``codriving run`` does."""
+    return run_command(RUN, overrides, config_dir)
+
+
+def run_frames(*overrides: str, config_dir: Path | None = None) -> Results:
+    """Run one cell, or those of a sweep, and give the tables as data frames; prints no table.
+
+    Args:
+        *overrides: ``key=value`` tokens.
+
+    Raises:
+        UserError: If the config or the run folder cannot be used.
+        KeyboardInterrupt: If the user stops it; finished episodes are kept.
+    """
+    finished = drive(make_plan(expand(overrides, config_dir), config_dir))
+    return Results(finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
+
+
+def ablation_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
+    """Take the sub-modules of the reasoning module out of each config in turn.
 
     Args:
         overrides: ``key=value`` tokens that hold for every cell; with several values, for one ablation each.
 
     Returns:
-        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
-
-    Raises:
-        UserError: If the config or the run folder cannot be used.
+        The cells, those of one config together and the full method first.
     """
-    points = ablation_points(expand(overrides, config_dir))
-    return command("ablate", points, overrides, config_dir, check=_refuse_alike)
+    points = expand(overrides, config_dir)
+    base = () if any(token.lstrip("+").startswith("experiment=") for token in overrides) else ("experiment=ablate",)
+    return [Point((*base, *p.overrides, *removal), p.swept, removal) for p in points for removal in REMOVALS]
 
 
 def _refuse_alike(plan: Plan) -> None:
@@ -83,85 +137,45 @@ def _refuse_alike(plan: Plan) -> None:
             )
 
 
-def run_frames(*overrides: str, config_dir: Path | None = None) -> Results:
-    """Run one cell, or those of a sweep, and give the tables as data frames; prints no table.
+RUN = Command("run", expand)
+ABLATE = Command("ablate", ablation_points, _refuse_alike)
+
+
+def print_configs(points: Sequence[Point], config_dir: Path | None = None) -> None:
+    """Print the composed config of every cell, once all of them are known to be valid.
+
+    Raises:
+        ConfigError: If one of them cannot be used.
+    """
+    configs, _ = composed(points, config_dir)
+    validated(points, configs)
+    for index, (point, config) in enumerate(zip(points, configs, strict=True)):
+        if len(points) > 1:
+            print(f"---\n# cell {index + 1} of {len(points)}: {cell_name(point)}")
+        print(show(config), end="")
+
+
+def stopped(stop: Interrupted | HaltedError, again: str) -> int:
+    """Say how to go on with a run that has been stopped.
 
     Args:
-        *overrides: ``key=value`` tokens.
-
-    Raises:
-        UserError: If the config or the run folder cannot be used.
-        KeyboardInterrupt: If the user stops it; finished episodes are kept.
-    """
-    finished = drive(expand(overrides, config_dir), config_dir)
-    return Results(finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
-
-
-def drive(
-    points: Sequence[Point], config_dir: Path | None = None, extend: Callable[[Driven], Further] | None = None
-) -> Finished:
-    """Drive some cells, or what is missing of them, with a progress display and without a table.
-
-    Raises:
-        UserError: If the config or the run folder cannot be used.
-        Interrupted: If the user stops it; finished episodes are kept.
-    """
-    return drive_plan(make_plan(points, config_dir), extend)
-
-
-def drive_plan(plan: Plan, extend: Callable[[Driven], Further] | None = None) -> Finished:
-    """Drive what a plan says, or what is missing of it, with a progress display and without a table.
-
-    Raises:
-        UserError: If the run folder cannot be used.
-        Interrupted: If the user stops it; finished episodes are kept.
-    """
-    preload = [*modules_to_preload(plan.configs.values()), *(["codriving.animation.film"] if plan.render else [])]
-    further = extend or (lambda _: Further())
-
-    def progress(units: Mapping[str, int], note: Callable[[], str] | None) -> AbstractContextManager[Progress]:
-        return show_progress(units, note=note)
-
-    return execute(plan, BuildObjects, preload, read_paper(experiments_dir()), progress, further)
-
-
-def command(
-    name: str,
-    points: Sequence[Point],
-    overrides: Sequence[str],
-    config_dir: Path | None,
-    extend: Callable[[Driven], Further] | None = None,
-    check: Callable[[Plan], None] = lambda _: None,
-) -> int:
-    """Do what a command of several cells does: drive them, print their table, say how to go on.
-
-    Args:
-        name: The command, for instance ``ablate``.
+        again: The command.
 
     Returns:
-        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
+        Exit code, if it was the user who stopped it.
 
     Raises:
-        UserError: If the config or the run folder cannot be used.
+        ModelError: If it was the language model.
     """
-    plan = make_plan(points, config_dir)
-    check(plan)
-    try:
-        finished = drive_plan(plan, extend)
-    except Interrupted as stop:
-        again = resume_command(name, overrides, config_dir, stop.folder.name)
-        print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)
-        print(f"Go on with: {again}", file=sys.stderr)
-        return INTERRUPTED
-    except HaltedError as stop:
-        again = resume_command(name, overrides, config_dir, stop.folder.name)
+    if isinstance(stop, HaltedError):
         raise ModelError(f"{stop.text}; go on with: {again}") from stop
-    report(finished, resume_command(name, overrides, config_dir, finished.folder.name))
-    return 1 if finished.failed or finished.unfilmed else 0
+    print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)
+    print(f"Go on with: {again}", file=sys.stderr)
+    return INTERRUPTED
 
 
 def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None, run: str) -> str:
-    """Give the command that goes on with a run."""
+    """Return the command that goes on with a run."""
     kept = [override for override in overrides if not override.lstrip("+").startswith("run=")]
     folder = ["--config-dir", str(config_dir)] if config_dir else []
     return shlex.join(["codriving", *name.split(), *kept, f"run={run}", *folder])
@@ -171,13 +185,14 @@ def report(finished: Finished, again: str) -> None:
     """Print what a finished run has to say; the last line tells its folder."""
     if not finished.driven and not finished.filmed:
         print(f"Nothing to do: all {finished.kept} episodes of this run are finished already.")
-    for index, display in enumerate(finished.displays):
+    for index, printed in enumerate(finished.printed):
         if index:
             print()
-        print_table(display)
+        print_table(printed)
+    episodes = f"{finished.folder}/episodes"
     if finished.failed:
         first = finished.failed[0]
-        where = f"{finished.folder}/episodes/{first.unit.cell}/{first.unit.seed}/error.txt"
+        where = f"{episodes}/{first.unit.cell}/{first.unit.seed}/error.txt"
         print(f"{len(finished.failed)} episodes ended in an error, the first with {first.message} (see {where}).")
         print(f"Repeat them with: {again}")
     if finished.changed:
@@ -187,9 +202,9 @@ def report(finished: Finished, again: str) -> None:
     if finished.filmed:
         print(f"{finished.filmed} films made, replay.mp4 beside the record of each episode.")
     if finished.unfilmed:
-        first_unit = finished.unfilmed[0]
-        where = f"{finished.folder}/episodes/{first_unit.cell}/{first_unit.seed}/replay-error.txt"
+        unit = finished.unfilmed[0]
+        where = f"{episodes}/{unit.cell}/{unit.seed}/replay-error.txt"
         print(f"{len(finished.unfilmed)} episodes could not be filmed (see {where}). Try again with: {again}")
-    if finished.further:
-        print(f"{finished.further} more episodes in this run folder were not asked for and are left out of the table.")
+    if finished.left_out:
+        print(f"{finished.left_out} more episodes in this run folder were not asked for and are left out of the table.")
     print(f"Run folder: {finished.folder}")

@@ -3,18 +3,19 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from codriving.config.build import build
-from codriving.config.plugins import find_beside
+from codriving.config.build import TARGET, build
+from codriving.config.choices import choices
+from codriving.config.compose import compose
 from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.road import Road
 from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import RunFolderError
-from codriving.runs.episode_folder import read_decisions, read_record
-from codriving.runs.manifest import MANIFEST, CellEntry, Manifest, read_manifest
+from codriving.runs.episode_folder import EPISODES, read_decisions, read_record
+from codriving.runs.identity import CellEntry
+from codriving.runs.manifest import MANIFEST, Manifest, read_manifest
 from codriving.runs.redaction import nested
-from codriving.runs.run_folder import EPISODES
 from codriving.runs.trajectory_file import TRAJECTORY, read_trajectory
 
 if TYPE_CHECKING:
@@ -77,17 +78,16 @@ def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode
     return StoredEpisode(entry, chosen, episodes / str(chosen))
 
 
-def screening(episode: StoredEpisode, scale: float = 1.0, config_dir: Path | None = None) -> "EpisodeFilm":
+def read_film(folder: Path, road: Road, scale: float = 1.0) -> "EpisodeFilm":
     """Read an episode for its pictures.
 
     Raises:
         RunFolderError: If there is nothing to show, or a file is damaged.
-        ConfigError: If its scenario cannot be built any more.
     """
     from codriving.animation.film import EpisodeFilm
 
-    record, trajectory = read_driven(episode.folder)
-    return EpisodeFilm(road_of(episode.cell, config_dir), trajectory, read_decisions(episode.folder), record, scale)
+    record, trajectory = read_driven(folder)
+    return EpisodeFilm(road, trajectory, read_decisions(folder), record, scale)
 
 
 def read_driven(folder: Path) -> tuple[EpisodeRecord, Trajectory]:
@@ -105,19 +105,35 @@ def read_driven(folder: Path) -> tuple[EpisodeRecord, Trajectory]:
 
 
 def road_of(cell: CellEntry, config_dir: Path | None = None) -> Road:
-    """Build the road of a cell from the settings in the manifest.
+    """Build the road of a cell: the class is that of the scenario's YAML, only the values are from the manifest.
+
+    Args:
+        config_dir: Folder with YAMLs of the user's.
 
     Raises:
+        RunFolderError: If there is no such YAML, or no value in the manifest.
         ConfigError: If the scenario cannot be built any more, for instance since its package is missing.
     """
-    settings = nested(cell.settings)
-    scenario, listed = settings.get("scenario"), settings.get("plugins")
-    plugins = listed if isinstance(listed, list) else []
-    if not isinstance(scenario, Mapping):
+    values = nested({key: value for key, value in cell.settings.items() if key.startswith("scenario.")})
+    if not values:
         raise RunFolderError(f"the manifest does not say what scenario {cell.folder} was; drive it again")
-    find_beside(plugins, config_dir)
-    road: Road = build(scenario, plugins, "scenario").road
+    name = cell.choices.get("scenario", cell.scenario)
+    if name not in (known := choices("scenario", config_dir)):
+        raise RunFolderError(
+            f"{cell.folder} was driven in the scenario {name}, which is none of {', '.join(known)}; name the folder of "
+            "its YAML with --config-dir"
+        )
+    config = compose([f"scenario={name}"], config_dir)
+    node = _filled(config["scenario"], values["scenario"])
+    road: Road = build(node, config["plugins"], "scenario").road
     return road
+
+
+def _filled(node: object, values: object) -> Any:  # noqa: ANN401 - any plain value
+    """A node of a YAML with the values of a manifest; it keeps its classes."""
+    if not isinstance(node, Mapping) or not isinstance(values, Mapping):
+        return values
+    return {**node, **{key: _filled(node.get(key), value) for key, value in values.items() if key != TARGET}}
 
 
 def _cell(run: Path, manifest: Manifest, name: str | None) -> CellEntry:

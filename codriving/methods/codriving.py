@@ -1,15 +1,19 @@
 """CoDrivingLLM: the paper's method, with its CDA level, its reasoner and its memory put into the slots."""
 
+from collections.abc import Mapping
+from pathlib import Path
+
 from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.experience import Experience, Interaction
 from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Account, CaseMemory, Method, Model
+from codriving.datatypes.road import Road
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.experience_log import ExperienceLog
-from codriving.methods.language_model.ports import check_prompts, ports
+from codriving.methods.language_model.ports import check_prompts, ports, prompt_files
 from codriving.methods.pipeline import Pipeline
 from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
 from codriving.reasoning.perception import Perception
@@ -46,6 +50,9 @@ class CoDriving(Method):
         self.cda, self.llm, self.memory, self.margin = cda, llm, memory, margin
         self.variant, self.reasoner = cda.variant, llm.name
         self.remembers = memory.label if memory is not None else ""
+
+    def files(self, road: Road) -> Mapping[str, Path]:
+        return prompt_files(self.llm, self.memory, ("negotiate", "decide"), "reflect")
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Fill the slots for a new episode."""

@@ -5,7 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from codriving.errors import RunFolderError
-from codriving.runs.manifest import FORMAT, CellEntry, Manifest
+from codriving.runs.identity import BEHAVIOUR, CellEntry, changed_files, same_cell, same_settings
+from codriving.runs.manifest import Manifest
 
 
 def continued(folder: Path, there: Manifest, here: Manifest) -> Manifest:
@@ -15,27 +16,36 @@ def continued(folder: Path, there: Manifest, here: Manifest) -> Manifest:
     shows that the same experiment is meant. A cell keeps its folder, whatever it would be called now.
 
     Raises:
-        RunFolderError: If no cell of the one is a cell of the other, or the folder has another layout.
+        RunFolderError: If no cell of the one is a cell of the other, or a file that one of them names has changed.
     """
-    if there.format != FORMAT:
+    pairs = [(next((old for old in there.cells if same_cell(old, cell)), None), cell) for cell in here.cells]
+    for old, cell in pairs:
+        if old is None:
+            _refuse_changed(folder, there.cells, cell)
+    if all(old is None for old, _ in pairs):
         raise RunFolderError(
-            f"{folder} was written by another version (layout {there.format}, not {FORMAT}), so nothing can be added; "
-            "choose another run=<name>: what is in it stays as it is"
-        )
-    held = {cell.fingerprint: cell for cell in there.cells}
-    if not any(cell.fingerprint in held for cell in here.cells):
-        difference = _difference(there.cells, here.cells[0])
-        raise RunFolderError(
-            f"{folder} holds a run of another config: {difference}; repeat its settings to go on with it, or choose "
-            "another run=<name>"
+            f"{folder} holds a run of another config: {_difference(there.cells, here.cells[0])}; repeat its settings "
+            "to go on with it, or choose another run=<name>"
         )
     taken = {cell.folder.casefold() for cell in there.cells}
-    asked = {cell.fingerprint: _placed(cell, held, taken) for cell in here.cells}
-    return replace(
-        there,
-        episodes=here.episodes,
-        rows=tuple(cell.folder for cell in asked.values()),
-        cells=tuple((held | asked).values()),
+    asked = {
+        (old or cell).folder: replace(cell, folder=old.folder if old else _free(cell, taken)) for old, cell in pairs
+    }
+    held = {cell.folder: cell for cell in there.cells}
+    rows = tuple(cell.folder for cell in asked.values())
+    if there.behaviour == BEHAVIOUR:
+        held |= {cell.folder: cell for cell in asked.values()}
+    elif not set(rows) <= held.keys():
+        raise other_behaviour(folder, there)
+    return replace(there, episodes=here.episodes, rows=rows, cells=tuple(held.values()))
+
+
+def other_behaviour(folder: Path, there: Manifest) -> RunFolderError:
+    """Return the error for a folder to which this version must not add, since it would drive otherwise."""
+    release = there.versions.get("codriving", "another release")
+    return RunFolderError(
+        f"{folder} was driven by codriving {release} (behaviour {there.behaviour}, here {BEHAVIOUR}), so it can be "
+        f"replayed and reported but not extended; extend it with codriving {release}, or choose another run=<name>"
     )
 
 
@@ -48,13 +58,19 @@ def changed_versions(there: Manifest, here: Manifest) -> tuple[str, ...]:
     return tuple(f"{name} {was} -> {is_}" for name, was, is_ in pairs if was != is_)
 
 
-def _placed(cell: CellEntry, held: dict[str, CellEntry], taken: set[str]) -> CellEntry:
-    """Give a cell the folder that it has, or one that no other cell has."""
-    if cell.fingerprint in held:
-        return replace(cell, folder=held[cell.fingerprint].folder)
-    if cell.folder.casefold() in taken:
-        return replace(cell, folder=f"{cell.folder}-{cell.fingerprint[:8]}")
-    return cell
+def _refuse_changed(folder: Path, there: Sequence[CellEntry], cell: CellEntry) -> None:
+    for old in there:
+        if same_settings(old, cell) and (changed := list(changed_files(old, cell))):
+            more = f" and {len(changed) - 3} more files" if len(changed) > 3 else ""
+            raise RunFolderError(
+                f"{', '.join(changed[:3])}{more} since {folder} was begun, so nothing can be added to {old.folder}; "
+                "restore it, or choose another run=<name>"
+            )
+
+
+def _free(cell: CellEntry, taken: set[str]) -> str:
+    """Return the name of a folder that no other cell has."""
+    return f"{cell.folder}-{cell.fingerprint[:8]}" if cell.folder.casefold() in taken else cell.folder
 
 
 def _difference(there: Sequence[CellEntry], new: CellEntry) -> str:
@@ -67,10 +83,15 @@ def _difference(there: Sequence[CellEntry], new: CellEntry) -> str:
 
 
 def _differences(old: CellEntry, new: CellEntry) -> list[str]:
-    pairs = {
-        key: (old.settings.get(key, "absent"), new.settings.get(key, "absent"))
-        for key in sorted(old.settings.keys() | new.settings.keys())
-    }
-    differing = {key: f"{key} was {was}, is now {now}" for key, (was, now) in pairs.items() if was != now}
-    # What refers to another key (environment.scenario.cavs) differs along with it.
-    return [text for key, text in differing.items() if not any(key.endswith(f".{other}") for other in differing)]
+    was, now = _told(old), _told(new)
+    if not old.choices:
+        # Of release 0.1 there are no more names than these, and no files.
+        now = {key: value for key, value in now.items() if key in was or key in new.settings}
+    keys = sorted(was.keys() | now.keys())
+    pairs = {key: (was.get(key, "absent"), now.get(key, "absent")) for key in keys}
+    return [f"{key} was {before}, is now {after}" for key, (before, after) in pairs.items() if before != after]
+
+
+def _told(cell: CellEntry) -> dict[str, str]:
+    names = {"scenario": cell.scenario, "method": cell.method, **cell.choices}
+    return {**names, **cell.settings, **{file.name: file.sha256[:12] for file in cell.files}}

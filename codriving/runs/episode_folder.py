@@ -29,6 +29,13 @@ ERROR = "error.txt"
 UNNAMED = ""
 """Name of the metric of a record that release 0.1 wrote."""
 
+EPISODES = "episodes"
+
+
+def episode_folder(run: Path, cell: str, seed: int) -> Path:
+    """Return the folder of one episode of a run."""
+    return run / EPISODES / cell / str(seed)
+
 
 @dataclass(frozen=True, slots=True)
 class Timing:
@@ -51,19 +58,13 @@ class Timing:
 
 
 def timing_of(seconds: float, decision_seconds: Sequence[float], decision_cpu: Sequence[float] = ()) -> Timing:
-    """Sum up what was measured.
+    """Sum up what was measured of an episode and of each of its decisions, in wall-clock and in CPU time [s]."""
 
-    Args:
-        seconds: Wall-clock time of the episode [s].
-        decision_seconds: Wall-clock time of each decision [s].
-        decision_cpu: CPU time of each decision [s]; nothing where it was not measured.
-    """
-    mean, longest = _mean_and_max(decision_seconds)
-    return Timing(seconds, len(decision_seconds), mean, longest, *_mean_and_max(decision_cpu))
+    def mean_and_max(values: Sequence[float]) -> tuple[float | None, float | None]:
+        return (sum(values) / len(values), max(values)) if values else (None, None)
 
-
-def _mean_and_max(values: Sequence[float]) -> tuple[float | None, float | None]:
-    return (sum(values) / len(values), max(values)) if values else (None, None)
+    mean, longest = mean_and_max(decision_seconds)
+    return Timing(seconds, len(decision_seconds), mean, longest, *mean_and_max(decision_cpu))
 
 
 def write_episode(
@@ -155,12 +156,7 @@ def read_transcript(folder: Path) -> tuple[dict[str, Any], ...]:
 
 
 def read_timing(folder: Path) -> Timing | None:
-    """Read the timing of one episode.
-
-    Returns:
-        The timing, or None where there is none to read: no result depends on it. What an earlier version did not
-        measure is None.
-    """
+    """Read the timing of one episode; None where there is none to read, since no result depends on it."""
     try:
         return decode(Timing, (folder / TIMING).read_text(encoding="utf-8"))
     except (OSError, ValueError):

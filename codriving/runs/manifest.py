@@ -1,34 +1,21 @@
-"""``manifest.json``: what a run was made of and with; nothing in it comes from the environment's variables."""
+"""``manifest.json``: what a run was made of and with; nothing in it comes from the environment's variables.
+
+It names no class and no plug-in, so that reading a folder never chooses code.
+"""
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from codriving.errors import RunFolderError
-from codriving.runs.json_files import decode, encode
+from codriving.runs.identity import CellEntry, settings_of, snapshot_of
+from codriving.runs.json_files import decode
+from codriving.runs.redaction import nested
 
 MANIFEST = "manifest.json"
-FORMAT = 2
+FORMAT = 3
 """Layout of the run folder; raised when an older reader could no longer read a newer folder."""
-
-
-@dataclass(frozen=True, slots=True)
-class CellEntry:
-    """One cell of the run: one config on many seeds.
-
-    Attributes:
-        folder: Name of its folder under ``episodes/``.
-        reasoner: Who reasons: ``rules`` or the name of a model.
-    """
-
-    folder: str
-    scenario: str
-    method: str
-    variant: str
-    reasoner: str
-    fingerprint: str
-    swept: dict[str, str]
-    settings: dict[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +23,13 @@ class Manifest:
     """What a run was made of and with.
 
     Attributes:
+        behaviour: Behaviour number of the version that drives in it.
+        rows: Folders of the cells that were asked for last.
         commit: Commit of the checkout, with ``+changes`` if it was not clean; None for an installed package.
     """
 
     format: int
+    behaviour: int
     experiment: str
     created: str
     first_seed: int
@@ -51,11 +41,6 @@ class Manifest:
     machine: dict[str, str]
 
 
-def manifest_text(manifest: Manifest) -> str:
-    """Give the content of ``manifest.json``."""
-    return encode(manifest)
-
-
 def read_manifest(folder: Path) -> Manifest | None:
     """Read the manifest of a run folder.
 
@@ -63,27 +48,41 @@ def read_manifest(folder: Path) -> Manifest | None:
         The manifest, or None if there is none.
 
     Raises:
-        RunFolderError: If it is damaged or cannot be read.
+        RunFolderError: If it is damaged, of a later version, or cannot be read.
     """
     path = folder / MANIFEST
     try:
-        return decode(Manifest, _of_this_layout(path.read_text(encoding="utf-8")))
+        plain = json.loads(path.read_text(encoding="utf-8"))
+        layout = plain.get("format") if isinstance(plain, dict) else None
+        if isinstance(layout, int) and layout > FORMAT:
+            raise RunFolderError(
+                f"{folder} was written by a later version (layout {layout}, not {FORMAT}); update first"
+            )
+        manifest = decode(Manifest, json.dumps(_of_release_0_1(plain) if layout in (1, 2) else plain))
+        for name in (*manifest.rows, *(cell.folder for cell in manifest.cells)):
+            if name in ("", ".", "..") or set(name) & set("/\\:\0"):
+                raise ValueError(f"{name!r} is no name of a folder")
     except FileNotFoundError:
         return None
     except OSError as error:
         raise RunFolderError(f"cannot read {path}: {error.strerror}; check its permissions") from error
-    except ValueError as error:
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise RunFolderError(
-            f"{path} is damaged ({error}), so nobody can tell what config the run is of; start a new one with "
+            f"{path} is damaged ({error}), so that it does not tell what config the run is of; start a new one with "
             "another run=<name>: the episodes in the old folder stay readable"
         ) from error
+    return manifest
 
 
-def _of_this_layout(text: str) -> str:
-    """Fill in what layout 1 had not: its cells were all rows, and none was of a sweep."""
-    plain = json.loads(text)
-    if not isinstance(plain, dict) or plain.get("format") != 1:
-        return text
-    cells = plain["cells"]
-    upgraded = [{**cell, "swept": {}} for cell in cells]
-    return json.dumps({**plain, "rows": [cell["folder"] for cell in cells], "cells": upgraded})
+def _of_release_0_1(plain: dict[str, Any]) -> dict[str, Any]:
+    """Read layout 2, and layout 1, whose cells were all rows and none of a sweep."""
+    rows = plain.get("rows", [cell["folder"] for cell in plain["cells"]])
+    cells = [_cell_of_release_0_1({"swept": {}, **cell}) for cell in plain["cells"]]
+    return {**plain, "format": FORMAT, "behaviour": 1, "rows": rows, "cells": cells}
+
+
+def _cell_of_release_0_1(cell: dict[str, Any]) -> dict[str, Any]:
+    """Leave out the classes, which took part in its fingerprint."""
+    resolved = nested(cell["settings"])
+    files = [asdict(file) for file in snapshot_of(resolved)]
+    return {**cell, "fingerprint": "", "settings": settings_of(resolved), "choices": {}, "files": files}

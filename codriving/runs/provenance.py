@@ -1,9 +1,9 @@
 """Where results come from: versions, commit and machine, for the manifest."""
 
-import functools
 import os
 import platform
 import subprocess
+from functools import cache, partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -24,7 +24,7 @@ PACKAGES = (
 
 
 def versions() -> dict[str, str]:
-    """Give the version of Python and of each package that can change a result, if it is installed."""
+    """Return the version of Python and of each package that can change a result, if it is installed."""
     found = {"python": platform.python_version()}
     for name in PACKAGES:
         try:
@@ -35,7 +35,7 @@ def versions() -> dict[str, str]:
 
 
 def machine() -> dict[str, str]:
-    """Give operating system, processor and number of cores; no names of hosts or people."""
+    """Return operating system, processor and number of cores; no names of hosts or people."""
     return {
         "system": platform.system(),
         "release": platform.release(),
@@ -44,28 +44,19 @@ def machine() -> dict[str, str]:
     }
 
 
-@functools.cache
+@cache
 def commit() -> str | None:
-    """Give the commit of the checkout that runs, with ``+changes`` if it was not clean.
+    """Return the commit of the checkout that runs, with ``+changes`` if it was not clean.
 
-    Returns:
-        The commit, or None for an installed package: a repository that merely surrounds it is not ours.
+    None for an installed package: a repository that merely surrounds it is not ours.
     """
     top = Path(__file__).resolve().parents[2]
     if not (top / ".git").exists():
         return None
-    head = _git(top, "rev-parse", "HEAD")
-    if not head:
-        return None
-    return head + ("+changes" if _git(top, "status", "--porcelain", "--untracked-files=no") else "")
-
-
-def _git(top: Path, *arguments: str) -> str:
-    """Ask git; an empty answer if there is none."""
+    git = partial(subprocess.run, capture_output=True, text=True, timeout=10, check=True, cwd=top)
     try:
-        answer = subprocess.run(
-            ["git", "-C", str(top), *arguments], capture_output=True, text=True, timeout=10, check=True
-        )
+        head = git(["git", "rev-parse", "HEAD"]).stdout.strip()
+        changes = git(["git", "status", "--porcelain", "--untracked-files=no"]).stdout.strip()
     except (OSError, subprocess.SubprocessError):
-        return ""
-    return answer.stdout.strip()
+        return None
+    return head + ("+changes" if changes else "")

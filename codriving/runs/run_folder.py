@@ -2,23 +2,25 @@
 
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Self
 
 from filelock import FileLock, Timeout
 
+from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import PARTIAL, sweep, write_text
-from codriving.runs.continuation import continued
-from codriving.runs.episode_folder import RECORD, read_record
-from codriving.runs.json_files import damaged
-from codriving.runs.manifest import MANIFEST, CellEntry, Manifest, manifest_text, read_manifest
+from codriving.runs.continuation import continued, other_behaviour
+from codriving.runs.episode_folder import EPISODES, RECORD, episode_folder, read_record
+from codriving.runs.identity import BEHAVIOUR, CellEntry
+from codriving.runs.json_files import damaged, encode
+from codriving.runs.manifest import MANIFEST, Manifest, read_manifest
 
 CONFIG = "config.yaml"
 CONFIGS = "configs"
-EPISODES = "episodes"
 
 
 @contextmanager
@@ -69,8 +71,13 @@ class RunFolder:
         if there is None:
             self._refuse_foreign()
         manifest = asked if there is None else continued(self.path, there, asked)
+        if there is not None and there.behaviour != BEHAVIOUR and not self._complete(manifest):
+            raise other_behaviour(self.path, there)
         self.clean()
         if manifest == there:
+            return manifest
+        # What release 0.1 has finished stays to the byte; what it has begun is told by choices and files from now on.
+        if there is not None and replace(manifest, cells=there.cells) == there and self._complete(manifest):
             return manifest
         texts = [configs[name] for name in asked.rows]
         (self.path / CONFIGS).mkdir(exist_ok=True)
@@ -78,7 +85,7 @@ class RunFolder:
             write_text(self.path / CONFIGS / f"{name}.yaml", text)
         write_text(self.path / CONFIG, texts[0])
         # Last, for it says that the folder is a run's: a kill before this leaves nothing to misread.
-        write_text(self.path / MANIFEST, manifest_text(manifest))
+        write_text(self.path / MANIFEST, encode(manifest))
         return manifest
 
     def _refuse_foreign(self) -> None:
@@ -91,6 +98,13 @@ class RunFolder:
                     "choose another run=<name> or output=<folder>"
                 )
 
+    def _complete(self, manifest: Manifest) -> bool:
+        """Tell whether each episode that is asked for is there and did not end in an error."""
+        cells = {cell.folder: cell for cell in manifest.cells}
+        seeds = range(manifest.first_seed, manifest.first_seed + manifest.episodes)
+        records = (self.record(cells[name], seed) for name in manifest.rows for seed in seeds)
+        return all(record is not None and record.outcome.ending is not Ending.ERROR for record in records)
+
     def clean(self) -> None:
         """Remove what a killed run left unfinished."""
         sweep(self.path)
@@ -100,7 +114,7 @@ class RunFolder:
 
     def episode(self, cell: str, seed: int) -> Path:
         """Give the folder of one episode."""
-        return self.path / EPISODES / cell / str(seed)
+        return episode_folder(self.path, cell, seed)
 
     def record(self, cell: CellEntry, seed: int) -> EpisodeRecord | None:
         """Read the record of one episode and check that it is the one that belongs there.
@@ -121,7 +135,7 @@ class RunFolder:
             raise damaged(folder / RECORD, f"it is the record of {found}, not of {expected}")
         return record
 
-    def further(self, seeds: Collection[int]) -> int:
+    def left_out(self, seeds: Collection[int]) -> int:
         """Count the episodes that the folder holds beyond those that are asked for."""
         asked = {str(seed) for seed in seeds}
         count = 0

@@ -10,18 +10,14 @@ import numpy as np
 from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Kind
-from codriving.errors import RunFolderError
-from codriving.runs.json_files import damaged
+from codriving.runs.json_files import damaged, read_episode_text
 
 TRAJECTORY = "trajectory.csv"
 COLUMNS = ("time", "id", "kind", "x", "y", "heading", "speed", "acceleration", "action")
 
 
 def trajectory_text(trajectory: Trajectory) -> str:
-    """Give the content of ``trajectory.csv``.
-
-    Returns:
-        CSV with a header, rows by time and then in the order of the tracks; metres, radians, seconds to 4 decimals.
+    """Return CSV with a header, rows by time and then in the order of the tracks; metres, radians, seconds.
 
     Raises:
         ValueError: If a value is not finite.
@@ -61,16 +57,14 @@ def read_trajectory(folder: Path, record: EpisodeRecord) -> Trajectory | None:
         RunFolderError: If it is damaged or cannot be read.
     """
     path = folder / TRAJECTORY
+    if not path.exists():
+        return None
+    text = read_episode_text(path)
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            head, *rows = csv.reader(file)
+        head, *rows = csv.reader(text.splitlines())
         if tuple(head) != COLUMNS:
             raise ValueError(f"its columns are not {', '.join(COLUMNS)}")
         return _trajectory([dict(zip(COLUMNS, row, strict=True)) for row in rows], record)
-    except FileNotFoundError:
-        return None
-    except OSError as error:
-        raise RunFolderError(f"cannot read {path}: {error.strerror}; check its permissions") from error
     except ValueError as error:
         raise damaged(path, str(error)) from error
 

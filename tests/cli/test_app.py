@@ -131,7 +131,7 @@ def test_a_bug_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object) -> int:
         raise RuntimeError("a bug")
 
-    monkeypatch.setattr("codriving.experiment.run_experiment", broken)
+    monkeypatch.setattr("codriving.experiment.run.run_command", broken)
     assert isinstance(call("run").exception, RuntimeError)
 
 
@@ -139,7 +139,7 @@ def test_an_interruption_before_the_batch_is_exit_code_130(monkeypatch: pytest.M
     def interrupted(*_: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("codriving.experiment.run_experiment", interrupted)
+    monkeypatch.setattr("codriving.experiment.run.run_command", interrupted)
     assert call("run").exit_code == 130
 
 
@@ -151,9 +151,9 @@ def test_the_exit_code_is_the_experiments(monkeypatch: pytest.MonkeyPatch, code:
         given.extend(args)
         return code
 
-    monkeypatch.setattr("codriving.experiment.run_experiment", experiment)
+    monkeypatch.setattr("codriving.experiment.run.run_command", experiment)
     assert call("run", "episodes=3", "+seed=4").exit_code == code
-    assert given == [["episodes=3", "+seed=4"], None]
+    assert given[1:] == [["episodes=3", "+seed=4"], None, False]
 
 
 @pytest.mark.parametrize(("command", "cells"), [("run", 2), ("ablate", 14)])
@@ -171,7 +171,7 @@ def test_cfg_of_a_sweep_is_a_document_for_each_cell(command: str, cells: int) ->
 def test_cfg_prints_the_config_and_runs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     import yaml
 
-    monkeypatch.setattr("codriving.experiment.run_experiment", None)
+    monkeypatch.setattr("codriving.experiment.run.drive", None)
     result = call("run", "--cfg", "episodes=3", "cda=prescriptive")
     assert result.exit_code == 0
     shown = yaml.safe_load(result.stdout)

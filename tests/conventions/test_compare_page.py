@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from codriving.config.choices import TABLES, TAKING_PART
-from codriving.experiment.comparison import comparison
+from codriving.experiment.compare import comparison
 from codriving.reports.comparison import CPU, comparison_table
 from codriving.reports.pairs import AGAINST, PAIRED
 

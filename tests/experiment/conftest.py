@@ -3,7 +3,6 @@
 import sys
 from pathlib import Path
 
-HERE = str(Path(__file__).parent / "episodes")
+HERE = str(Path(__file__).parent)
 if HERE not in sys.path:
     sys.path.insert(0, HERE)
-sys.path.insert(0, str(Path(__file__).parent))

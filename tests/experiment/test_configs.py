@@ -4,9 +4,8 @@ import pytest
 
 from codriving.config.sweep import Point, expand
 from codriving.errors import ConfigError
-from codriving.experiment.ablation import ablation_points
-from codriving.experiment.configs import cell_name, composed, validated
-from codriving.experiment.plan import make_plan
+from codriving.experiment.plan import cell_name, composed, make_plan, validated
+from codriving.experiment.run import ablation_points
 
 
 def refused(*tokens: str) -> str:
@@ -40,15 +39,15 @@ def test_a_refusal_names_the_cell_unless_it_holds_for_all(tokens: list[str], sai
 def test_the_error_keeps_its_class_and_cause() -> None:
     points = expand(["scenario.cavs=4,99"])
     with pytest.raises(ConfigError) as err:
-        validated(points, composed(points))
+        validated(points, composed(points)[0])
     assert isinstance(err.value.__cause__, ConfigError)
 
 
 def test_an_ablated_cell_is_named_by_what_was_removed() -> None:
-    full, *_, unchecked = ablation_points(expand(["scenario.cavs=4,8"])[1:])
+    full, *_, unchecked = ablation_points(["scenario.cavs=4,8"])[7:]
     assert cell_name(full) == "scenario.cavs=8"
     assert cell_name(unchecked) == "scenario.cavs=8 cda.safety_check=false"
-    assert cell_name(ablation_points(expand([]))[0]) == "with nothing removed"
+    assert cell_name(ablation_points([])[0]) == "with nothing removed"
 
 
 def test_a_secret_is_no_name() -> None:

@@ -9,8 +9,8 @@ import codriving.experiment.film
 from codriving.datatypes.outcome import Ending
 from codriving.errors import FilmError
 from codriving.experiment import run_experiment
-from codriving.experiment.episodes.unit import Unit
 from codriving.experiment.film import FILM, FILM_ERROR, FilmEpisode
+from codriving.experiment.worker import Unit
 
 
 @pytest.fixture(autouse=True)
@@ -88,7 +88,7 @@ def test_a_film_that_fails_is_told_and_spoils_nothing(
     plain = results(drive(tmp_path, "episodes=2", name="plain"))
     capsys.readouterr()
     with monkeypatch.context() as patch:
-        patch.setattr(codriving.experiment.film, "screening", broken)
+        patch.setattr(codriving.experiment.film, "read_film", broken)
         folder = drive(tmp_path, "episodes=2", "render=true", code=1)
     out = capsys.readouterr().out
     assert f"2 episodes could not be filmed (see {folder}/episodes/" in out
@@ -108,7 +108,7 @@ def test_a_bug_in_the_drawing_leaves_its_traceback_and_the_record(
     def broken(*_: object) -> None:
         raise RuntimeError("a bug")
 
-    monkeypatch.setattr(codriving.experiment.film, "screening", broken)
+    monkeypatch.setattr(codriving.experiment.film, "read_film", broken)
     folder = drive(tmp_path, "episodes=1", "render=true", code=1)
     (note,) = folder.rglob(FILM_ERROR)
     assert "Traceback" in note.read_text()
@@ -126,8 +126,8 @@ def test_only_what_ended_well_is_kept(tmp_path: Path) -> None:
     folder = drive(tmp_path, "episodes=1")
     (cell,) = (path.name for path in (folder / "episodes").iterdir())
     film = FilmEpisode(folder, {})
-    assert film.kept(Unit(cell, 0)) is Ending.TIMEOUT
-    assert film.kept(Unit(cell, 1)) is None
+    assert film.saved(Unit(cell, 0)) is Ending.TIMEOUT
+    assert film.saved(Unit(cell, 1)) is None
     record = folder / "episodes" / cell / "0" / "record.json"
     record.write_text(record.read_text().replace('"timeout"', '"error"'))
-    assert film.kept(Unit(cell, 0)) is None
+    assert film.saved(Unit(cell, 0)) is None

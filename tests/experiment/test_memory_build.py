@@ -7,13 +7,13 @@ import pytest
 from remembered import description, experience, filled
 
 from codriving.config.compose import compose
-from codriving.config.show import fingerprint
 from codriving.errors import ConfigError, MemoryFileError
-from codriving.experiment.memory_build import build_points, run_build
+from codriving.experiment.memory_build import BUILD, build_points
 from codriving.experiment.memory_pages import merge_page, search_page, show_page
 from codriving.experiment.remembering import growing, learns, pinned
-from codriving.experiment.run import run_experiment
+from codriving.experiment.run import run_command, run_experiment
 from codriving.memory.reading import read_memory
+from codriving.runs.identity import driving_values, snapshot_of
 
 
 def config(*overrides: str) -> dict[str, object]:
@@ -58,9 +58,10 @@ def test_a_snapshot_is_noted_by_its_contents_wherever_it_lies(tmp_path: Path) ->
     first, second = (pinned(compose(["memory=frozen", f"memory.file={path}"])) for path in (one, two))
     assert first["memory"]["snapshot"] == second["memory"]["snapshot"] != "auto"
     assert first["method"]["memory"] == first["memory"]
-    assert fingerprint(first) == fingerprint(second)
+    assert driving_values(first) == driving_values(second)
     filled(two, [experience(step=8)], first=20_007)
-    assert fingerprint(pinned(compose(["memory=frozen", f"memory.file={two}"]))) != fingerprint(first)
+    third = pinned(compose(["memory=frozen", f"memory.file={two}"]))
+    assert [file.sha256 for file in snapshot_of(third)] != [file.sha256 for file in snapshot_of(second)]
 
 
 def test_a_method_that_remembers_nothing_notes_nothing(tmp_path: Path) -> None:
@@ -76,9 +77,9 @@ def test_a_build_can_be_stopped_and_grown(
     """Two interactions and then two more are the same four as four at once, file and all."""
     monkeypatch.chdir(tmp_path)
     short = ["scenario.time_limit=4", "scenario.cavs=2"]
-    assert run_build([*short, "interactions=2", "run=parts"]) == 0
-    assert run_build([*short, "interactions=4", "run=parts"]) == 0
-    assert run_build([*short, "interactions=4", "run=whole"]) == 0
+    assert run_command(BUILD, [*short, "interactions=2", "run=parts"]) == 0
+    assert run_command(BUILD, [*short, "interactions=4", "run=parts"]) == 0
+    assert run_command(BUILD, [*short, "interactions=4", "run=whole"]) == 0
     printed = capsys.readouterr().out
     assert "Recall from it with memory=frozen memory.file=FILE." in printed
     parts, whole = (
@@ -102,7 +103,7 @@ def test_a_build_can_be_stopped_and_grown(
 def test_a_method_without_a_memory_cannot_be_built_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ConfigError, match="method 'fcfs' has no memory to build"):
-        run_build(["method=fcfs", "interactions=1"])
+        run_command(BUILD, ["method=fcfs", "interactions=1"])
     assert not list(tmp_path.glob("outputs/memory/*/episodes"))
 
 

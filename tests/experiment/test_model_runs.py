@@ -5,27 +5,25 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Generator, Iterator, Sequence
+from functools import partial
 from io import StringIO
 from pathlib import Path
 
 import pytest
 import toy_models
-from test_execute import all_files, deterministic
+from test_drive import all_files, deterministic
 from toy_models import CLIENTS, EPISODES, BuildAsking, ToyClient, asking_cell, asking_plan
 
 from codriving.datatypes.outcome import Ending
 from codriving.errors import ModelError, ModelUnavailableError, SpendingLimitError
 from codriving.experiment import run
 from codriving.experiment.asking import model_of
-from codriving.experiment.episodes.job import Job, Report
-from codriving.experiment.episodes.launcher import Processes, Serial
-from codriving.experiment.episodes.progress import Progress, show_progress
-from codriving.experiment.episodes.unit import Unit
-from codriving.experiment.execute import execute
-from codriving.experiment.shares import side_by_side
-from codriving.experiment.stopping import HaltedError
+from codriving.experiment.drive import HaltedError, drive, side_by_side
+from codriving.experiment.launchers import Serial
+from codriving.experiment.processes import Processes
+from codriving.experiment.progress import show_progress
+from codriving.experiment.worker import Job, Report, Unit
 from codriving.runs.episode_folder import read_record
 
 TOP = Path(__file__).parents[2]
@@ -63,7 +61,7 @@ def settled() -> None:
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     """The bytes of episodes one after another."""
-    folder = execute(asking_plan(tmp_path_factory.mktemp("reference"), launcher=Serial()), BuildAsking).folder
+    folder = drive(asking_plan(tmp_path_factory.mktemp("reference"), launcher=Serial()), build=BuildAsking).folder
     return deterministic(folder)
 
 
@@ -81,7 +79,7 @@ def test_the_bytes_do_not_depend_on_how_many_are_side_by_side(
 
     client = CLIENTS["gpt"] = ToyClient(meet)
     plan = asking_plan(tmp_path, asking_cell(max_concurrency=concurrency), workers=workers)
-    assert deterministic(execute(plan, BuildAsking).folder) == reference
+    assert deterministic(drive(plan, build=BuildAsking).folder) == reference
     assert client.most == at_once == side_by_side(workers, concurrency)
 
 
@@ -95,7 +93,9 @@ def test_who_asks_no_model_is_driven_in_processes(tmp_path: Path) -> None:
             launched.extend(unit.cell for unit in units)
             yield from super().launch(units, job, 1, preload)
 
-    finished = execute(asking_plan(tmp_path, asking_cell(), asking_cell(asks=False), launcher=Watched()), BuildAsking)
+    finished = drive(
+        asking_plan(tmp_path, asking_cell(), asking_cell(asks=False), launcher=Watched()), build=BuildAsking
+    )
     assert launched == ["toy-computing-full"] * EPISODES
     assert (finished.driven, finished.failed) == (2 * EPISODES, ())
     assert len(CLIENTS["gpt"].asked) > EPISODES
@@ -114,12 +114,12 @@ def test_an_episode_without_an_answer_is_an_error_and_only_it_is_repeated(
     tmp_path: Path, reference: dict[str, bytes]
 ) -> None:
     CLIENTS["gpt"].does = unavailable(2, 7)
-    broken = execute(asking_plan(tmp_path), BuildAsking)
+    broken = drive(asking_plan(tmp_path), build=BuildAsking)
     assert [report.unit.seed for report in broken.failed] == [2, 7]
     text = (broken.folder / "episodes/toy-asking-full/2/error.txt").read_text()
     assert text == "ModelUnavailableError: gpt: the server said 503, asked 3 times\n"
     CLIENTS["gpt"] = client = ToyClient()
-    mended = execute(asking_plan(tmp_path), BuildAsking)
+    mended = drive(asking_plan(tmp_path), build=BuildAsking)
     assert (mended.driven, {seed for seed, _ in client.asked}) == (2, {2, 7})
     assert deterministic(mended.folder) == reference
 
@@ -131,19 +131,19 @@ def test_failures_in_a_row_stop_the_batch_and_it_goes_on(tmp_path: Path, referen
         rf"times; 4 of {EPISODES} episodes are finished and kept in "
     )
     with pytest.raises(HaltedError, match=said):
-        execute(asking_plan(tmp_path, asking_cell(max_concurrency=1)), BuildAsking)
+        drive(asking_plan(tmp_path, asking_cell(max_concurrency=1)), build=BuildAsking)
     settled()
     endings = recorded(tmp_path / "run" / "mine")
     assert {seed for seed, ending in endings.items() if ending is not Ending.ERROR} == {0, 1, 2, 3}
     assert {seed for seed, ending in endings.items() if ending is Ending.ERROR} >= {4, 5, 6}
     assert 9 not in endings
     CLIENTS["gpt"] = ToyClient()
-    assert deterministic(execute(asking_plan(tmp_path), BuildAsking).folder) == reference
+    assert deterministic(drive(asking_plan(tmp_path), build=BuildAsking).folder) == reference
 
 
 def test_an_answer_between_two_failures_is_no_row(tmp_path: Path) -> None:
     CLIENTS["gpt"].does = unavailable(0, 1, 3, 4, 6, 8, 9)
-    finished = execute(asking_plan(tmp_path, asking_cell(max_concurrency=1)), BuildAsking)
+    finished = drive(asking_plan(tmp_path, asking_cell(max_concurrency=1)), build=BuildAsking)
     assert len(finished.failed) == 7
 
 
@@ -152,13 +152,13 @@ def test_failures_of_another_kind_do_not_stop_the_batch(tmp_path: Path) -> None:
         raise RuntimeError("a bug")
 
     CLIENTS["gpt"].does = fail
-    assert len(execute(asking_plan(tmp_path), BuildAsking).failed) == EPISODES
+    assert len(drive(asking_plan(tmp_path), build=BuildAsking).failed) == EPISODES
 
 
 def test_each_model_of_a_sweep_is_counted_by_itself(tmp_path: Path) -> None:
     CLIENTS["dead"] = ToyClient(unavailable(*range(EPISODES)))
     cells = asking_cell("gpt", failures_in_a_row=3), asking_cell("dead", failures_in_a_row=1000)
-    finished = execute(asking_plan(tmp_path, *cells), BuildAsking)
+    finished = drive(asking_plan(tmp_path, *cells), build=BuildAsking)
     assert len(finished.failed) == EPISODES
     assert {report.unit.cell for report in finished.failed} == {"toy-asking-full-dead"}
 
@@ -173,7 +173,7 @@ def test_a_limit_keeps_what_is_finished_and_records_nothing_else(
 
     CLIENTS["gpt"].does = limit
     with pytest.raises(HaltedError, match=r"^llm.max_cost=1 USD is used up \(1.02 USD\); \d of 10 episodes are finish"):
-        execute(asking_plan(tmp_path, asking_cell(max_concurrency=concurrency)), BuildAsking)
+        drive(asking_plan(tmp_path, asking_cell(max_concurrency=concurrency)), build=BuildAsking)
     settled()
     endings = recorded(tmp_path / "run" / "mine")
     assert set(endings) <= {0, 1, 2, 3}
@@ -183,7 +183,7 @@ def test_a_limit_keeps_what_is_finished_and_records_nothing_else(
     assert not list(tmp_path.rglob(".partial-*"))
     # The limit is raised, and the same run goes on.
     CLIENTS["gpt"] = ToyClient()
-    again = execute(asking_plan(tmp_path, asking_cell(max_cost=2.0, max_concurrency=2, cache="use")), BuildAsking)
+    again = drive(asking_plan(tmp_path, asking_cell(max_cost=2.0, max_concurrency=2, cache="use")), build=BuildAsking)
     assert again.kept == len(endings)
     assert deterministic(again.folder) == reference
 
@@ -197,7 +197,7 @@ def test_the_line_on_a_limit_says_how_to_go_on(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setattr(
         run, "make_plan", lambda points, config_dir: asking_plan(tmp_path, asking_cell(max_concurrency=1))
     )
-    monkeypatch.setattr(run, "BuildObjects", BuildAsking)
+    monkeypatch.setattr("codriving.experiment.drive.BuildObjects", BuildAsking)
     with pytest.raises(ModelError) as stopped:
         run.run_experiment(["seed=0", "llm=offline"])
     assert str(stopped.value) == (
@@ -210,50 +210,48 @@ def test_the_line_on_a_limit_says_how_to_go_on(tmp_path: Path, monkeypatch: pyte
 def test_a_model_that_cannot_be_reached_is_refused_before_anything_is_made(tmp_path: Path, name: str | None) -> None:
     CLIENTS["gpt"].refuses = ModelError("OPENAI_API_KEY is not set; set it to your key")
     with pytest.raises(ModelError, match=r"^OPENAI_API_KEY is not set; set it to your key$"):
-        execute(asking_plan(tmp_path, name=name), BuildAsking)
+        drive(asking_plan(tmp_path, name=name), build=BuildAsking)
     assert list(tmp_path.iterdir()) == []
     assert CLIENTS["gpt"].asked == []
 
 
 def test_a_run_that_is_there_is_left_as_it_is(tmp_path: Path) -> None:
-    folder = execute(asking_plan(tmp_path, episodes=4), BuildAsking).folder
+    folder = drive(asking_plan(tmp_path, episodes=4), build=BuildAsking).folder
     before = all_files(folder)
     CLIENTS["gpt"] = ToyClient(refuses=ModelError("no server"))
-    assert execute(asking_plan(tmp_path, episodes=4), BuildAsking).kept == 4
+    assert drive(asking_plan(tmp_path, episodes=4), build=BuildAsking).kept == 4
     assert CLIENTS["gpt"].preflights == 0
     with pytest.raises(ModelError, match=r"^no server$"):
-        execute(asking_plan(tmp_path), BuildAsking)
+        drive(asking_plan(tmp_path), build=BuildAsking)
     after = all_files(folder)
     assert {name for name in after if after[name] != before.get(name)} <= {"manifest.json", "config.yaml"}
     CLIENTS["gpt"] = ToyClient()
-    assert execute(asking_plan(tmp_path), BuildAsking).kept == 4
+    assert drive(asking_plan(tmp_path), build=BuildAsking).kept == 4
 
 
 def test_each_model_is_tried_once_and_none_that_is_replayed(tmp_path: Path) -> None:
     CLIENTS["replayed"] = ToyClient(refuses=ModelError("no server"))
     cells = asking_cell("gpt"), asking_cell("gpt", failures_in_a_row=9), asking_cell("replayed", cache="replay")
-    execute(asking_plan(tmp_path, *cells, episodes=1), BuildAsking)
+    drive(asking_plan(tmp_path, *cells, episodes=1), build=BuildAsking)
     assert (CLIENTS["gpt"].preflights, CLIENTS["replayed"].preflights) == (1, 0)
 
 
-def test_progress_tells_what_was_used_up(tmp_path: Path) -> None:
+def test_progress_tells_what_was_used_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     stream = StringIO()
-
-    def progress(units: Mapping[str, int], note: Callable[[], str] | None) -> AbstractContextManager[Progress]:
-        return show_progress(units, stream, note)
+    monkeypatch.setattr("codriving.experiment.drive.show_progress", partial(show_progress, stream=stream))
 
     def retried(seed: int, step: int) -> None:
         if (seed, step) == (0, 0):
             CLIENTS["gpt"].on_retry("503")
 
     CLIENTS["gpt"].does = retried
-    execute(asking_plan(tmp_path, asking_cell(max_concurrency=1)), BuildAsking, progress=progress)
+    drive(asking_plan(tmp_path, asking_cell(max_concurrency=1)), build=BuildAsking)
     used = CLIENTS["gpt"].used
     assert stream.getvalue().splitlines()[-1] == (
         f"{EPISODES} of {EPISODES} episodes done, 0 failed; {used.tokens:,} tokens, {used.cost:.4f} USD, 1 retries"
     )
     stream.truncate(0)
-    execute(asking_plan(tmp_path / "rules", asking_cell(asks=False), workers=1), BuildAsking, progress=progress)
+    drive(asking_plan(tmp_path / "rules", asking_cell(asks=False), workers=1), build=BuildAsking)
     assert stream.getvalue().splitlines()[-1].endswith("episodes done, 0 failed")
 
 
@@ -292,6 +290,6 @@ def test_ctrl_c_stops_at_once_while_servers_are_waited_for(tmp_path: Path, refer
     assert f"Stopped; 4 of {EPISODES} episodes are finished and kept." in err
     assert err.splitlines()[-1] == "Go on with: codriving run scenario=toy run=mine"
     assert "Traceback" not in err
-    resumed = execute(asking_plan(tmp_path / "out"), BuildAsking)
+    resumed = drive(asking_plan(tmp_path / "out"), build=BuildAsking)
     assert resumed.kept == 4
     assert deterministic(resumed.folder) == reference

@@ -8,7 +8,7 @@ from toy_drive import LABELS
 from toy_plan import toy_cell
 
 from codriving.experiment.cells import Cell
-from codriving.experiment.episodes.unit import Labels
+from codriving.experiment.episode import Labels
 from codriving.experiment.naming import LONGEST, distinct, folder_name, repeated
 
 

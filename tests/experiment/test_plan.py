@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from codriving.config.sweep import expand
-from codriving.experiment.episodes.launcher import Processes
 from codriving.experiment.plan import make_plan
+from codriving.experiment.processes import Processes
 
 
 @pytest.mark.parametrize(

@@ -8,21 +8,20 @@ from toy_drive import LABELS
 from toy_plan import toy as toy_objects
 from toy_plan import toy_cell, toy_plan
 
-from codriving.config.sweep import Point
 from codriving.errors import ConfigError
-from codriving.experiment import run
-from codriving.experiment.ablation import ablation_points
+from codriving.experiment import drive, run
 from codriving.experiment.cells import make_cell
-from codriving.experiment.episodes.unit import Labels
+from codriving.experiment.episode import Labels
 from codriving.experiment.naming import folder_name
 from codriving.experiment.objects import modules_to_preload
+from codriving.experiment.run import ablation_points
 
 
 @pytest.fixture
 def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., None]:
     def use(**settings: tuple[int, ...]) -> None:
         monkeypatch.setattr(run, "make_plan", lambda points, config_dir: toy_plan(tmp_path))
-        monkeypatch.setattr(run, "BuildObjects", toy_objects(**settings))
+        monkeypatch.setattr(drive, "BuildObjects", toy_objects(**settings))
 
     return use
 
@@ -75,7 +74,7 @@ def test_the_command_to_go_on_replaces_the_name_and_is_quoted(tmp_path: Path) ->
 
 
 def test_the_ablation_removes_one_thing_at_a_time_under_three_readings() -> None:
-    variations = [point.overrides for point in ablation_points([Point(("episodes=5",))])]
+    variations = [point.overrides for point in ablation_points(["episodes=5"])]
     assert variations[0] == ("experiment=ablate", "episodes=5")
     assert [v[2] for v in variations[1:]] == [
         "cda.state_sharing=false",
@@ -84,11 +83,11 @@ def test_the_ablation_removes_one_thing_at_a_time_under_three_readings() -> None
         "cda.safety_check=false",
     ]
     assert [v[-1] for v in variations[3:6]] == [f"cda.own_order={o}" for o in ("own_view", "same_rule", "independent")]
-    assert ablation_points([Point(("experiment=mine",))])[0].overrides == ("experiment=mine",)
+    assert ablation_points(["experiment=mine"])[0].overrides == ("experiment=mine",)
 
 
 def test_an_ablation_of_several_keeps_the_rows_of_each_together() -> None:
-    points = ablation_points([Point((f"scenario={name}",), {"scenario": name}) for name in ("intersection", "merge")])
+    points = ablation_points(["scenario=intersection,merge"])
     assert [point.swept["scenario"] for point in points] == ["intersection"] * 7 + ["merge"] * 7
     assert points[7].removed == ()
     assert points[8].removed == ("cda.state_sharing=false",)
@@ -98,7 +97,7 @@ def test_a_method_without_sub_modules_cannot_be_ablated(monkeypatch: pytest.Monk
     plan = toy_plan(tmp_path, cells=(toy_cell(a=1), toy_cell(a=2)))
     monkeypatch.setattr(run, "make_plan", lambda points, config_dir: plan)
     with pytest.raises(ConfigError, match="method 'steady' has no reasoning sub-modules"):
-        run.run_ablation([])
+        run.run_command(run.ABLATE, [])
 
 
 def test_folders_are_readable() -> None:
@@ -111,14 +110,14 @@ def test_folders_are_readable() -> None:
 def test_a_cell_is_labelled_by_its_objects_and_an_object_without_a_name_is_refused() -> None:
     config = {
         "plugins": ["toy_drive"],
-        "scenario": {"_target_": "toy_drive.ToyMetrics"},
+        "scenario": {"_target_": "toy_drive.ToyScenario"},
         "method": {"_target_": "toy_drive.ToyMethod"},
         "metrics": {"_target_": "toy_drive.ToyMetrics"},
     }
     assert make_cell(config).metrics == "toy"
     assert make_cell(config).labels == Labels("toy", *("steady", "full", "rules"))
     assert make_cell(config).folder == folder_name(LABELS)
-    with pytest.raises(ConfigError, match="method: ToyMetrics needs an attribute 'variant'"):
+    with pytest.raises(ConfigError, match="method: ToyScenario needs an attribute 'variant'"):
         make_cell({**config, "method": config["scenario"]})
 
 

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Self
 
 import pytest
-from test_execute import deterministic
+from test_drive import deterministic
 from toy_plan import EPISODES, toy, toy_plan
 
-from codriving.experiment.execute import execute
+from codriving.experiment.drive import drive
 
 SCRIPT = Path(__file__).with_name("toy_plan.py")
 DEADLINE = 30.0
@@ -87,7 +87,7 @@ class Started:
 
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    return deterministic(execute(toy_plan(tmp_path_factory.mktemp("reference")), toy()).folder)
+    return deterministic(drive(toy_plan(tmp_path_factory.mktemp("reference")), build=toy()).folder)
 
 
 def test_sigkill_loses_only_what_was_in_flight(tmp_path: Path, reference: dict[str, bytes]) -> None:
@@ -96,7 +96,7 @@ def test_sigkill_loses_only_what_was_in_flight(tmp_path: Path, reference: dict[s
     assert batch.process.returncode == -signal.SIGKILL
     finished = {path.parent.name for path in (tmp_path / "out").glob("run/mine/episodes/*/*/record.json")}
     assert finished == {"0", "1", "2", "3"}
-    resumed = execute(toy_plan(tmp_path / "out", workers=2), toy())
+    resumed = drive(toy_plan(tmp_path / "out", workers=2), build=toy())
     assert (resumed.kept, resumed.driven) == (4, EPISODES - 4)
     assert deterministic(resumed.folder) == reference
     assert not list((tmp_path / "out").rglob(".partial-*"))
@@ -117,6 +117,6 @@ def test_ctrl_c_keeps_what_is_finished_and_says_how_to_go_on(
     assert err.splitlines()[-1] == "Go on with: codriving run scenario=toy run=mine"
     assert "Traceback" not in err
     assert not list((tmp_path / "out").rglob(".partial-*"))
-    resumed = execute(toy_plan(tmp_path / "out"), toy())
+    resumed = drive(toy_plan(tmp_path / "out"), build=toy())
     assert resumed.kept == 4
     assert deterministic(resumed.folder) == reference

@@ -8,7 +8,7 @@ import pytest
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.errors import RunFolderError
 from codriving.experiment import run_experiment
-from codriving.experiment.stored import find_episode, find_run, road_of, screening
+from codriving.experiment.stored import find_episode, find_run, read_film, road_of
 from codriving.runs.episode_folder import DECISIONS, RECORD
 from codriving.runs.manifest import MANIFEST
 from codriving.runs.trajectory_file import TRAJECTORY
@@ -107,17 +107,17 @@ def test_a_spoilt_episode_is_named(single: Path, file: str, content: str | None,
     if content is not None:
         path.write_text(content)
     with pytest.raises(RunFolderError, match=said):
-        screening(episode)
+        read_film(episode.folder, road_of(episode.cell))
 
 
 def test_no_decisions_at_all_are_no_reason_not_to_show_it(single: Path) -> None:
     episode = find_episode(single, None, 0)
     (episode.folder / DECISIONS).write_text("")
-    assert screening(episode).frame(0.5).shape == (720, 1280, 4)
+    assert read_film(episode.folder, road_of(episode.cell)).frame(0.5).shape == (720, 1280, 4)
 
 
 def test_a_manifest_without_settings_says_what_is_missing(single: Path) -> None:
     manifest = single / MANIFEST
     manifest.write_text(manifest.read_text().replace('"scenario.', '"scene.'))
     with pytest.raises(RunFolderError, match="does not say what scenario"):
-        screening(find_episode(single, None, 0))
+        road_of(find_episode(single, None, 0).cell)

@@ -15,12 +15,14 @@ from toy_drive import ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics
 from codriving.config.build import build
 from codriving.datatypes.parts import Model
 from codriving.datatypes.world import WorldState
-from codriving.experiment import run
+from codriving.experiment import drive, run
 from codriving.experiment.cells import Cell
-from codriving.experiment.episodes.launcher import Launcher, Processes
-from codriving.experiment.episodes.unit import Labels, Objects
+from codriving.experiment.episode import Labels
+from codriving.experiment.launchers import Launcher
 from codriving.experiment.naming import distinct, folder_name
 from codriving.experiment.plan import Plan
+from codriving.experiment.processes import Processes
+from codriving.experiment.worker import Objects
 
 PLUGIN = "toy_models"
 EPISODES = 10
@@ -166,7 +168,7 @@ def main(output: Path, says: int, holds: int) -> int:
     CLIENTS["gpt"] = ToyClient(wait)
     plan = asking_plan(output)
     run.make_plan = lambda points, config_dir: plan  # type: ignore[assignment]
-    run.BuildObjects = BuildAsking  # type: ignore[assignment,misc]
+    drive.BuildObjects = BuildAsking  # type: ignore[assignment,misc]
     return run.run_experiment(["scenario=toy", "run=mine"])
 
 

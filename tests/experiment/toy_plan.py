@@ -5,15 +5,15 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parent / "episodes"))
+sys.path.insert(0, str(Path(__file__).parent))
 
 from toy_drive import LABELS, BuildToy
 
-from codriving.experiment import run
+from codriving.experiment import drive, run
 from codriving.experiment.cells import Cell
-from codriving.experiment.episodes.launcher import Processes
 from codriving.experiment.naming import distinct, folder_name
 from codriving.experiment.plan import Plan
+from codriving.experiment.processes import Processes
 
 EPISODES = 10
 
@@ -42,5 +42,5 @@ if __name__ == "__main__":
     gate = Path(rest[0]) if rest else None
     plan = toy_plan(Path(output), int(workers))
     run.make_plan = lambda points, config_dir: plan  # type: ignore[assignment]
-    run.BuildObjects = toy(gate=gate, waits_from=4)  # type: ignore[assignment,misc]
+    drive.BuildObjects = toy(gate=gate, waits_from=4)  # type: ignore[assignment,misc]
     sys.exit(run.run_experiment(["scenario=toy", "run=mine"]))

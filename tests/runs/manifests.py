@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from codriving.runs.manifest import FORMAT, CellEntry, Manifest
+from codriving.runs.identity import CellEntry
+from codriving.runs.manifest import Manifest
 from codriving.runs.provenance import commit, machine, versions
 
 CONFIGS = {"a-cell": ""}
@@ -10,13 +11,13 @@ CONFIGS = {"a-cell": ""}
 
 def cell(fingerprint: str = "f1", **settings: str) -> CellEntry:
     labels = ("intersection", "codriving", "no_negotiation/own_view", "rules")
-    return CellEntry("a-cell", *labels, fingerprint, {}, {"seed": "0", **settings})
+    return CellEntry("a-cell", *labels, fingerprint, {}, {"seed": "0", **settings}, {"method": "codriving"}, ())
 
 
 def manifest(*cells: CellEntry) -> Manifest:
     held = cells or (cell(),)
     rows = tuple(entry.folder for entry in held)
-    return Manifest(FORMAT, "run", "2026-01-01T00:00:00+00:00", 0, 20, rows, held, versions(), commit(), machine())
+    return Manifest(3, 1, "run", "2026-01-01T00:00:00+00:00", 0, 20, rows, held, versions(), commit(), machine())
 
 
 def files(folder: Path) -> dict[str, bytes]:

@@ -11,7 +11,8 @@ from codriving.datatypes.record import EpisodeRecord
 from codriving.errors import RunFolderError
 from codriving.runs.continuation import changed_versions, continued
 from codriving.runs.episode_folder import timing_of, write_episode
-from codriving.runs.manifest import CellEntry, Manifest, read_manifest
+from codriving.runs.identity import CellEntry, NamedFile
+from codriving.runs.manifest import Manifest, read_manifest
 from codriving.runs.run_folder import RunFolder
 
 
@@ -61,8 +62,8 @@ def test_a_new_cell_never_gets_the_folder_of_another() -> None:
 
 
 def test_without_a_cell_in_common_it_is_another_config() -> None:
-    there = asked(dataclasses.replace(cell("f1"), settings={"scenario.cavs": "4", "environment.scenario.cavs": "4"}))
-    other = asked(dataclasses.replace(cell("f2"), settings={"scenario.cavs": "8", "environment.scenario.cavs": "8"}))
+    there = asked(dataclasses.replace(cell("f1"), settings={"scenario.cavs": "4"}))
+    other = asked(dataclasses.replace(cell("f2"), settings={"scenario.cavs": "8"}))
     with pytest.raises(RunFolderError, match=r"another config: scenario\.cavs was 4, is now 8; repeat its settings"):
         continued(HERE, there, other)
 
@@ -89,26 +90,104 @@ def test_a_folder_that_grows_keeps_what_it_has(tmp_path: Path, record: EpisodeRe
     more = asked(named("b", "f2"), named("new name", "f1"), episodes=8)
     with RunFolder(tmp_path, more, {"b": "cavs: 8\n", "new name": "cavs: 4\n"}) as folder:
         assert folder.manifest.rows == ("b", "a-cell")
-        assert folder.further(range(8)) == 1
+        assert folder.left_out(range(8)) == 1
     after = files(tmp_path)
     changed = {name for name in before if before[name] != after[name]}
     assert changed == {"manifest.json", "config.yaml", "configs/a-cell.yaml"}
     assert after["config.yaml"] == after["configs/b.yaml"] == b"cavs: 8\n"
     assert after["configs/a-cell.yaml"] == b"cavs: 4\n"
     with RunFolder(tmp_path, asked(named("b", "f2"), episodes=1), {"b": ""}) as folder:
-        assert folder.further(range(1)) == 3
+        assert folder.left_out(range(1)) == 3
 
 
-def test_the_first_layout_can_be_read_and_is_not_added_to(tmp_path: Path) -> None:
+def old(folder: Path, layout: int = 2, **settings: str) -> Path:
+    """Make a manifest one of release 0.1, or of the layout before."""
+    path = folder / "manifest.json"
+    plain = json.loads(path.read_text())
+    (entry,) = plain["cells"]
+    for name in ("choices", "files"):
+        del entry[name]
+    entry["settings"] |= {"method._target_": '"codriving.old.Place"', "plugins": '["theirs"]', **settings}
+    del plain["behaviour"]
+    plain["format"] = layout
+    if layout == 1:
+        del plain["rows"], entry["swept"]
+    path.write_text(json.dumps(plain))
+    return path
+
+
+@pytest.mark.parametrize("layout", [1, 2])
+def test_a_folder_of_release_0_1_goes_on_and_is_told_by_names_and_files_then(
+    tmp_path: Path, record: EpisodeRecord, layout: int
+) -> None:
+    here = manifest(dataclasses.replace(cell("f9", **{"method.margin": "1.5"})))
+    with RunFolder(tmp_path, here, CONFIGS):
+        pass
+    path = old(tmp_path, layout)
+    found = read_manifest(tmp_path)
+    assert found is not None
+    assert (found.rows, found.behaviour, found.cells[0].choices) == (("a-cell",), 1, {})
+    assert found.cells[0].settings == {"seed": "0", "method.margin": "1.5"}
+    with RunFolder(tmp_path, here, CONFIGS) as folder:
+        assert folder.manifest == here
+    assert "codriving.old" not in path.read_text()
+    assert "theirs" not in path.read_text()
+
+
+def test_a_finished_folder_of_release_0_1_stays_to_the_byte(tmp_path: Path, record: EpisodeRecord) -> None:
+    here = dataclasses.replace(manifest(cell("f9", **{"method.margin": "1.5"})), first_seed=7, episodes=1)
+    with RunFolder(tmp_path, here, CONFIGS) as folder:
+        write_episode(folder.episode("a-cell", 7), record, None, [], timing_of(1.0, []))
+    old(tmp_path)
+    before = files(tmp_path)
+    with RunFolder(tmp_path, here, CONFIGS):
+        pass
+    assert files(tmp_path) == before
+
+
+def test_a_changed_file_is_refused_and_named(tmp_path: Path) -> None:
+    template = NamedFile("template decide.user.md.j2", "mine/decide.user.md.j2", "aa")
+    with RunFolder(tmp_path, manifest(dataclasses.replace(cell(), files=(template,))), CONFIGS):
+        pass
+    before = files(tmp_path)
+    edited = dataclasses.replace(cell("f2"), files=(dataclasses.replace(template, sha256="bb"),))
+    with pytest.raises(RunFolderError, match=r"^mine/decide\.user\.md\.j2 \(.*\) has changed since .*restore it"):
+        RunFolder(tmp_path, manifest(edited), CONFIGS)
+    assert files(tmp_path) == before
+    both = manifest(edited, named("b", "f3", cavs="8"))
+    with pytest.raises(RunFolderError, match="has changed"):
+        RunFolder(tmp_path, both, {**CONFIGS, "b": ""})
+
+
+def test_a_folder_of_another_behaviour_is_reported_and_not_extended(tmp_path: Path, record: EpisodeRecord) -> None:
+    here = dataclasses.replace(manifest(), first_seed=7, episodes=1, versions={"codriving": "0.9"})
+    with RunFolder(tmp_path, here, CONFIGS) as folder:
+        write_episode(folder.episode("a-cell", 7), record, None, [], timing_of(1.0, []))
+    path = tmp_path / "manifest.json"
+    path.write_text(path.read_text().replace('"behaviour": 1', '"behaviour": 7'))
+    before = files(tmp_path)
+    now = dataclasses.replace(here, versions={"codriving": "0.2"})
+    with RunFolder(tmp_path, now, CONFIGS) as folder:
+        assert folder.record(cell(), 7) == record
+    for more in (dataclasses.replace(now, episodes=2), asked(cell(), named("b", "f2"), episodes=1)):
+        with pytest.raises(RunFolderError, match=r"by codriving 0\.9 \(behaviour 7, here 1\).* not extended"):
+            RunFolder(tmp_path, dataclasses.replace(more, first_seed=7), {**CONFIGS, "b": ""})
+    assert files(tmp_path) == before
+
+
+@pytest.mark.parametrize("name", ["..", "../elsewhere", "/etc", "a\\b", "C:x", ""])
+def test_a_manifest_never_leads_out_of_its_folder(tmp_path: Path, name: str) -> None:
     with RunFolder(tmp_path, manifest(), CONFIGS):
         pass
     path = tmp_path / "manifest.json"
     plain = json.loads(path.read_text())
-    old = {**plain, "format": 1, "cells": [{k: v for k, v in c.items() if k != "swept"} for c in plain["cells"]]}
-    del old["rows"]
-    path.write_text(json.dumps(old))
-    found = read_manifest(tmp_path)
-    assert found is not None
-    assert (found.rows, found.cells) == (("a-cell",), (cell(),))
-    with pytest.raises(RunFolderError, match=r"written by another version \(layout 1, not 2\)"):
-        RunFolder(tmp_path, manifest(), CONFIGS)
+    plain["cells"][0]["folder"] = name
+    path.write_text(json.dumps(plain))
+    with pytest.raises(RunFolderError, match="is no name of a folder"):
+        read_manifest(tmp_path)
+
+
+def test_a_folder_of_a_later_version_is_not_called_damaged(tmp_path: Path) -> None:
+    (tmp_path / "manifest.json").write_text('{"format": 4, "new": 1}')
+    with pytest.raises(RunFolderError, match=r"written by a later version \(layout 4, not 3\)"):
+        read_manifest(tmp_path)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from codriving.datatypes.outcome import Collision, Ending, Outcome
@@ -55,7 +55,7 @@ RECORDS = st.builds(
 )
 
 
-@settings(max_examples=40)
+@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 @given(RECORDS)
 def test_what_is_read_is_what_was_written(record: EpisodeRecord) -> None:
     text = encode(record)

@@ -1,6 +1,6 @@
 """Templates in files, filled in by Jinja2; a user's folder replaces ours file by file."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import lru_cache
 from math import isfinite
 from pathlib import Path
@@ -77,6 +77,15 @@ class Prompts:
 def load_prompts(folder: str | None) -> Prompts:
     """Return the templates of a folder, see ``Prompts``; they are read once."""
     return Prompts(folder)
+
+
+def template_files(folder: str | None, purposes: Collection[str]) -> dict[str, Path]:
+    """Return the files of the templates of some purposes, by what they are.
+
+    Args:
+        folder: Folder of the user's templates, or None.
+    """
+    return {f"template {name}": path for name, path in _paths(folder).items() if name.split(".")[0] in purposes}
 
 
 def _paths(folder: str | None) -> dict[str, Path]:

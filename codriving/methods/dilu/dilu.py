@@ -1,8 +1,10 @@
 """DiLu: each CAV on its own describes what it sees, recalls what was like it, reasons, and learns from its mistakes."""
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import replace
 from math import ceil
+from pathlib import Path
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.deliberation import ReasonedDeliberation
@@ -10,6 +12,7 @@ from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.experience import Interaction
 from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Account, CaseMemory, Method, Model
+from codriving.datatypes.road import Road
 from codriving.datatypes.situation import Decision
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
@@ -18,7 +21,7 @@ from codriving.methods.dilu.diary import Diary
 from codriving.methods.dilu.ports import dilu_ports
 from codriving.methods.dilu.thinker import Thought
 from codriving.methods.dilu.told import Told, tell
-from codriving.methods.language_model.ports import check_prompts
+from codriving.methods.language_model.ports import check_prompts, prompt_files
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
 from codriving.methods.single_vehicle.method import Driver
 from codriving.reasoning.perception import single_vehicle_perception
@@ -52,6 +55,9 @@ class DiLu(Method):
         self.name = "dilu-rule" if llm.chat() is None else "dilu"
         self.reasoner = llm.name
         self.remembers = memory.label if memory is not None else ""
+
+    def files(self, road: Road) -> Mapping[str, Path]:
+        return prompt_files(self.llm, self.memory, ("dilu",), "dilu_reflect")
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode."""

@@ -1,13 +1,29 @@
 """Who stands behind the two ports, Coordinator and Decider: the built-in rules, or a language model."""
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from codriving.datatypes.parts import Model
+from codriving.datatypes.parts import CaseMemory, Model
 from codriving.reasoning.decision.rules import Decider, RuleDecider
 from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator
 
 if TYPE_CHECKING:
     from codriving.llm.ledger import Ledger
+
+
+def prompt_files(llm: Model, memory: CaseMemory | None, asked: Sequence[str], reflect: str) -> dict[str, Path]:
+    """Return the templates with which a model is asked; none where the built-in rules reason.
+
+    Args:
+        asked: Purposes of the questions of every episode.
+        reflect: Purpose of the questions on mistakes, if the memory asks any.
+    """
+    if llm.chat() is None:
+        return {}
+    from codriving.llm.prompts.render import template_files
+
+    return template_files(llm.prompts, (*asked, *([reflect] if memory is not None and memory.reflections else [])))
 
 
 def check_prompts(llm: Model) -> None:

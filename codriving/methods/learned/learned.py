@@ -18,7 +18,7 @@ from codriving.geometry.road_map import RoadMap
 from codriving.methods.learned.features import Features, Observation
 from codriving.methods.learned.layout import ACTIONS, allowed, family_of, family_of_road, feature_names
 from codriving.methods.learned.network import FloatArray, greedy, shares
-from codriving.methods.learned.weights import Trained, load, shipped
+from codriving.methods.learned.weights import Trained, load, shipped, sidecar
 
 VALUES, PROBABILITIES = "values", "probabilities"
 
@@ -98,6 +98,7 @@ class Learned(Method):
     meaning: ClassVar[str]
 
     def __init__(self, weights: Path | None) -> None:
+        self._file = weights
         self._trained: dict[str, Trained] = {}
         self._own: str | None = None
         self.variant = ""
@@ -111,6 +112,10 @@ class Learned(Method):
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
         family = family_of_road(road)
         self._weights(family).purpose.check(family, target_speeds, decision_interval)
+
+    def files(self, road: Road) -> Mapping[str, Path]:
+        file = shipped(self.name, family_of_road(road)) if self._file is None else self._file
+        return {"weights": file, "weights, purpose": sidecar(file)}
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before.

@@ -4,7 +4,7 @@ import io
 
 import pytest
 
-from codriving.experiment.episodes.progress import show_progress
+from codriving.experiment.progress import show_progress
 
 
 class Terminal(io.StringIO):
@@ -17,9 +17,9 @@ class Terminal(io.StringIO):
 
 def test_a_pipe_gets_about_ten_plain_lines() -> None:
     stream = io.StringIO()
-    with show_progress({"cell": 25}, stream) as progress:
+    with show_progress({"cell": 25}, stream=stream) as update:
         for done in range(1, 26):
-            progress.update("cell", done == 20)
+            update("cell", done == 20)
     lines = stream.getvalue().splitlines()
     assert len(lines) == 13
     assert lines[0] == "2 of 25 episodes done, 0 failed"
@@ -30,9 +30,9 @@ def test_a_pipe_gets_about_ten_plain_lines() -> None:
 def test_a_terminal_gets_a_bar_with_done_failed_and_remaining_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TERM", "xterm")
     stream = Terminal()
-    with show_progress({"cell": 2}, stream) as progress:
-        progress.update("cell", True)
-        progress.update("cell", False)
+    with show_progress({"cell": 2}, stream=stream) as update:
+        update("cell", True)
+        update("cell", False)
     text = stream.getvalue()
     assert "2/2" in text
     assert "1 failed" in text
@@ -42,9 +42,9 @@ def test_a_terminal_gets_a_bar_with_done_failed_and_remaining_time(monkeypatch: 
 
 def test_of_several_cells_those_that_are_complete_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     stream = io.StringIO()
-    with show_progress({"a": 2, "b": 1}, stream) as progress:
+    with show_progress({"a": 2, "b": 1}, stream=stream) as update:
         for cell in ("a", "b", "a"):
-            progress.update(cell, False)
+            update(cell, False)
     assert [line.partition("failed, ")[2] for line in stream.getvalue().splitlines()] == [
         "0 of 2 cells complete",
         "1 of 2 cells complete",
@@ -52,6 +52,6 @@ def test_of_several_cells_those_that_are_complete_are_counted(monkeypatch: pytes
     ]
     monkeypatch.setenv("TERM", "xterm")
     terminal = Terminal()
-    with show_progress({"a": 1, "b": 1}, terminal) as progress:
-        progress.update("b", False)
+    with show_progress({"a": 1, "b": 1}, stream=terminal) as update:
+        update("b", False)
     assert "1 of 2 cells" in terminal.getvalue()

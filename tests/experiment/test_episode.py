@@ -5,7 +5,7 @@ from toy_drive import LABELS, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMet
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.world import WorldState
-from codriving.experiment.episodes.episode import EpisodeResult, run_episode
+from codriving.experiment.episode import EpisodeResult, run_episode
 
 
 def drive(seed: int, method: ToyMethod | None = None, environment: ToyEnvironment | None = None) -> EpisodeResult:

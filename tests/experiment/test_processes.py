@@ -5,16 +5,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from toy_drive import LABELS, BuildToy
+from toy_drive import LABELS, BuildToy, run_batch
 
 from codriving.datatypes.outcome import Ending
 from codriving.errors import ConfigError
-from codriving.experiment.episodes.batch import run_batch
-from codriving.experiment.episodes.episode import EpisodeResult
-from codriving.experiment.episodes.job import Job, Report
-from codriving.experiment.episodes.launcher import Processes, Serial, worker_count
-from codriving.experiment.episodes.pool import available_cores, run_parallel, run_serial
-from codriving.experiment.episodes.unit import Objects, Unit
+from codriving.experiment.episode import EpisodeResult
+from codriving.experiment.launchers import Serial, available_cores, worker_count
+from codriving.experiment.processes import Processes, run_parallel
+from codriving.experiment.worker import Job, Objects, Report, Unit
 
 UNITS = [Unit("cell", seed) for seed in range(8)]
 
@@ -49,7 +47,7 @@ def by_seed(reports: Iterable[Report]) -> list[Report]:
 
 
 def test_three_processes_do_what_one_does(tmp_path: Path) -> None:
-    serial = list(run_serial(UNITS, job(tmp_path / "1", BuildToy(raises=(3,)))))
+    serial = list(Serial().launch(UNITS, job(tmp_path / "1", BuildToy(raises=(3,)))))
     parallel = by_seed(run_parallel(UNITS, job(tmp_path / "3", BuildToy(raises=(3,))), 3, ["numpy"]))
     assert parallel == serial
     assert [report.ending for report in serial].count(Ending.ERROR) == 1
@@ -69,17 +67,6 @@ def test_a_killed_worker_is_tried_once_more_and_the_batch_goes_on(tmp_path: Path
 def test_a_mistake_of_the_users_arrives_as_it_was_raised(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"got 99"):
         run_batch(UNITS, job(tmp_path / "out", Misconfigured()), Processes(), workers=2)
-
-
-def test_progress_is_told_of_every_unit(tmp_path: Path) -> None:
-    calls: list[tuple[str, bool]] = []
-
-    class Told:
-        def update(self, cell: str, failed: bool) -> None:
-            calls.append((cell, failed))
-
-    run_batch(UNITS, job(tmp_path / "out", BuildToy(raises=(1,))), Serial(), workers=4, progress=Told())
-    assert calls == [(unit.cell, unit.seed == 1) for unit in UNITS]
 
 
 def test_auto_takes_the_cores_that_there_are_and_no_more_than_units() -> None:

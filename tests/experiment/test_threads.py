@@ -8,17 +8,15 @@ from threading import Barrier, Event, Lock, current_thread, get_ident
 from threading import enumerate as all_threads
 
 import pytest
-from toy_drive import LABELS, BuildToy, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics
+from toy_drive import LABELS, BuildToy, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics, run_batch
 
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError, SpendingLimitError
-from codriving.experiment.episodes.batch import run_batch
-from codriving.experiment.episodes.episode import EpisodeResult, run_episode
-from codriving.experiment.episodes.job import Job
-from codriving.experiment.episodes.pool import run_serial
-from codriving.experiment.episodes.threads import Threads, run_threads
-from codriving.experiment.episodes.unit import Objects, Unit
+from codriving.experiment.episode import EpisodeResult, run_episode
+from codriving.experiment.launchers import Serial
+from codriving.experiment.threads import Threads
+from codriving.experiment.worker import AfterEpisode, Job, Objects, Unit
 
 UNITS = [Unit("cell", seed) for seed in range(9)]
 PATIENCE = 20.0
@@ -66,11 +64,11 @@ def episode_threads() -> list[str]:
 
 def test_any_number_of_threads_does_what_one_after_another_does() -> None:
     serial = Kept()
-    expected = list(run_serial(UNITS, Job({"cell": LABELS}, BuildToy(raises=(3,)), serial)))
+    expected = list(Serial().launch(UNITS, Job({"cell": LABELS}, BuildToy(raises=(3,)), serial)))
     assert [report.ending for report in expected].count(Ending.ERROR) == 1
     for threads in (1, 3, 20):
         kept = Kept()
-        reports = list(run_threads(UNITS, Job({"cell": LABELS}, BuildToy(raises=(3,)), kept), threads))
+        reports = list(Threads().launch(UNITS, Job({"cell": LABELS}, BuildToy(raises=(3,)), kept), threads, ()))
         assert sorted(reports, key=lambda report: report.unit.seed) == expected
         assert kept.records == serial.records
     assert not episode_threads()
@@ -85,7 +83,7 @@ def test_episodes_are_driven_side_by_side_with_objects_of_their_own() -> None:
             barrier.wait(PATIENCE)
         assert inside.setdefault(id(method), get_ident()) == get_ident()
 
-    reports = list(run_threads(UNITS, job(meet, Kept(), made), 3))
+    reports = list(Threads().launch(UNITS, job(meet, Kept(), made), 3, ()))
     assert not [report for report in reports if report.ending is Ending.ERROR]
     assert len(made) == len(set(inside.values())) == 3
 
@@ -171,7 +169,7 @@ def test_closing_the_batch_abandons_what_is_in_flight() -> None:
             waiting.set()
             release.wait(PATIENCE)
 
-    reports = run_threads(UNITS, job(wait, kept), 2)
+    reports = Threads().launch(UNITS, job(wait, kept), 2, ())
     assert {next(reports).unit.seed, next(reports).unit.seed} == {0, 1}
     assert waiting.wait(PATIENCE)
     reports.close()
@@ -195,8 +193,8 @@ def test_a_mistake_of_the_users_arrives_as_it_was_raised() -> None:
 def test_what_comes_after_saving_is_done_here_and_saved_episodes_are_not_driven() -> None:
     finished: list[tuple[int, int]] = []
 
-    class Film:
-        def kept(self, unit: Unit) -> Ending | None:
+    class Film(AfterEpisode):
+        def saved(self, unit: Unit) -> Ending | None:
             return Ending.SUCCESS if unit.seed in (3, 5) else None
 
         def finish(self, unit: Unit) -> None:
@@ -206,7 +204,7 @@ def test_what_comes_after_saving_is_done_here_and_saved_episodes_are_not_driven(
             raise AssertionError
 
     kept = Kept()
-    reports = list(run_threads(UNITS, job(lambda method, world: None, kept, after=Film()), 3))
+    reports = list(Threads().launch(UNITS, job(lambda method, world: None, kept, after=Film()), 3, ()))
     assert sorted(report.unit.seed for report in reports) == sorted(seed for seed, _ in finished) == list(range(9))
     assert {where for _, where in finished} == {get_ident()}
     assert sorted(kept.records) == [0, 1, 2, 4, 6, 7, 8]
@@ -231,7 +229,7 @@ def test_the_cpu_time_of_a_decision_leaves_out_other_threads() -> None:
     results: dict[int, EpisodeResult] = {}
     given = job(use, Kept())
     job_ = Job(given.labels, given.build, lambda unit, result: results.update({unit.seed: result}))
-    list(run_threads(UNITS[:2], job_, 2))
+    list(Threads().launch(UNITS[:2], job_, 2, ()))
     assert results[0].decision_cpu[0] < 0.05
     assert results[1].decision_cpu[0] >= 0.1
 
@@ -252,7 +250,7 @@ def test_the_real_world_is_the_same_in_threads(tmp_path: Path) -> None:
         def save(unit: Unit, result: EpisodeResult) -> None:
             kept[unit] = repr((result.record, result.decisions))
 
-        list(run_threads(units, Job(labels, build, save), threads))
+        list(Threads().launch(units, Job(labels, build, save), threads, ()))
         return kept
 
     assert driven(4) == driven(1)

@@ -1,10 +1,12 @@
 """A world of one CAV and one human on a straight line, quick to drive and easy to break; importable by workers."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,10 +19,20 @@ from codriving.datatypes.score import Pet, Score, TravelScore
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Intent, Kind, VehicleState
 from codriving.datatypes.world import WorldState
-from codriving.experiment.episodes.unit import Labels, Objects
+from codriving.experiment.episode import Labels
+from codriving.experiment.launchers import Launcher
+from codriving.experiment.worker import Job, Objects, Report, Unit
 
 LABELS = Labels("toy", "steady", "full", "rules")
 LANE = ("a", "b", 0)
+
+
+class ToyScenario:
+    """Nothing but a name."""
+
+    name = "toy"
+    road = None
+    pace = SimpleNamespace(target_speeds=(0.0, 5.0), decision_frequency=1.0)
 
 
 class ToyEnvironment(Simulator):
@@ -146,6 +158,20 @@ class ToyMetrics(Metric):
         value = float("nan") if round(outcome.time) in self._nan else 1.0 + outcome.time / 10.0
         travel = TravelScore("CAV1", float(cav.speed[0]), outcome.time, None)
         return Score(outcome.ending is Ending.SUCCESS, (Pet("CAV1", "HDV1", "crossing", value),), (travel,))
+
+
+class Batch(NamedTuple):
+    """What became of a batch."""
+
+    done: int
+    failed: list[Report]
+
+
+def run_batch(units: Sequence[Unit], job: Job, launcher: Launcher, workers: int) -> Batch:
+    """Drive a batch to its end."""
+    with closing(launcher.launch(units, job, workers, ())) as launched:
+        reports = list(launched)
+    return Batch(len(reports), [report for report in reports if report.ending is Ending.ERROR])
 
 
 @dataclass(frozen=True)

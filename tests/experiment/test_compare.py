@@ -12,8 +12,7 @@ from codriving.datatypes.vehicle import Kind
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.environment.scenarios.roundabout import Roundabout
 from codriving.errors import ConfigError
-from codriving.experiment.compared import FURTHER
-from codriving.experiment.comparison import EXPERIMENT, comparison, setting
+from codriving.experiment.compare import EXPERIMENT, compare, comparison, setting
 from codriving.experiment.run import resume_command
 from codriving.reports.paper import read_paper
 
@@ -47,7 +46,7 @@ def test_the_order_is_that_of_the_papers_tables() -> None:
 
 
 def test_every_table_can_be_made_and_has_a_folder_of_its_own() -> None:
-    assert set(TABLES) == set(FURTHER) == set(EXPERIMENT) == set(TAKING_PART)
+    assert set(TABLES) == set(EXPERIMENT) == set(TAKING_PART)
     assert len(set(EXPERIMENT.values())) == len(EXPERIMENT)
 
 
@@ -118,7 +117,7 @@ def test_the_experiment_is_the_users_if_named() -> None:
 )
 def test_what_cannot_be_compared_is_refused(table: str | None, tokens: list[str], said: str) -> None:
     with pytest.raises(ConfigError, match=said):
-        comparison(table, tokens)
+        compare(table).points(tokens, None)
 
 
 def test_cells_that_differ_in_the_method_alone_have_one_setting() -> None:

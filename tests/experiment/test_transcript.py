@@ -8,9 +8,8 @@ import pytest
 from toy_drive import LABELS, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics
 
 from codriving.datatypes.world import WorldState
-from codriving.experiment.episodes.episode import EpisodeResult, run_episode
-from codriving.experiment.episodes.unit import Unit
-from codriving.experiment.keep import KeepEpisode
+from codriving.experiment.episode import EpisodeResult, run_episode
+from codriving.experiment.worker import SaveEpisode, Unit
 from codriving.runs.episode_folder import TRANSCRIPT, read_record, read_transcript
 
 
@@ -67,11 +66,11 @@ def test_the_step_that_broke_off_has_been_paid_for(unfinished: bool, cost: float
 
 def test_the_transcript_is_kept_without_keys(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TOY_KEY", "canary-key")
-    KeepEpisode(tmp_path, ("TOY_KEY",))(Unit("cell", 3), drive(Asking()))
+    SaveEpisode(tmp_path, ("TOY_KEY",))(Unit("cell", 3), drive(Asking()))
     folder = tmp_path / "episodes" / "cell" / "3"
     assert {line["text"] for line in read_transcript(folder)} == {"Bearer <redacted>"}
     assert read_record(folder).counts["cost_usd"] > 0
-    KeepEpisode(tmp_path, ("TOY_KEY",))(Unit("cell", 3), drive(ToyMethod()))
+    SaveEpisode(tmp_path, ("TOY_KEY",))(Unit("cell", 3), drive(ToyMethod()))
     assert not (folder / TRANSCRIPT).exists()
 
 

@@ -8,7 +8,7 @@ import pytest
 from toy_plan import EPISODES, toy, toy_cell, toy_plan
 
 from codriving.errors import RunFolderError
-from codriving.experiment.execute import execute
+from codriving.experiment.drive import drive
 
 TABLES = ["episodes.csv", "summary.csv", "summary.md"]
 
@@ -34,12 +34,12 @@ def rewrite(path: Path, old: str, new: str) -> None:
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     """The bytes of an undisturbed run in one process."""
-    folder = execute(toy_plan(tmp_path_factory.mktemp("reference")), toy()).folder
+    folder = drive(toy_plan(tmp_path_factory.mktemp("reference")), build=toy()).folder
     return deterministic(folder)
 
 
 def test_a_run_folder_holds_everything(tmp_path: Path) -> None:
-    finished = execute(toy_plan(tmp_path), toy())
+    finished = drive(toy_plan(tmp_path), build=toy())
     assert finished.folder == tmp_path / "run" / "mine"
     assert (finished.driven, finished.kept, finished.failed) == (EPISODES, 0, ())
     top = {item.name for item in finished.folder.iterdir()}
@@ -50,25 +50,25 @@ def test_a_run_folder_holds_everything(tmp_path: Path) -> None:
 
 
 def test_three_workers_leave_the_bytes_of_one(tmp_path: Path, reference: dict[str, bytes]) -> None:
-    assert deterministic(execute(toy_plan(tmp_path, workers=3), toy(), ["numpy"]).folder) == reference
+    assert deterministic(drive(toy_plan(tmp_path, workers=3), build=toy()).folder) == reference
 
 
 def test_a_complete_run_is_a_no_op(tmp_path: Path) -> None:
-    folder = execute(toy_plan(tmp_path), toy()).folder
+    folder = drive(toy_plan(tmp_path), build=toy()).folder
     before = all_files(folder)
-    again = execute(toy_plan(tmp_path), toy(raises=tuple(range(EPISODES))))
+    again = drive(toy_plan(tmp_path), build=toy(raises=tuple(range(EPISODES))))
     assert (again.driven, again.kept) == (0, EPISODES)
     assert all_files(folder) == before
 
 
 def test_only_what_is_missing_is_driven(tmp_path: Path, reference: dict[str, bytes]) -> None:
-    folder = execute(toy_plan(tmp_path), toy()).folder
+    folder = drive(toy_plan(tmp_path), build=toy()).folder
     gone = folder / "episodes" / "toy-steady-full" / "5"
     for path in gone.iterdir():
         path.unlink()
     gone.rmdir()
     # Any episode but the missing one would fail.
-    again = execute(toy_plan(tmp_path), toy(raises=tuple(s for s in range(EPISODES) if s != 5)))
+    again = drive(toy_plan(tmp_path), build=toy(raises=tuple(s for s in range(EPISODES) if s != 5)))
     assert (again.driven, again.kept, again.failed) == (1, EPISODES - 1, ())
     assert deterministic(folder) == reference
 
@@ -76,49 +76,49 @@ def test_only_what_is_missing_is_driven(tmp_path: Path, reference: dict[str, byt
 def test_more_episodes_drive_the_further_seeds_and_leave_the_bytes_of_all_at_once(
     tmp_path: Path, reference: dict[str, bytes]
 ) -> None:
-    few = execute(toy_plan(tmp_path, episodes=4), toy())
+    few = drive(toy_plan(tmp_path, episodes=4), build=toy())
     kept = deterministic(few.folder)
     # Any of the first seeds would fail.
-    more = execute(toy_plan(tmp_path), toy(raises=(0, 1, 2, 3)))
-    assert (more.driven, more.kept, more.failed, more.further) == (EPISODES - 4, 4, (), 0)
+    more = drive(toy_plan(tmp_path), build=toy(raises=(0, 1, 2, 3)))
+    assert (more.driven, more.kept, more.failed, more.left_out) == (EPISODES - 4, 4, (), 0)
     assert deterministic(more.folder) == reference
-    again = execute(toy_plan(tmp_path, episodes=4), toy(raises=tuple(range(EPISODES))))
-    assert (again.driven, again.kept, again.further) == (0, 4, EPISODES - 4)
+    again = drive(toy_plan(tmp_path, episodes=4), build=toy(raises=tuple(range(EPISODES))))
+    assert (again.driven, again.kept, again.left_out) == (0, 4, EPISODES - 4)
     assert {name: deterministic(again.folder)[name] for name in kept} == kept
     assert len((again.folder / "episodes.csv").read_text().splitlines()) == 5
 
 
 def test_cells_are_added_beside_those_that_are_there(tmp_path: Path) -> None:
     four, eight = toy_cell({"cavs": "4"}, a=4), toy_cell({"cavs": "8"}, a=8)
-    execute(toy_plan(tmp_path, cells=(four,)), toy())
-    both = execute(toy_plan(tmp_path, cells=(eight, four)), toy())
+    drive(toy_plan(tmp_path, cells=(four,)), build=toy())
+    both = drive(toy_plan(tmp_path, cells=(eight, four)), build=toy())
     assert (both.driven, both.kept) == (EPISODES, EPISODES)
     assert {path.name for path in (both.folder / "episodes").iterdir()} == {"toy-steady-full", "toy-steady-full-cavs=8"}
-    at_once = execute(toy_plan(tmp_path / "at once", cells=(eight, four)), toy())
+    at_once = drive(toy_plan(tmp_path / "at once", cells=(eight, four)), build=toy())
     for name in TABLES:
         assert (both.folder / name).read_bytes() == (at_once.folder / name).read_bytes()
     assert [row["cavs"] for row in both.tables.summary.rows] == ["8", "4"]
-    one = execute(toy_plan(tmp_path, cells=(four,)), toy())
-    assert (one.driven, one.further, len(one.tables.summary.rows)) == (0, EPISODES, 1)
+    one = drive(toy_plan(tmp_path, cells=(four,)), build=toy())
+    assert (one.driven, one.left_out, len(one.tables.summary.rows)) == (0, EPISODES, 1)
 
 
 def test_the_config_of_each_cell_is_kept(tmp_path: Path) -> None:
     cells = (toy_cell({"a": "4"}, a=4), toy_cell({"a": "8"}, a=8))
-    folder = execute(toy_plan(tmp_path, cells=cells, episodes=1), toy()).folder
+    folder = drive(toy_plan(tmp_path, cells=cells, episodes=1), build=toy()).folder
     assert (folder / "configs" / "toy-steady-full-a=8.yaml").read_text() == "seed: 0\na: 8\n"
     assert (folder / "config.yaml").read_text() == "seed: 0\na: 4\n"
 
 
 def test_a_run_that_goes_on_with_another_version_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("codriving.experiment.execute.versions", lambda: {"numpy": "1"})
-    assert execute(toy_plan(tmp_path, episodes=2), toy()).changed == ()
-    monkeypatch.setattr("codriving.experiment.execute.versions", lambda: {"numpy": "2"})
-    assert execute(toy_plan(tmp_path, episodes=2), toy()).changed == ()
-    assert execute(toy_plan(tmp_path, episodes=3), toy()).changed == ("numpy 1 -> 2",)
+    monkeypatch.setattr("codriving.experiment.drive.versions", lambda: {"numpy": "1"})
+    assert drive(toy_plan(tmp_path, episodes=2), build=toy()).changed == ()
+    monkeypatch.setattr("codriving.experiment.drive.versions", lambda: {"numpy": "2"})
+    assert drive(toy_plan(tmp_path, episodes=2), build=toy()).changed == ()
+    assert drive(toy_plan(tmp_path, episodes=3), build=toy()).changed == ("numpy 1 -> 2",)
 
 
 def test_failed_episodes_are_records_and_are_driven_again(tmp_path: Path, reference: dict[str, bytes]) -> None:
-    broken = execute(toy_plan(tmp_path), toy(raises=(2,), nan=(4,)))
+    broken = drive(toy_plan(tmp_path), build=toy(raises=(2,), nan=(4,)))
     message = {report.unit.seed: report.message for report in broken.failed}
     assert message[2] == "RuntimeError: seed 2 broke"
     assert any(text.startswith("ValueError: Out of range float") for text in message.values())
@@ -128,52 +128,52 @@ def test_failed_episodes_are_records_and_are_driven_again(tmp_path: Path, refere
     rows = (broken.folder / "episodes.csv").read_text().splitlines()
     assert rows[3].startswith("toy,steady,full,rules,2,error,,,,,")
 
-    mended = execute(toy_plan(tmp_path), toy())
+    mended = drive(toy_plan(tmp_path), build=toy())
     assert mended.driven == len(broken.failed)
     assert not (episode / "error.txt").exists()
     assert deterministic(mended.folder) == reference
 
 
 def test_a_damaged_record_stops_before_anything_is_driven_or_lost(tmp_path: Path) -> None:
-    folder = execute(toy_plan(tmp_path), toy()).folder
+    folder = drive(toy_plan(tmp_path), build=toy()).folder
     path = folder / "episodes" / "toy-steady-full" / "4" / "record.json"
     rewrite(path, '"seed": 4', '"seed": "4"')
     before = all_files(folder)
     with pytest.raises(RunFolderError, match=r"4/record\.json is damaged"):
-        execute(toy_plan(tmp_path), toy())
+        drive(toy_plan(tmp_path), build=toy())
     assert all_files(folder) == before
 
 
 def test_another_config_is_refused(tmp_path: Path) -> None:
-    folder = execute(toy_plan(tmp_path), toy()).folder
+    folder = drive(toy_plan(tmp_path), build=toy()).folder
     before = all_files(folder)
     with pytest.raises(RunFolderError, match=r"seed was 0, is now 9"):
-        execute(toy_plan(tmp_path, cells=(toy_cell(seed=9),)), toy())
+        drive(toy_plan(tmp_path, cells=(toy_cell(seed=9),)), build=toy())
     assert all_files(folder) == before
 
 
 def test_an_unwritable_output_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(RunFolderError, match="choose another output"):
-        execute(toy_plan(tmp_path / "file"), toy())
+        drive(toy_plan(tmp_path / "file"), build=toy())
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write anywhere")
 def test_an_output_without_permission_is_refused(tmp_path: Path) -> None:
     (tmp_path / "closed").mkdir(mode=0o500)
     with pytest.raises(RunFolderError, match="Permission denied; choose another output"):
-        execute(toy_plan(tmp_path / "closed"), toy())
+        drive(toy_plan(tmp_path / "closed"), build=toy())
 
 
 def test_two_cells_are_two_rows(tmp_path: Path) -> None:
     plan = toy_plan(tmp_path, cells=(toy_cell(a=1), toy_cell(a=2)))
-    finished = execute(plan, toy())
+    finished = drive(plan, build=toy())
     assert len(list((finished.folder / "episodes").iterdir())) == 2
     assert len(finished.tables.summary.rows) == 2
     assert len(finished.tables.episodes.rows) == 2 * EPISODES
 
 
 def test_a_run_without_a_name_is_called_by_its_time(tmp_path: Path) -> None:
-    names = [execute(toy_plan(tmp_path, name=None), toy()).folder.name for _ in range(2)]
+    names = [drive(toy_plan(tmp_path, name=None), build=toy()).folder.name for _ in range(2)]
     assert names[0] != names[1]
     assert len(names[0]) == len("2026-01-02_030405")

@@ -8,9 +8,8 @@ from toy_drive import LABELS, BuildToy
 
 from codriving.datatypes.outcome import Ending
 from codriving.errors import ConfigError, RunFolderError
-from codriving.experiment.episodes.episode import EpisodeResult
-from codriving.experiment.episodes.job import KEPT, Job, Report, Worker
-from codriving.experiment.episodes.unit import Objects, Unit
+from codriving.experiment.episode import EpisodeResult
+from codriving.experiment.worker import CELLS_AT_ONCE, AfterEpisode, Job, Objects, Report, Unit, Worker
 
 
 def job(build: Callable[[str], Objects], saved: list[tuple[int, EpisodeResult]]) -> Job:
@@ -34,7 +33,7 @@ def test_objects_are_built_once_a_cell() -> None:
 
 def test_only_the_objects_of_the_last_cells_are_kept() -> None:
     built: list[str] = []
-    names = [f"cell {index}" for index in range(KEPT + 1)]
+    names = [f"cell {index}" for index in range(CELLS_AT_ONCE + 1)]
 
     def build(cell: str) -> Objects:
         built.append(cell)
@@ -85,7 +84,7 @@ def test_a_full_disk_stops_the_batch() -> None:
         Worker(Job({"cell": LABELS}, BuildToy(), save)).run(Unit("cell", 1))
 
 
-class Notes:
+class Notes(AfterEpisode):
     """Remembers what was finished; says which seeds are kept already."""
 
     def __init__(self, *kept: int) -> None:
@@ -93,7 +92,7 @@ class Notes:
         self.finished: list[int] = []
         self.abandoned: list[tuple[int, str]] = []
 
-    def kept(self, unit: Unit) -> Ending | None:
+    def saved(self, unit: Unit) -> Ending | None:
         """Those given."""
         return Ending.TIMEOUT if unit.seed in self._kept else None
 

@@ -6,64 +6,46 @@ from dataclasses import replace
 from queue import Empty, SimpleQueue
 from threading import Event, Lock, Thread
 
-from codriving.experiment.episodes.episode import EpisodeResult
-from codriving.experiment.episodes.job import Job, Report, Worker
-from codriving.experiment.episodes.launcher import Launcher, worker_count
-from codriving.experiment.episodes.unit import Objects, Unit
+from codriving.experiment.episode import EpisodeResult
+from codriving.experiment.launchers import Launcher, worker_count
+from codriving.experiment.worker import Job, Objects, Report, Unit, Worker
 
 POLL = 0.5
 """How long to wait before looking again [s]; where Ctrl-C does not end a wait, it is noticed after this."""
 
 
 class Threads(Launcher):
-    """In several threads of this process, which share one client of the language model and its limits."""
+    """In several threads of this process, which share one client of the language model and its limits.
+
+    When the iterator is closed, nothing more is saved: an episode in flight ends before its next decision and is lost.
+    That is not waited for, since it may be waiting for a server.
+    """
 
     def launch(
         self, units: Sequence[Unit], job: Job, workers: int | str, preload: Sequence[str]
     ) -> Generator[Report, None, None]:
-        """Drive units.
-
-        Args:
-            workers: Number of threads, or ``auto`` for one a core.
-
-        Raises:
-            UserError: If the batch has to stop.
-        """
-        yield from run_threads(units, job, worker_count(workers, len(units)))
+        saved = [unit for unit in units if job.saved(unit) is not None]
+        batch = _Batch([unit for unit in units if unit not in set(saved)], job)
+        try:
+            batch.start(worker_count(workers, len(units)))
+            here = Worker(job)
+            for unit in saved:
+                yield here.run(unit)
+            for _ in range(batch.units):
+                report = batch.next_report()
+                if job.after:
+                    job.after.finish(report.unit)
+                yield report
+            batch.join()
+        finally:
+            batch.stop()
 
 
 class Abandoned(BaseException):
     """Raised in a thread whose batch has stopped: its episode is neither finished nor failed."""
 
 
-def run_threads(units: Sequence[Unit], job: Job, threads: int) -> Generator[Report, None, None]:
-    """Drive units in several threads, each with objects of its own.
-
-    When the iterator is closed, by an exception or otherwise, nothing more is saved: an episode in flight ends before
-    its next decision and is lost. Nobody waits for that, since it may be waiting for a server.
-
-    Raises:
-        UserError: If the batch has to stop.
-    """
-    after = job.after
-    saved = {unit: None for unit in units if after and after.kept(unit) is not None}
-    crew = _Crew([unit for unit in units if unit not in saved], job)
-    try:
-        crew.start(threads)
-        here = Worker(job)
-        for unit in saved:
-            yield here.run(unit)
-        for _ in range(crew.units):
-            report = crew.take()
-            if after:
-                after.finish(report.unit)
-            yield report
-        crew.join()
-    finally:
-        crew.stop()
-
-
-class _Crew:
+class _Batch:
     """The threads of one batch and what they share."""
 
     def __init__(self, units: Sequence[Unit], job: Job) -> None:
@@ -83,7 +65,7 @@ class _Crew:
             self._threads.append(thread)
             thread.start()
 
-    def take(self) -> Report:
+    def next_report(self) -> Report:
         """Wait for the next report."""
         while True:
             try:
@@ -114,7 +96,7 @@ class _Crew:
             self._news.put(error)
 
     def _next(self) -> Unit | None:
-        """Take the next unit; None if there is none, also for whoever has just been overtaken by another thread."""
+        """Take the next unit; None if there is none, also if another thread has just taken the last one."""
         self._go_on()
         try:
             return self._waiting.popleft()

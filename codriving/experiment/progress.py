@@ -3,22 +3,11 @@
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Protocol, TextIO
+from functools import partial
+from typing import TextIO, TypeAlias
 
-
-class Progress(Protocol):
-    """Somebody who is told of each unit that has ended."""
-
-    def update(self, cell: str, failed: bool) -> None:
-        """Take note."""
-        ...
-
-
-class Silent:
-    """Nobody wants to know."""
-
-    def update(self, cell: str, failed: bool) -> None:
-        """Do nothing."""
+Update: TypeAlias = Callable[[str, bool], None]
+"""Takes note that an episode has ended: its cell, and whether it failed."""
 
 
 class _Count:
@@ -42,32 +31,15 @@ class _Count:
         return f"{complete} of {len(self._left)} cells" if len(self._left) > 1 else ""
 
 
-class _Lines:
-    """About ten lines a batch, for logs."""
-
-    def __init__(self, count: _Count, stream: TextIO, note: Callable[[], str] | None) -> None:
-        self._count, self._stream, self._note = count, stream, note
-        self._every = max(1, count.total // 10)
-
-    def update(self, cell: str, failed: bool) -> None:
-        count = self._count
-        count.add(cell, failed)
-        if count.done % self._every == 0 or count.done == count.total:
-            cells = f", {count.cells} complete" if count.cells else ""
-            note = f"; {self._note()}" if self._note else ""
-            text = f"{count.done} of {count.total} episodes done, {count.failed} failed{cells}{note}"
-            print(text, file=self._stream, flush=True)
-
-
 @contextmanager
 def show_progress(
-    units: Mapping[str, int], stream: TextIO | None = None, note: Callable[[], str] | None = None
-) -> Iterator[Progress]:
+    units: Mapping[str, int], note: Callable[[], str] | None = None, stream: TextIO | None = None
+) -> Iterator[Update]:
     """Show how far a batch is while the block lasts."""
     stream = stream or sys.stderr
     count = _Count(units)
-    if not stream.isatty():
-        yield _Lines(count, stream, note)
+    if not stream.isatty() or not count.total:
+        yield partial(_print_line, count, stream, note)
         return
     from rich.console import Console
     from rich.progress import (
@@ -83,7 +55,7 @@ def show_progress(
     from rich.text import Text
 
     class _Note(ProgressColumn):
-        """Asked anew each time that the bar is drawn, so that it moves between two episodes too."""
+        """Read anew each time that the bar is drawn, so that it moves between two episodes too."""
 
         def render(self, task: Task) -> Text:
             return Text(note() if note else "")
@@ -102,9 +74,18 @@ def show_progress(
     with Bar(*columns, console=Console(file=stream)) as bar:
         task = bar.add_task("episodes", total=count.total, failed=0, cells=count.cells)
 
-        class _Bar:
-            def update(self, cell: str, failed: bool) -> None:
-                count.add(cell, failed)
-                bar.update(task, completed=count.done, failed=count.failed, cells=count.cells)
+        def move_bar(cell: str, failed: bool) -> None:
+            count.add(cell, failed)
+            bar.update(task, completed=count.done, failed=count.failed, cells=count.cells)
 
-        yield _Bar()
+        yield move_bar
+
+
+def _print_line(count: _Count, stream: TextIO, note: Callable[[], str] | None, cell: str, failed: bool) -> None:
+    """Print about ten lines a batch, for logs."""
+    count.add(cell, failed)
+    if count.done % max(1, count.total // 10) == 0 or count.done == count.total:
+        cells = f", {count.cells} complete" if count.cells else ""
+        said = f"; {note()}" if note else ""
+        text = f"{count.done} of {count.total} episodes done, {count.failed} failed{cells}{said}"
+        print(text, file=stream, flush=True)

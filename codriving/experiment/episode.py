@@ -13,7 +13,21 @@ from codriving.datatypes.record import EpisodeRecord, Participant
 from codriving.datatypes.score import Score
 from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import ModelError, ModelUnavailableError
-from codriving.experiment.episodes.unit import Labels
+
+
+@dataclass(frozen=True, slots=True)
+class Labels:
+    """What the records of a cell are labelled with.
+
+    Attributes:
+        reasoner: What reasons: ``rules`` or the name of a model.
+    """
+
+    scenario: str
+    method: str
+    variant: str
+    reasoner: str
+    memory: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,10 +80,10 @@ def run_episode(
     labels: Labels,
     go_on: Callable[[], None] = lambda: None,
 ) -> EpisodeResult:
-    """Drive one episode and judge it.
+    """Drive one episode and score it.
 
-    Whatever goes wrong becomes a record that ends in ``error``. An interruption by the user passes through, and so does
-    a language model that must not be used any more: neither is this episode's fault.
+    What goes wrong becomes a record that ends in ``error``. An interruption by the user passes through, and so does a
+    language model that must not be used any more: neither is this episode's fault.
 
     Args:
         go_on: Called before each decision; raises what is no ``Exception`` to give the episode up.
@@ -80,37 +94,37 @@ def run_episode(
     log = _Log()
     started = perf_counter()
     trajectory: Trajectory | None = None
-    score: Score | None = None
+    scores: dict[str, Score] = {}
     trace = ""
     try:
-        outcome = _drive(environment, method, seed, log, go_on)
+        world = environment.reset(seed)
+        log.begun = True
+        method.reset(environment.road_map, environment.driving_model, seed)
+        while (outcome := environment.outcome) is None:
+            go_on()
+            log.time = world.time
+            before, cpu_before = perf_counter(), thread_time()
+            deliberation = method.act(world)
+            log.cpu.append(thread_time() - cpu_before)
+            log.seconds.append(perf_counter() - before)
+            log.decisions.append(deliberation.as_dict())
+            log.add(deliberation.counts, deliberation.transcript)
+            world = environment.step(deliberation.actions)
+        log.add(*method.conclude(world, outcome))
         trajectory = environment.trajectory()
         if outcome.ending is not Ending.ERROR:
-            score = metrics.score(trajectory, outcome, environment.road_map)
+            scores = {metrics.name: metrics.score(trajectory, outcome, environment.road_map)}
     except ModelError:
         raise
     except Exception as error:
-        score = None
-        outcome = failure(error, log.time)
+        scores = {}
+        outcome = _failure(error, log.time)
         _note_unfinished(method, log)
-        # Where a server's failure was noticed helps nobody, and what led to it may quote what the server said.
+        # Where a server's failure was noticed helps no one, and what led to it may quote what the server said.
         trace = f"{outcome.message}\n" if isinstance(error, ModelUnavailableError) else traceback.format_exc()
         trajectory = _salvage(environment) if log.begun else None
-    record = EpisodeRecord(
-        scenario=labels.scenario,
-        method=labels.method,
-        variant=labels.variant,
-        reasoner=labels.reasoner,
-        seed=seed,
-        outcome=outcome,
-        scores={} if score is None else {metrics.name: score},
-        participants=_participants(trajectory),
-        decisions=len(log.seconds),
-        counts=dict(sorted(log.counts.items())),
-        memory=labels.memory,
-    )
     return EpisodeResult(
-        record,
+        _record(labels, seed, outcome, scores, trajectory, len(log.seconds), dict(sorted(log.counts.items()))),
         trajectory,
         tuple(log.decisions),
         perf_counter() - started,
@@ -121,56 +135,46 @@ def run_episode(
     )
 
 
-def _drive(environment: Simulator, method: Method, seed: int, log: _Log, go_on: Callable[[], None]) -> Outcome:
-    """The loop itself."""
-    world = environment.reset(seed)
-    log.begun = True
-    method.reset(environment.road_map, environment.driving_model, seed)
-    while (outcome := environment.outcome) is None:
-        go_on()
-        log.time = world.time
-        before, cpu_before = perf_counter(), thread_time()
-        deliberation = method.act(world)
-        log.cpu.append(thread_time() - cpu_before)
-        log.seconds.append(perf_counter() - before)
-        log.decisions.append(deliberation.as_dict())
-        log.add(deliberation.counts, deliberation.transcript)
-        world = environment.step(deliberation.actions)
-    log.add(*method.conclude(world, outcome))
-    return outcome
-
-
-def failure(error: BaseException, time: float) -> Outcome:
-    """The outcome of an episode that could not go on.
-
-    Args:
-        time: Simulated time of the last decision [s].
-
-    Returns:
-        An outcome that ends in ``error``, with type and text of the error on one line.
-    """
-    # It may quote what a server said, and ends up in tables and on terminals.
-    text = " ".join("".join(c for c in str(error) if c.isprintable() or c.isspace()).split())
-    message = f"{type(error).__name__}: {text}" if text else type(error).__name__
-    return Outcome(ending=Ending.ERROR, time=time, arrivals={}, message=message)
-
-
 def failed_result(labels: Labels, seed: int, error: BaseException, trace: str = "") -> EpisodeResult:
-    """The result of an episode of which nothing but its failure is known."""
-    record = EpisodeRecord(
+    """Return the result of an episode of which nothing but its failure is known."""
+    return EpisodeResult(_record(labels, seed, _failure(error, 0.0)), None, (), 0.0, (), traceback=trace)
+
+
+def _record(
+    labels: Labels,
+    seed: int,
+    outcome: Outcome,
+    scores: dict[str, Score] | None = None,
+    trajectory: Trajectory | None = None,
+    decisions: int = 0,
+    counts: dict[str, int | float] | None = None,
+) -> EpisodeRecord:
+    tracks = sorted(trajectory.tracks, key=lambda track: track.id) if trajectory else ()
+    return EpisodeRecord(
         scenario=labels.scenario,
         method=labels.method,
         variant=labels.variant,
         reasoner=labels.reasoner,
         seed=seed,
-        outcome=failure(error, 0.0),
-        scores={},
-        participants=(),
-        decisions=0,
-        counts={},
+        outcome=outcome,
+        scores=scores or {},
+        participants=tuple(Participant(track.id, track.kind.value, track.route, track.arrived) for track in tracks),
+        decisions=decisions,
+        counts=counts or {},
         memory=labels.memory,
     )
-    return EpisodeResult(record, None, (), 0.0, (), traceback=trace)
+
+
+def _failure(error: BaseException, time: float) -> Outcome:
+    """The outcome of an episode that could not go on, with type and text of the error on one line.
+
+    Args:
+        time: Simulated time of the last decision [s].
+    """
+    # It may quote what a server said, and ends up in tables and on terminals.
+    text = " ".join("".join(c for c in str(error) if c.isprintable() or c.isspace()).split())
+    message = f"{type(error).__name__}: {text}" if text else type(error).__name__
+    return Outcome(ending=Ending.ERROR, time=time, arrivals={}, message=message)
 
 
 def _note_unfinished(method: Method, log: _Log) -> None:
@@ -181,16 +185,8 @@ def _note_unfinished(method: Method, log: _Log) -> None:
 
 
 def _salvage(environment: Simulator) -> Trajectory | None:
-    """What was driven before it went wrong, for whoever looks for the cause; the broken world may refuse."""
+    """What was driven before it went wrong, to look for the cause; the broken world may refuse."""
     try:
         return environment.trajectory()
     except Exception:
         return None
-
-
-def _participants(trajectory: Trajectory | None) -> tuple[Participant, ...]:
-    """Who took part, in order of id."""
-    if trajectory is None:
-        return ()
-    tracks = sorted(trajectory.tracks, key=lambda track: track.id)
-    return tuple(Participant(track.id, track.kind.value, track.route, track.arrived) for track in tracks)

@@ -1,4 +1,4 @@
-"""One worker process and its lifeline: it ignores Ctrl-C and dies with its parent."""
+"""Units over worker processes, which ignore Ctrl-C and die with their parent; a dead one is replaced."""
 
 import multiprocessing
 import multiprocessing.forkserver
@@ -8,14 +8,70 @@ import signal
 import sys
 import threading
 import types
-from collections.abc import Iterator, Sequence
+from collections import Counter, deque
+from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import ForkServerContext, SpawnContext
 
 from codriving.errors import UserError
-from codriving.experiment.episodes.job import Job, Report, Worker
-from codriving.experiment.episodes.unit import Unit
+from codriving.experiment.launchers import Launcher, Serial, worker_count
+from codriving.experiment.worker import Job, Report, Unit, Worker
+
+ATTEMPTS = 2
+"""How often a unit may take its process down: once can be the machine's fault, twice is the unit's."""
+
+
+class Processes(Launcher):
+    """In several processes of this machine; a single one is this process itself."""
+
+    def prepare(self, workers: int | str, units: int, preload: Sequence[str]) -> None:
+        # Importing takes longer than anything else before the first step.
+        if worker_count(workers, units) > 1:
+            _context(preload)
+
+    def launch(
+        self, units: Sequence[Unit], job: Job, workers: int | str, preload: Sequence[str]
+    ) -> Generator[Report, None, None]:
+        processes = worker_count(workers, len(units))
+        yield from Serial().launch(units, job) if processes == 1 else run_parallel(units, job, processes, preload)
+
+
+def run_parallel(
+    units: Sequence[Unit], job: Job, workers: int, preload: Sequence[str]
+) -> Generator[Report, None, None]:
+    """Drive units, each by the next process that is free; with the iterator, the processes end."""
+    waiting = deque(units)
+    deaths: Counter[Unit] = Counter()
+    pool: list[WorkerProcess] = []
+    try:
+        while waiting or any(worker.unit for worker in pool):
+            while waiting and len(pool) < workers:
+                worker = WorkerProcess(job, preload)
+                pool.append(worker)
+                worker.send(waiting.popleft())
+            busy = {worker.connection: worker for worker in pool if worker.unit}
+            for ready in wait(list(busy)):
+                worker = next(w for c, w in busy.items() if c is ready)
+                unit = worker.unit
+                assert unit is not None
+                try:
+                    report = worker.receive()
+                except WorkerDied as death:
+                    pool.remove(worker)
+                    worker.stop()
+                    deaths[unit] += 1
+                    if deaths[unit] < ATTEMPTS:
+                        waiting.appendleft(unit)
+                        continue
+                    report = Worker(job).abandon(unit, death)
+                else:
+                    if waiting:
+                        worker.send(waiting.popleft())
+                yield report
+    finally:
+        for worker in pool:
+            worker.stop()
 
 
 class WorkerDied(Exception):  # noqa: N818 - it reads as the fact that it reports, also in records.
@@ -34,18 +90,18 @@ class WorkerProcess:
         context = _context(preload)
         self.connection, theirs = context.Pipe()
         self.unit: Unit | None = None
-        self._process = context.Process(target=serve, args=(theirs, job), daemon=True, name="codriving-worker")
+        self._process = context.Process(target=drive_units, args=(theirs, job), daemon=True, name="codriving-worker")
         with _without_main():
             self._process.start()
         theirs.close()
 
-    def give(self, unit: Unit) -> None:
-        """Hand out a unit; a worker that is dead is noticed by ``take``."""
+    def send(self, unit: Unit) -> None:
+        """Hand out a unit; a worker that is dead is noticed by ``receive``."""
         self.unit = unit
         with suppress(OSError):
             self.connection.send(unit)
 
-    def take(self) -> Report:
+    def receive(self) -> Report:
         """Take the report of the unit.
 
         Raises:
@@ -71,11 +127,6 @@ class WorkerProcess:
         self._process.terminate()
         self._process.join()
         self._process.close()
-
-
-def warm(preload: Sequence[str]) -> None:
-    """Start importing heavy modules in the background, so that workers are ready when they are wanted."""
-    _context(preload)
 
 
 def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
@@ -107,7 +158,7 @@ def _without_main() -> Iterator[None]:
         sys.modules["__main__"] = main
 
 
-def serve(connection: Connection, job: Job) -> None:
+def drive_units(connection: Connection, job: Job) -> None:
     """Drive units until there are no more: the main function of a worker process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_die_with_parent, daemon=True).start()

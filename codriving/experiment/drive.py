@@ -1,0 +1,346 @@
+"""A plan to a finished run folder: what is missing is driven, what is there is kept, tables are made from records."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from codriving.config.locate import experiments_dir
+from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import EpisodeRecord
+from codriving.errors import ModelError, ModelUnavailableError
+from codriving.experiment.asking import Asked
+from codriving.experiment.cells import Cell
+from codriving.experiment.film import FilmEpisode
+from codriving.experiment.launchers import Launcher, Serial
+from codriving.experiment.objects import BuildObjects, modules_to_preload
+from codriving.experiment.plan import Plan
+from codriving.experiment.processes import Processes
+from codriving.experiment.progress import show_progress
+from codriving.experiment.remembering import growing, learns
+from codriving.experiment.threads import Threads
+from codriving.experiment.worker import Job, Objects, Report, SaveEpisode, Unit
+from codriving.reports.columns import Table, table
+from codriving.reports.paper import read_paper
+from codriving.reports.printed import PrintedTable
+from codriving.reports.results import CellResults
+from codriving.reports.run_tables import RunTables, run_tables
+from codriving.reports.timing import TimedEpisode, seconds_per_decision, timing_columns
+from codriving.runs.atomic import whole_file, write_text
+from codriving.runs.continuation import changed_versions
+from codriving.runs.episode_folder import Timing, read_timing
+from codriving.runs.identity import BEHAVIOUR
+from codriving.runs.manifest import FORMAT, MANIFEST, Manifest
+from codriving.runs.provenance import commit, machine, versions
+from codriving.runs.redaction import variables_in
+from codriving.runs.run_folder import RunFolder, new_run_path, unwritable
+
+
+class Interrupted(KeyboardInterrupt):
+    """Raised when the user stops a batch, after everything has been put in order."""
+
+    def __init__(self, folder: Path, finished: int, planned: int) -> None:
+        super().__init__(f"stopped with {finished} of {planned} episodes finished")
+        self.folder, self.finished, self.planned = folder, finished, planned
+
+
+class HaltedError(ModelError):
+    """Raised when a batch stops since its language model must not be used any more; everything is in order."""
+
+    def __init__(self, reason: ModelError, folder: Path, finished: int, planned: int) -> None:
+        self.text = f"{str(reason).rstrip('.;')}; {finished} of {planned} episodes are finished and kept"
+        super().__init__(f"{self.text} in {folder}")
+        self.folder = folder
+
+
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """All episodes of a run.
+
+    Attributes:
+        timings: What each of them cost, None where that is lost.
+    """
+
+    cells: Sequence[Cell]
+    records: Sequence[Sequence[EpisodeRecord]]
+    timings: Sequence[Sequence[Timing | None]]
+    folder: Path = Path()
+
+    @property
+    def metrics(self) -> str:
+        """Name of the definitions by which they were scored."""
+        return ", ".join(dict.fromkeys(cell.metrics for cell in self.cells))
+
+
+@dataclass(frozen=True, slots=True)
+class Outputs:
+    """What a command makes of its episodes beyond the tables of every run.
+
+    Attributes:
+        files: Content by path below the run folder.
+        printed: What is printed in place of the summary.
+    """
+
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    printed: tuple[PrintedTable, ...] = ()
+    tables: tuple[Table, ...] = ()
+
+    def write(self, folder: Path) -> None:
+        """Write the files, each whole or not at all.
+
+        Raises:
+            OSError: If one cannot be written.
+        """
+        for name, content in self.files.items():
+            path = folder / name
+            path.parent.mkdir(exist_ok=True)
+            with whole_file(path, beside=folder) as partial:
+                partial.write_bytes(content)
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """A run that is complete.
+
+    Attributes:
+        left_out: Episodes of the folder that were not asked for.
+        changed: Versions that differ between episodes.
+    """
+
+    folder: Path
+    tables: RunTables
+    driven: int
+    kept: int
+    failed: tuple[Report, ...]
+    left_out: int = 0
+    changed: tuple[str, ...] = ()
+    filmed: int = 0
+    unfilmed: tuple[Unit, ...] = ()
+    outputs: Outputs = field(default_factory=Outputs)
+
+    @property
+    def printed(self) -> tuple[PrintedTable, ...]:
+        """What is printed."""
+        return self.outputs.printed or (self.tables.printed,)
+
+
+def drive(
+    plan: Plan,
+    make_outputs: Callable[[Driven], Outputs] = lambda _: Outputs(),
+    build: Callable[[Mapping[str, Mapping[str, Any]]], Callable[[str], Objects]] | None = None,
+) -> Finished:
+    """Drive a plan, or what is missing of it, with a progress display; prints no table.
+
+    Args:
+        make_outputs: What the command makes of its episodes.
+        build: What gives the function that builds the objects of a cell.
+
+    Raises:
+        UserError: If the folder cannot be used, the objects cannot be built or a language model cannot be reached.
+        HaltedError: If the language model must not be used any more; finished episodes are kept.
+        Interrupted: If the user stops it; finished episodes are kept.
+    """
+    is_new = plan.run is None or not (plan.output / plan.experiment / plan.run / MANIFEST).exists()
+    if is_new:
+        # Before the folder is made: a model that cannot be reached leaves nothing behind.
+        Asked(plan.cells).preflight()
+    asked = manifest_of(plan)
+    with RunFolder(_path(plan), asked, {cell.folder: cell.config_text for cell in plan.cells}) as folder:
+        # A cell that is there already keeps its folder, whatever it would be called in this run.
+        cells = [replace(cell, folder=name) for cell, name in zip(plan.cells, folder.manifest.rows, strict=True)]
+        records = _records(folder, cells, plan.seeds)
+        # One batch of all cells: no core waits for the last episode of a cell.
+        units = [Unit(cell.folder, seed) for cell in cells for seed in plan.seeds]
+        missing = [unit for unit in units if unit not in records]
+        film = FilmEpisode(folder.path, {cell.folder: cell.resolved for cell in cells}) if plan.render else None
+        unfilmed = [unit for unit in units if film and unit in records and film.lacks(unit)]
+        incomplete = {unit.cell for unit in missing}
+        models = Asked(cell for cell in cells if cell.folder in incomplete)
+        if not is_new:
+            models.preflight()
+        resolved = {cell.folder: growing(cell.resolved, folder.path, cell.folder) for cell in cells}
+        save = SaveEpisode(folder.path, variables_in([cell.resolved for cell in cells]))
+        job = Job({cell.folder: cell.labels for cell in cells}, (build or BuildObjects)(resolved), save, film)
+        preload = [*modules_to_preload(plan.configs.values()), *(["codriving.animation.film"] if film else [])]
+        failed: list[Report] = []
+        todo = missing + unfilmed
+        try:
+            with show_progress(Counter(unit.cell for unit in todo), models.usage if models.models else None) as update:
+                for share in _shares(missing, unfilmed, plan, models):
+                    failures = FailuresInARow(models.names, models.patience)
+                    with closing(share.launcher.launch(share.units, job, share.workers, preload)) as reports:
+                        for report in reports:
+                            if report.ending is Ending.ERROR:
+                                failed.append(report)
+                            failures.note(report)
+                            update(report.unit.cell, report.ending is Ending.ERROR)
+        except KeyboardInterrupt:
+            finished = len(_records(folder, cells, plan.seeds, records))
+            raise Interrupted(folder.path, finished, len(units)) from None
+        except ModelError as error:
+            finished = len(_records(folder, cells, plan.seeds, records))
+            raise HaltedError(error, folder.path, finished, len(units)) from error
+        finally:
+            folder.clean()
+        everything = _records(folder, cells, plan.seeds, records, errors=True)
+        rows = [[everything[Unit(cell.folder, seed)] for seed in plan.seeds] for cell in cells]
+        driven = Driven(cells, rows, _timings(folder, rows, cells), folder.path)
+        outputs = make_outputs(driven)
+        tables = _write(plan, driven, outputs)
+        kept = len(units) - len(missing)
+        return Finished(
+            folder=folder.path,
+            tables=tables,
+            driven=len(missing),
+            kept=kept,
+            failed=tuple(sorted(failed, key=lambda report: (report.unit.cell, report.unit.seed))),
+            left_out=folder.left_out(plan.seeds),
+            changed=changed_versions(folder.manifest, asked) if kept and missing else (),
+            filmed=sum(film.path(unit).exists() for unit in todo) if film else 0,
+            unfilmed=tuple(unit for unit in units if film and film.lacks(unit)),
+            outputs=outputs,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Share:
+    """A part of a batch that is driven in one place.
+
+    Attributes:
+        workers: A number, or ``auto`` for one a core.
+    """
+
+    units: Sequence[Unit]
+    launcher: Launcher
+    workers: int | str
+
+
+def _shares(missing: Sequence[Unit], unfilmed: Sequence[Unit], plan: Plan, models: Asked) -> Iterator[_Share]:
+    """Say what is driven where.
+
+    Episodes whose method asks no language model are driven as the plan says. Those that ask one wait for its server
+    nearly all the time, and share one client with its limits: they are driven in threads of this process, as many at
+    once as requests may be under way, unless the plan says otherwise than in processes. Episodes that learn from one
+    another come one after the other, each cell in the order of its seeds.
+    """
+    in_order = {cell.folder for cell in plan.cells if learns(cell.resolved)} & {unit.cell for unit in missing}
+    independent = [unit for unit in missing if unit.cell not in in_order]
+    waiting = [unit for unit in independent if unit.cell in models.models]
+    threads: Launcher = Threads() if isinstance(plan.launcher, Processes) else plan.launcher
+    shares = (
+        _Share([unit for unit in missing if unit.cell in in_order], Serial(), 1),
+        _Share(
+            [*(unit for unit in independent if unit.cell not in models.models), *unfilmed], plan.launcher, plan.workers
+        ),
+        _Share(waiting, threads, side_by_side(plan.workers, models.concurrency)),
+    )
+    return (share for share in shares if share.units)
+
+
+def side_by_side(workers: int | str, concurrency: int) -> int:
+    """Return the number of episodes that ask a language model to drive at once.
+
+    Args:
+        workers: A number, or ``auto`` for as many as requests may be under way.
+    """
+    return concurrency if workers == "auto" else min(int(workers), concurrency)
+
+
+class FailuresInARow:
+    """Stops a batch: a language model that fails one episode after another will fail the next ones too."""
+
+    def __init__(self, models: Mapping[str, str], most: Mapping[str, int]) -> None:
+        self._models, self._most = models, most
+        self._failures: Counter[str] = Counter()
+
+    def note(self, report: Report) -> None:
+        """Take note of an episode that has ended.
+
+        Raises:
+            ModelError: If its model has failed too often in a row.
+        """
+        model = self._models.get(report.unit.cell)
+        if model is None:
+            return
+        name = f"{ModelUnavailableError.__name__}: "
+        if report.ending is not Ending.ERROR or not report.message.startswith(name):
+            self._failures[model] = 0
+            return
+        self._failures[model] += 1
+        if self._failures[model] >= self._most[model]:
+            raise ModelError(
+                f"{model} failed {self._failures[model]} episodes in a row (llm.failures_in_a_row), the last with: "
+                f"{report.message.removeprefix(name)}"
+            )
+
+
+def _path(plan: Plan) -> Path:
+    experiment = plan.output / plan.experiment
+    return experiment / plan.run if plan.run else new_run_path(experiment, datetime.now())
+
+
+def manifest_of(plan: Plan) -> Manifest:
+    """Describe what is to be run, and with what."""
+    return Manifest(
+        format=FORMAT,
+        behaviour=BEHAVIOUR,
+        experiment=plan.experiment,
+        created=datetime.now(UTC).isoformat(timespec="seconds"),
+        first_seed=plan.first_seed,
+        episodes=plan.episodes,
+        rows=tuple(cell.folder for cell in plan.cells),
+        cells=tuple(cell.entry() for cell in plan.cells),
+        versions=versions(),
+        commit=commit(),
+        machine=machine(),
+    )
+
+
+def _records(
+    folder: RunFolder,
+    cells: Sequence[Cell],
+    seeds: Sequence[int],
+    known: Mapping[Unit, EpisodeRecord] | None = None,
+    errors: bool = False,
+) -> dict[Unit, EpisodeRecord]:
+    """Read the records that are not known yet; failed episodes only on demand, since they are to be driven again."""
+    found = dict(known or {})
+    for cell in cells:
+        entry = cell.entry()
+        for unit in (Unit(cell.folder, seed) for seed in seeds):
+            record = None if unit in found else folder.record(entry, unit.seed)
+            if record is not None and (errors or record.outcome.ending is not Ending.ERROR):
+                found[unit] = record
+    return found
+
+
+def _timings(
+    folder: RunFolder, rows: Sequence[Sequence[EpisodeRecord]], cells: Sequence[Cell]
+) -> list[list[Timing | None]]:
+    pairs = zip(cells, rows, strict=True)
+    return [[read_timing(folder.episode(cell.folder, record.seed)) for record in records] for cell, records in pairs]
+
+
+def _write(plan: Plan, driven: Driven, outputs: Outputs) -> RunTables:
+    """Write the tables of every run, and what the command adds."""
+    each = list(zip(driven.cells, driven.records, driven.timings, strict=True))
+    results = [
+        CellResults(records, cell.swept, seconds_per_decision(timings), metric=cell.metrics)
+        for cell, records, timings in each
+    ]
+    tables = run_tables(results, read_paper(experiments_dir()), driven.metrics, plan.notes)
+    timed = [
+        TimedEpisode(record, timing, cell.swept)
+        for cell, records, timings in each
+        for record, timing in zip(records, timings, strict=True)
+    ]
+    try:
+        tables.write(driven.folder)
+        outputs.write(driven.folder)
+        write_text(driven.folder / "timing.csv", table(timing_columns(driven.cells[0].swept), timed).csv())
+    except OSError as error:
+        raise unwritable(driven.folder, error) from error
+    return tables

@@ -1,0 +1,61 @@
+"""Where episodes are driven: the base class, and this process; results do not depend on it."""
+
+import os
+from abc import ABC, abstractmethod
+from collections.abc import Generator, Sequence
+
+from codriving.experiment.worker import Job, Report, Unit, Worker
+
+
+class Launcher(ABC):
+    """Drives units somewhere; results are saved by the job, so they do not depend on where."""
+
+    def prepare(self, workers: int | str, units: int, preload: Sequence[str]) -> None:
+        """Get ready in the background.
+
+        Args:
+            workers: A number, or ``auto`` for one a core.
+        """
+        return None
+
+    @abstractmethod
+    def launch(
+        self, units: Sequence[Unit], job: Job, workers: int | str, preload: Sequence[str]
+    ) -> Generator[Report, None, None]:
+        """Drive units.
+
+        When the iterator is closed, by an exception or otherwise, units in flight are lost.
+
+        Args:
+            workers: A number, or ``auto`` for one a core.
+            preload: Modules that a new process imports once.
+
+        Raises:
+            UserError: If the batch has to stop.
+        """
+
+
+class Serial(Launcher):
+    """One after another in this process, for debugging and profiling; ``workers`` has no meaning here."""
+
+    def launch(
+        self, units: Sequence[Unit], job: Job, workers: int | str = 1, preload: Sequence[str] = ()
+    ) -> Generator[Report, None, None]:
+        worker = Worker(job)
+        for unit in units:
+            yield worker.run(unit)
+
+
+def worker_count(workers: int | str, units: int) -> int:
+    """Return how many workers to use, at least 1.
+
+    Args:
+        workers: A number, or ``auto`` for one a core that this process may use.
+    """
+    wanted = available_cores() if workers == "auto" else int(workers)
+    return max(1, min(wanted, units))
+
+
+def available_cores() -> int:
+    """Return the number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

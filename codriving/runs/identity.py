@@ -1,0 +1,191 @@
+"""What tells a cell from all others: the names of its YAMLs, their values, and the content of files that these name.
+
+No module path is part of it: a class that moves changes nothing.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from codriving.runs.redaction import flat, redact
+
+BEHAVIOUR = 1
+"""The behaviour number: raised by every commit that changes a hash in tests/sameness/golden.
+
+A run folder of another number is replayed, scored and reported, but not extended. Release 0.1 drives behaviour 1.
+"""
+
+WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render", "prompts", "plugins")
+"""Keys that do not change what is driven; templates and plug-ins are told by their content."""
+
+HOW_A_MODEL_IS_ASKED = (
+    "api_key_env",
+    "attempts",
+    "cache",
+    "cache_file",
+    "deadline",
+    "failures_in_a_row",
+    "max_concurrency",
+    "max_cost",
+    "max_tokens_total",
+)
+"""Keys of ``llm`` likewise: with them a run goes on after a limit has been raised, or is replayed under its name."""
+
+CHOICES = ("scenario", "method", "executor", "llm", "memory", "metrics")
+"""Groups whose choice stands for a class; all choices of ``cda`` are one class, so that their values tell them."""
+
+MEMORY = "memory"
+SNAPSHOT, AUTO = "snapshot", "auto"
+"""Where a memory's snapshot is told by its contents, its file may lie anywhere."""
+
+_COPIED = (*CHOICES, "cda")
+"""Nodes of the root to which other nodes refer, and which therefore stand in these once more."""
+
+
+@dataclass(frozen=True, slots=True)
+class NamedFile:
+    """A file that the config of a cell names and whose content is part of what the cell is.
+
+    Attributes:
+        name: What it is, for instance ``weights`` or ``template decide.user.md.j2``.
+    """
+
+    name: str
+    path: str
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class CellEntry:
+    """One cell of the run: one config on many seeds.
+
+    Attributes:
+        folder: Name of its folder under ``episodes/``.
+        reasoner: What reasons: ``rules`` or the name of a model.
+        swept: What tells it from other rows of its table.
+        settings: The values that drive, as JSON by dotted key.
+        choices: Name of the YAML of each group; empty for a cell of release 0.1.
+    """
+
+    folder: str
+    scenario: str
+    method: str
+    variant: str
+    reasoner: str
+    fingerprint: str
+    swept: dict[str, str]
+    settings: dict[str, str]
+    choices: dict[str, str]
+    files: tuple[NamedFile, ...]
+
+    @property
+    def labels(self) -> tuple[str, str, str, str]:
+        """What its records are labelled with: scenario, method, variant, reasoner."""
+        return self.scenario, self.method, self.variant, self.reasoner
+
+
+def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
+    """Leave out of a resolved config what does not change what is driven, the names of classes, and repetitions."""
+    values = {key: _plain(node, resolved) for key, node in resolved.items() if key not in WITHOUT_EFFECT}
+    dropped = {"llm": HOW_A_MODEL_IS_ASKED, MEMORY: (SNAPSHOT, "file", "embedding_deadline")}
+    memory = values.get(MEMORY)
+    if not isinstance(memory, Mapping) or memory.get(SNAPSHOT, AUTO) == AUTO:
+        del dropped[MEMORY]
+    for key, names in dropped.items():
+        if isinstance(node := values.get(key), Mapping):
+            values[key] = {name: value for name, value in node.items() if name not in names}
+    return values
+
+
+def _plain(node: object, resolved: Mapping[str, Any]) -> object:
+    if isinstance(node, list):
+        return [_plain(item, resolved) for item in node]
+    if not isinstance(node, Mapping):
+        return node
+    return {
+        name: _plain(value, resolved)
+        for name, value in node.items()
+        if name != "_target_" and not (name in _COPIED and name in resolved and value == resolved[name])
+    }
+
+
+def snapshot_of(resolved: Mapping[str, Any]) -> tuple[NamedFile, ...]:
+    """Return the snapshot that a memory is told by, if it is."""
+    memory = resolved.get(MEMORY) or {}
+    digest = memory.get(SNAPSHOT, AUTO)
+    return () if digest == AUTO else (NamedFile(MEMORY, str(memory.get("file") or ""), str(digest)),)
+
+
+def files_of(paths: Mapping[str, Path]) -> tuple[NamedFile, ...]:
+    """Read the content of files, by what they are.
+
+    Raises:
+        OSError: If one cannot be read.
+    """
+    return tuple(
+        NamedFile(name, _shown(path), hashlib.sha256(path.read_bytes()).hexdigest()) for name, path in paths.items()
+    )
+
+
+def _shown(path: Path) -> str:
+    """A path without the folder in which we, or the user, are at home."""
+    for home in (Path.cwd(), Path(__file__).resolve().parents[2]):
+        if path.is_relative_to(home):
+            return path.relative_to(home).as_posix()
+    return str(path)
+
+
+def fingerprint(
+    names: Sequence[str], choices: Mapping[str, str], resolved: Mapping[str, Any], files: Iterable[NamedFile]
+) -> str:
+    """Reduce to one text what tells a cell.
+
+    Args:
+        names: What its objects call themselves: scenario, method, variant, reasoner.
+        choices: Name of the YAML of each group.
+    """
+    told = {
+        "names": list(names),
+        "choices": {group: choices[group] for group in CHOICES if group in choices},
+        "values": driving_values(resolved),
+        "files": {file.name: file.sha256 for file in files},
+    }
+    text = json.dumps(told, sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def settings_of(resolved: Mapping[str, Any]) -> dict[str, str]:
+    """Return what drives, without secrets, as JSON by dotted key."""
+    return flat(redact(driving_values(resolved)))
+
+
+def same_cell(there: CellEntry, here: CellEntry) -> bool:
+    """Tell whether a cell of a run folder is the cell that is asked for.
+
+    Of a cell of release 0.1 neither choices nor files are known, but for the snapshot of its memory.
+    """
+    if there.choices:
+        return there.fingerprint == here.fingerprint
+    known = {file.name: file.sha256 for file in there.files}
+    return same_settings(there, here) and known.items() <= {file.name: file.sha256 for file in here.files}.items()
+
+
+def same_settings(there: CellEntry, here: CellEntry) -> bool:
+    """Tell whether two cells have the same names and values, whatever is in the files that these name."""
+    same = (there.labels, there.settings) == (here.labels, here.settings)
+    return same and all(there.choices.get(g, name) == name for g, name in here.choices.items() if g in CHOICES)
+
+
+def changed_files(there: CellEntry, here: CellEntry) -> Iterator[str]:
+    """Name the files of a cell that hold something else than when it was driven, or were not there."""
+    before, now = ({file.name: file for file in cell.files} for cell in (there, here))
+    for name in sorted(before.keys() | now.keys()) if there.choices else ():
+        was, is_ = before.get(name), now.get(name)
+        if was is None or is_ is None:
+            yield f"{(was or is_).path} ({name}) was {'added' if was is None else 'removed'}"  # type: ignore[union-attr]
+        # A memory of another name is another memory.
+        elif was.sha256 != is_.sha256 and (name != MEMORY or was.path == is_.path):
+            yield f"{is_.path} ({name}) has changed"

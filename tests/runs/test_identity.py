@@ -1,0 +1,127 @@
+"""What tells a cell: names, values and the content of files; not the place of a class, not how much is driven."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from manifests import cell
+
+from codriving.config.compose import compose, compose_named
+from codriving.runs.identity import (
+    BEHAVIOUR,
+    NamedFile,
+    changed_files,
+    driving_values,
+    fingerprint,
+    same_cell,
+    settings_of,
+    snapshot_of,
+)
+
+NAMES = ("intersection", "codriving", "full", "rules")
+DECIDE = NamedFile("template decide.user.md.j2", "mine/decide.user.md.j2", "aa")
+MEMORY = NamedFile("memory", "a.sqlite", "bb")
+
+
+def told(*overrides: str, names: tuple[str, ...] = NAMES, files: tuple[NamedFile, ...] = ()) -> str:
+    resolved, choices = compose_named(overrides)
+    return fingerprint(names, choices, resolved, files)
+
+
+def test_the_behaviour_number_is_that_of_release_0_1() -> None:
+    assert BEHAVIOUR == 1
+
+
+@pytest.mark.parametrize(
+    "override", ["episodes=3", "workers=2", "output=elsewhere", "run=again", "launcher=serial", "plugins=[t_junction]"]
+)
+def test_how_much_is_driven_where_and_how_fast_tells_nothing(override: str) -> None:
+    assert told(override) == told()
+
+
+@pytest.mark.parametrize(
+    "override", ["seed=1", "scenario.cavs=5", "cda.negotiation=false", "method=fcfs", "llm=ollama", "experiment=x"]
+)
+def test_names_and_values_tell(override: str) -> None:
+    assert told(override) != told()
+
+
+def test_labels_and_files_tell() -> None:
+    assert told(names=("merge", *NAMES[1:])) != told()
+    assert told(files=(DECIDE,)) != told()
+    assert told(files=(DECIDE,)) != told(files=(replace(DECIDE, sha256="cc"),))
+    assert told(files=(DECIDE,)) == told(files=(replace(DECIDE, path="moved/decide.user.md.j2"),))
+
+
+def test_two_yamls_of_the_same_values_are_two_methods() -> None:
+    resolved = compose([])
+    assert fingerprint(NAMES, {"method": "a"}, resolved, ()) != fingerprint(NAMES, {"method": "b"}, resolved, ())
+    assert fingerprint(NAMES, {"cda": "a"}, resolved, ()) == fingerprint(NAMES, {"cda": "b"}, resolved, ())
+
+
+def test_the_order_of_keys_tells_nothing() -> None:
+    resolved = compose([])
+    assert fingerprint(NAMES, {}, dict(reversed(resolved.items())), ()) == fingerprint(NAMES, {}, resolved, ())
+
+
+def moved(node: Any) -> Any:
+    """A config all of whose classes stand elsewhere."""
+    if isinstance(node, dict):
+        return {key: "codriving.elsewhere.Class" if key == "_target_" else moved(value) for key, value in node.items()}
+    return node
+
+
+def test_a_class_that_moves_changes_nothing() -> None:
+    resolved = compose(["method=dilu"])
+    assert moved(resolved) != resolved
+    assert fingerprint(NAMES, {}, moved(resolved), ()) == fingerprint(NAMES, {}, resolved, ())
+    assert not any("_target_" in key or "codriving." in value for key, value in settings_of(resolved).items())
+
+
+def test_what_a_node_refers_to_is_told_once() -> None:
+    assert driving_values({"cda": {"a": 1}, "method": {"cda": {"a": 1}, "b": [{"cda": {"a": 2}}]}}) == {
+        "cda": {"a": 1},
+        "method": {"b": [{"cda": {"a": 2}}]},
+    }
+
+
+def test_how_a_model_is_asked_tells_nothing_and_which_one_does() -> None:
+    model = ("llm=custom", "llm.api_base=http://127.0.0.1:1/v1")
+    for setting in ("max_cost=2.0", "max_concurrency=2", "cache=replay", "cache_file=other", "api_key_env=MY_KEY"):
+        assert told(*model, f"llm.{setting}") == told(*model)
+    for setting in ("model=openai/other", "temperature=0.5", "max_tokens=5", "ask_plain=true", "api_base=null"):
+        assert told(*model, f"llm.{setting}") != told(*model)
+
+
+def test_a_memory_is_told_by_its_snapshot_wherever_its_file_lies() -> None:
+    one, two = (compose(["memory=frozen", f"memory.file={name}", "memory.snapshot=bb"]) for name in ("a", "b"))
+    assert driving_values(one) == driving_values(two)
+    assert snapshot_of(one) == (NamedFile("memory", "a", "bb"),)
+    assert snapshot_of(compose(["memory=frozen", "memory.file=a"])) == ()
+    assert snapshot_of(compose([])) == ()
+
+
+def test_a_changed_file_is_named() -> None:
+    held = replace(cell("f1"), choices={"method": "codriving"}, files=(DECIDE, MEMORY))
+
+    def changed(*files: NamedFile) -> list[str]:
+        return list(changed_files(held, replace(held, fingerprint="f2", files=files)))
+
+    assert changed(DECIDE, MEMORY) == []
+    assert changed(replace(DECIDE, sha256="cc"), MEMORY) == [
+        "mine/decide.user.md.j2 (template decide.user.md.j2) has changed"
+    ]
+    assert changed(MEMORY) == ["mine/decide.user.md.j2 (template decide.user.md.j2) was removed"]
+    added = NamedFile("plug-in mine/new.py", "mine/new.py", "dd")
+    assert changed(DECIDE, MEMORY, added) == ["mine/new.py (plug-in mine/new.py) was added"]
+    assert changed(DECIDE, replace(MEMORY, sha256="cc")) == ["a.sqlite (memory) has changed"]
+    assert changed(DECIDE, NamedFile("memory", "b.sqlite", "cc")) == [], "another memory, not a changed one"
+
+
+def test_a_cell_of_release_0_1_is_told_by_labels_and_values() -> None:
+    here = replace(cell("f1", a="1"), choices={"method": "codriving"}, files=(DECIDE, MEMORY))
+    there = replace(cell("", a="1"), choices={}, files=(MEMORY,))
+    assert same_cell(there, here)
+    assert not same_cell(replace(there, method="fcfs"), here)
+    assert not same_cell(replace(there, settings={"a": "2"}), here)
+    assert not same_cell(replace(there, files=(replace(MEMORY, sha256="cc"),)), here)
