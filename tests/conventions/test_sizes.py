@@ -20,7 +20,7 @@ STILL_WORDY = {
 }
 """Rooms whose docstrings are still longer than that; none are added."""
 
-LINES, CODE = 36_000, 22_600
+LINES, CODE = 34_200, 21_700
 """Lines of the program, and those that are no docstring, comment or blank: at most 31,000 and 19,500 in the end."""
 
 
