@@ -1,8 +1,8 @@
 """``python -m tests.mutants``: change the reasoning in many places, one at a time, and see whether a test notices.
 
 The changes are drawn by a seed. Each is compiled in memory, in a process of its own, where the tests that run through
-the changed line are run until one fails. A change that no test notices is a *survivor*; the survivors that are known,
-each with its reason, stand in ``survivors.txt``.
+the changed line are run until one fails. A change that no test notices is a *survivor*; those that are known stand in
+``survivors.txt``, each with its reason, in the form in which the report prints them.
 """
 
 import argparse
@@ -17,7 +17,7 @@ from tests.mutants.forked import Outcome, reach, run
 
 HERE = Path(__file__).parent
 ROOMS = ("codriving/reasoning/safety", "codriving/reasoning/ordering", "codriving/reasoning/decision")
-METHODS = ("codriving", "deliberation", "lanes", "ordered", "pipeline")
+METHODS = ("codriving", "deliberation", "fcfs", "idfst", "lanes", "ordered", "pipeline")
 TESTS = ("tests/reasoning", *(f"tests/methods/test_{name}.py" for name in METHODS))
 LEAST = 0.8
 """Share of the changes that has to be noticed."""
@@ -60,7 +60,7 @@ def _report(outcomes: list[tuple[Change, Outcome]], took: float, known: Path) ->
     if survivors:
         print(f"\n{len(survivors)} survivors, {len(unexplained)} of them without a reason in {known.name}:")
     for change in sorted(survivors, key=lambda c: (c.file, c.line)):
-        print(f"  {_line(change)}  {reasons.get(change.key, '-')}")
+        print(f"{change.key}\n    {reasons.get(change.key, 'no reason is known')}")
     noticed = len(outcomes) - len(survivors)
     share = noticed / max(len(outcomes), 1)
     print(f"\n{noticed} of {len(outcomes)} changes noticed: {share:.1%}, in {took / 60:.1f} minutes")

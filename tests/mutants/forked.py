@@ -61,6 +61,8 @@ def reach(root: Path, rooms: Sequence[str], tests: Sequence[str]) -> Reach:
         if not found.exists():
             raise SystemExit((Path(folder) / "output").read_text(errors="replace")[-3000:])
         raw = json.loads(found.read_text())
+        if not raw["seconds"]:
+            raise SystemExit(f"no test passes: {(Path(folder) / 'output').read_text(errors='replace')[-3000:]}")
     lines = {file: {int(line): set(ids) for line, ids in at.items()} for file, at in raw["lines"].items()}
     return Reach(lines, raw["seconds"], raw["modules"])
 
