@@ -15,7 +15,7 @@ from codriving.llm.prompts.replies import OrderReply, first_of_pairs, order_repl
 from codriving.llm.prompts.variables import negotiation_view
 from codriving.llm.question import Chat, Question
 from codriving.reasoning.moment import Moment
-from codriving.reasoning.ordering.coordinator import RuleCoordinator
+from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator
 from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
 from codriving.reasoning.ordering.problem import Problem, pose
 
@@ -26,7 +26,7 @@ Asked = Mapping[str, Conflict]
 """The pairs of a question: the most urgent conflict of each, by the name of the pair."""
 
 
-class ModelCoordinator:
+class ModelCoordinator(Coordinator):
     """Asks a model who goes first in each pair of CAVs; the rules do the rest.
 
     The rules settle what cannot be negotiated: pairs that are physically fixed, and pairs with human drivers, who

@@ -1,8 +1,8 @@
 """The conflict coordinator by rules: arrival order, turning yields to straight, who is committed goes (III-C.3)."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Protocol
 
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance, Pair
@@ -28,15 +28,15 @@ TRIES = 600
 """Orders that are tried at most."""
 
 
-class Coordinator(Protocol):
+class Coordinator(ABC):
     """Decides who goes first: one call for all vehicles."""
 
+    @abstractmethod
     def negotiate(self, moment: Moment) -> PassingOrder:
         """Return an order without cycles for all conflicts."""
-        ...
 
 
-class RuleCoordinator:
+class RuleCoordinator(Coordinator):
     """Schedules the vehicle that can pass first, again and again, with the traffic rules as handicaps."""
 
     def __init__(self, binding: bool) -> None:

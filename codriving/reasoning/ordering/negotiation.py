@@ -1,8 +1,8 @@
 """The negotiation sub-module: one order for all, or each CAV's own in one of three readings (III-C.3 and IV-B)."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from math import exp
-from typing import Protocol
 from zlib import crc32
 
 import numpy as np
@@ -21,15 +21,15 @@ DOUBT = 1.0
 """Difference of arrival times at which a guess is right in about three of four cases [s]."""
 
 
-class Negotiation(Protocol):
+class Negotiation(ABC):
     """Gives every CAV the order that it goes by."""
 
+    @abstractmethod
     def orders(self, moment: Moment) -> Mapping[str, PassingOrder]:
         """Return the passing order of each CAV, by id."""
-        ...
 
 
-class AgreedOrder:
+class AgreedOrder(Negotiation):
     """Agreement-seeking (class C) and prescriptive (class D): all CAVs go by the coordinator's order."""
 
     def __init__(self, coordinator: Coordinator) -> None:
@@ -40,7 +40,7 @@ class AgreedOrder:
         return dict.fromkeys(moment.scenes, self.coordinator.negotiate(moment))
 
 
-class OwnOrders:
+class OwnOrders(Negotiation):
     """Every CAV orders its own conflicts by what it knows.
 
     ``own_view`` estimates the others' arrival at their present speed and decides ties for itself; ``same_rule`` applies

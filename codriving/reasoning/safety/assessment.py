@@ -1,6 +1,6 @@
 """All three layers together: which actions stay, and why the others were removed."""
 
-from typing import Protocol
+from abc import ABC, abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,15 +23,15 @@ from codriving.reasoning.safety.same_lane import check_ahead, check_behind
 Array = NDArray[np.float64]
 
 
-class SafetyCheck(Protocol):
+class SafetyCheck(ABC):
     """Assesses every available action of one CAV."""
 
+    @abstractmethod
     def assess(self, given: SafetyInput) -> tuple[ActionAssessment, ...]:
         """Return one assessment an action, in the order of the actions."""
-        ...
 
 
-class NoCheck:
+class NoCheck(SafetyCheck):
     """Without the safety check every action stays."""
 
     def assess(self, given: SafetyInput) -> tuple[ActionAssessment, ...]:
@@ -42,7 +42,7 @@ class NoCheck:
         )
 
 
-class ThreeLayers:
+class ThreeLayers(SafetyCheck):
     """Same lane, adjacent lane, conflict lane."""
 
     def assess(self, given: SafetyInput) -> tuple[ActionAssessment, ...]:
