@@ -23,7 +23,7 @@ class Ours:
 
     def __init__(self) -> None:
         config = compose([f"scenario.cavs={CAVS}", f"scenario.hdvs=[{HDVS},{HDVS}]"])
-        made = build(config["environment"], key="environment")
+        made = build(config["environment"], object, "environment")
         assert isinstance(made, Environment)
         self.environment = made
 

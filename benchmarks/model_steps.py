@@ -8,9 +8,9 @@ from statistics import median
 from time import perf_counter, process_time
 
 from benchmarks.served import served
-from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.environment.environment import Environment
+from codriving.experiment.objects import make_objects
 from codriving.methods.codriving import CoDriving
 
 CAVS = 4
@@ -33,8 +33,7 @@ def steps(tokens: Sequence[str]) -> Iterator[tuple[float, float]]:
         Wall-clock time and CPU time of one step [s].
     """
     config = compose([f"scenario.cavs={CAVS}", *tokens])
-    environment = build(config["environment"], key="environment")
-    method = build(config["method"], key="method")
+    environment, method, *_ = make_objects(config)
     assert isinstance(environment, Environment)
     assert isinstance(method, CoDriving)
     # Conflict zones are worked out once a process.

@@ -29,7 +29,7 @@ def configured() -> Callable[..., Environment]:
     """Builds the environment that some overrides ask for."""
 
     def make(*overrides: str) -> Environment:
-        environment = build(compose(overrides)["environment"])
+        environment = build(compose(overrides)["environment"], object)
         assert isinstance(environment, Environment)
         return environment
 

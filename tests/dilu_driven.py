@@ -49,7 +49,7 @@ class Notebook(CaseMemory):
 def rule(**change: Any) -> Demonstrated:
     """The rule as it is configured, but for what is named."""
     node = dict(compose(["method=dilu"])["method"]["rule"])
-    made = build({**node, **change}, (), "method")
+    made = build({**node, **change}, object, "method")
     assert isinstance(made, Demonstrated)
     return made
 

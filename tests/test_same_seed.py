@@ -4,11 +4,10 @@ from typing import Any
 
 import pytest
 
-from codriving.config.build import build
 from codriving.config.choices import choices
 from codriving.config.compose import compose
-from codriving.datatypes.parts import Method
 from codriving.environment.environment import Environment
+from codriving.experiment.objects import make_objects
 
 DECISIONS = 6
 SEED = 11
@@ -16,10 +15,9 @@ SEED = 11
 
 def episode(config: dict[str, Any]) -> tuple[list[dict[str, Any]], list[tuple[Any, ...]]]:
     """The decisions and the bytes of the trajectories of a short episode, everything built anew."""
-    environment, method = build(config["environment"]), build(config["method"])
+    environment, driver, *_ = make_objects(config)
     assert isinstance(environment, Environment)
     world = environment.reset(SEED)
-    driver: Method = method
     driver.reset(environment.road_map, environment.driving_model, SEED)
     lines = []
     while environment.outcome is None and len(lines) < DECISIONS:

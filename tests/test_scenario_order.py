@@ -16,13 +16,13 @@ SCENARIOS = list(choices("scenario"))
 
 ORDERS = """
 import hashlib, json, os, sys
-from codriving.config.build import build
+from codriving.experiment.objects import make_objects
 import codriving.environment.environment, codriving.methods.codriving
 
 SEED, DECISIONS = 3, 3
 
 def digest(config):
-    environment, method = build(config["environment"]), build(config["method"])
+    environment, method, *_ = make_objects(config)
     world = environment.reset(SEED)
     method.reset(environment.road_map, environment.driving_model, SEED)
     for _ in range(DECISIONS):

@@ -1,43 +1,95 @@
-"""Config nodes to objects: the one place where a `_target_` is called."""
+"""Config nodes to objects: the one place where a `_target_` is called, once its class is known to fit."""
 
 import inspect
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, TypeVar, get_args
 
 from codriving.config.coerce import MismatchError, coerce
 from codriving.config.schema import unknown
 from codriving.config.target import find_class
 from codriving.errors import ConfigError
 
+T = TypeVar("T")
+
 TARGET = "_target_"
 
+Given = Mapping[type, object]
+"""Objects that are handed to every constructor that has a parameter annotated with their class."""
 
-def build(node: Mapping[str, Any], plugins: Sequence[str] = (), key: str = "") -> Any:  # noqa: ANN401 - any class
+
+def build(node: object, expected: type[T], key: str = "", plugins: Sequence[str] = (), given: Given | None = None) -> T:
     """Construct what a node describes, and first whatever its own keys describe.
 
-    A node is a constructor call: ``_target_`` names the class, every other key is one of its arguments. Nothing is
-    filled in, nothing is dropped.
+    A node is a constructor call: ``_target_`` names the class, every other key is one of its arguments. What the class
+    of a nested node has to be is the annotation of the argument. Nothing is filled in but what is given, and nothing is
+    dropped.
 
     Args:
         node: A mapping with a ``_target_``.
+        expected: What its class has to be or to inherit from.
+        key: Name of the node in messages.
+        plugins: Packages besides ours whose classes may be named.
 
     Raises:
         ConfigError: If the class is not allowed, a key is unknown or missing, or a value has the wrong type or range.
     """
+    made: T = _build(node, (expected,), key, plugins, given or {})
+    return made
+
+
+def asks_for(node: object, wanted: type, plugins: Sequence[str] = ()) -> bool:
+    """Tell whether a class that a node names, itself or further inside, has a parameter annotated with a class."""
+    for target in targets(node):
+        annotations = _annotations(find_class(target, "the node", plugins)).values()
+        if any(wanted in _classes(annotation) for annotation in annotations):
+            return True
+    return False
+
+
+def targets(node: object) -> Iterator[str]:
+    """Yield each class that a config names."""
+    inner = node.values() if isinstance(node, Mapping) else node if isinstance(node, list) else ()
+    if isinstance(node, Mapping) and isinstance(node.get(TARGET), str):
+        yield node[TARGET]
+    for value in inner:
+        yield from targets(value)
+
+
+def _build(node: object, expected: Sequence[type], key: str, plugins: Sequence[str], given: Given) -> Any:  # noqa: ANN401
     if not isinstance(node, Mapping) or TARGET not in node:
         raise ConfigError(f"{key or 'the node'} must hold a {TARGET}, got {node!r}")
     cls = find_class(node[TARGET], key, plugins)
+    _check_class(cls, node[TARGET], expected, key)
     arguments = {str(name): value for name, value in node.items() if name != TARGET}
     annotations = _annotations(cls)
-    _check_names(arguments, cls, key)
+    handed = {n: given[c] for n, a in annotations.items() for c in _classes(a) if c in given}
+    for name, value in handed.items():
+        if value is None and type(None) not in get_args(annotations[name]):
+            raise ConfigError(f"{key or cls.__name__} cannot do without {name}, and none is chosen; set {name}=<name>")
+    for name in handed.keys() & arguments.keys():
+        raise ConfigError(
+            f"{_join(key, name)} is not set here since release 0.2: {cls.__name__} is handed what {name}= chooses; "
+            f"delete the line `{name}:` from its YAML"
+        )
+    _check_names({**arguments, **handed}, cls, key)
     for name, value in arguments.items():
-        arguments[name] = _argument(value, annotations.get(name, object), _join(key, name), plugins)
+        arguments[name] = _argument(value, annotations.get(name, object), _join(key, name), plugins, given)
     try:
-        return cls(**arguments)
+        return cls(**arguments, **handed)
     except ConfigError as err:
         raise type(err)(_locate(str(err), key, arguments)) from err
     except ValueError as err:
         raise ConfigError(_locate(str(err), key, arguments)) from err
+
+
+def _check_class(cls: type, target: str, expected: Sequence[type], key: str) -> None:
+    """Refuse a class that its place does not expect, before anything of it is called."""
+    if not any(one in cls.__mro__ for one in expected):
+        names = " or ".join(one.__name__ for one in expected) or "a plain value"
+        raise ConfigError(
+            f"{key or 'the node'} must be {names}, but {target} is none; name another class, or let it inherit from "
+            f"{' or '.join(f'{one.__module__}.{one.__name__}' for one in expected) or 'what is expected there'}"
+        )
 
 
 def _check_names(arguments: Mapping[str, object], cls: type, key: str) -> None:
@@ -57,14 +109,13 @@ def _parameters(cls: type) -> dict[str, inspect.Parameter]:
 
 def _annotations(cls: type) -> dict[str, Any]:
     """Read the annotations of the arguments; those that only a type checker can resolve are left out."""
-    module = inspect.getmodule(cls)
-    scope = dict(vars(module)) if module else {}
     found = {}
     for name, parameter in _parameters(cls).items():
         annotation = parameter.annotation
         if isinstance(annotation, str):
+            module = inspect.getmodule(cls)
             try:
-                annotation = eval(annotation, scope)
+                annotation = eval(annotation, dict(vars(module)) if module else {})
             except NameError:
                 continue
         if annotation is not parameter.empty:
@@ -72,21 +123,29 @@ def _annotations(cls: type) -> dict[str, Any]:
     return found
 
 
-def _argument(value: object, wanted: object, key: str, plugins: Sequence[str]) -> object:
-    made = _nested(value, key, plugins)
+def _classes(annotation: Any) -> tuple[type, ...]:  # noqa: ANN401 - an annotation has no common type
+    """The classes that an annotation names, in a union, a list or a mapping too, apart from those of plain values."""
+    parts = get_args(annotation)
+    if parts:
+        return tuple(cls for part in parts for cls in _classes(part))
+    return (annotation,) if isinstance(annotation, type) and annotation.__module__ not in ("builtins", "typing") else ()
+
+
+def _argument(value: object, annotation: object, key: str, plugins: Sequence[str], given: Given) -> object:
+    made = _nested(value, _classes(annotation), key, plugins, given)
     try:
-        return coerce(made, wanted)
+        return coerce(made, annotation)
     except MismatchError as err:
         raise ConfigError(f"{key} must be {err}, got {value!r}") from err
 
 
-def _nested(value: object, key: str, plugins: Sequence[str]) -> object:
+def _nested(value: object, expected: Sequence[type], key: str, plugins: Sequence[str], given: Given) -> object:
     if isinstance(value, Mapping):
         if TARGET in value:
-            return build(value, plugins, key)
-        return {name: _nested(inner, _join(key, str(name)), plugins) for name, inner in value.items()}
+            return _build(value, expected, key, plugins, given)
+        return {k: _nested(inner, expected, _join(key, str(k)), plugins, given) for k, inner in value.items()}
     if isinstance(value, list):
-        return [_nested(inner, f"{key}.{index}", plugins) for index, inner in enumerate(value)]
+        return [_nested(inner, expected, f"{key}.{k}", plugins, given) for k, inner in enumerate(value)]
     return value
 
 

@@ -3,6 +3,7 @@
 import importlib
 from collections.abc import Sequence
 
+from codriving.config.moved import moved_imports, new_place
 from codriving.errors import ConfigError
 
 OURS = "codriving"
@@ -28,19 +29,25 @@ def find_class(target: object, key: str, plugins: Sequence[str] = ()) -> type:
     module_name, _, class_name = target.rpartition(".")
     try:
         module = importlib.import_module(module_name)
-    except ModuleNotFoundError as err:
+    except ImportError as err:
+        if said := moved_imports(err):
+            raise ConfigError(f"{key}._target_ is {target}, but {said}") from err
         # A package that the user has not installed is for them to mend; one that is missing inside it is a bug there.
         if err.name is None or not (module_name == err.name or module_name.startswith(f"{err.name}.")):
             raise
+        if _within(target, (OURS,)) and (place := new_place(class_name)):
+            raise ConfigError(f"{key}._target_ is {target}, which is {place} since release 0.2; write that") from err
         raise ConfigError(
             f"{key}._target_ is {target}, but there is no module {err.name}; "
             "install it, or put it beside the folder that --config-dir names"
         ) from err
-    found = getattr(module, class_name, None)
     # A name that a module merely imported (a function of the standard library, say) is not one that it offers.
-    if not isinstance(found, type) or not _within(found.__module__, allowed):
-        raise ConfigError(f"{key}._target_ is {target}, but {module_name} has no class {class_name}")
-    return found
+    found = vars(module).get(class_name)
+    if isinstance(found, type) and _within(found.__module__, allowed):
+        return found
+    place = new_place(class_name) if _within(target, (OURS,)) else None
+    hint = f"; it is {place} since release 0.2" if place else ""
+    raise ConfigError(f"{key}._target_ is {target}, but {module_name} has no class {class_name}{hint}")
 
 
 def _within(name: str, packages: Sequence[str]) -> bool:

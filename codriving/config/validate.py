@@ -4,19 +4,33 @@ from collections.abc import Mapping
 from typing import Any
 
 from codriving.config.build import build
-from codriving.config.schema import NODES, check_root
+from codriving.config.schema import check_root
+from codriving.datatypes.parts import CaseMemory, Method, Metric, Model, Scenario, Simulator
 
-ORDER = (*(name for name in NODES if name != "method"), "method")
-"""The method comes last: what it refers to (cda, llm, memory) is then blamed under its own name."""
+EXPECTED: dict[str, type] = {
+    "scenario": Scenario,
+    "executor": object,
+    "cda": object,
+    "llm": Model,
+    "memory": CaseMemory,
+    "metrics": Metric,
+    "launcher": object,
+    "environment": Simulator,
+}
+"""What each node has to be; those of a room further up are checked again where a method or a run takes them."""
 
 
 def validate(resolved: Mapping[str, Any]) -> None:
-    """Check keys, types and ranges of every node by building it.
+    """Check keys, types and ranges of every node by building it, and last the method, which refers to others.
 
     Raises:
         ConfigError: With the full key, the rule and the value that broke it.
     """
     check_root(resolved)
-    for name in ORDER:
-        if resolved[name] is not None:
-            build(resolved[name], resolved["plugins"], name)
+    plugins = resolved["plugins"]
+    made: dict[str, Any] = {
+        name: build(resolved[name], expected, name, plugins)
+        for name, expected in EXPECTED.items()
+        if resolved[name] is not None
+    }
+    build(resolved["method"], Method, "method", plugins, {Model: made["llm"], CaseMemory: made.get("memory")})

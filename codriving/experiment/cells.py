@@ -8,10 +8,12 @@ from typing import Any
 from codriving.config.build import build
 from codriving.config.show import show
 from codriving.config.sweep import Point
+from codriving.datatypes.parts import Scenario
 from codriving.errors import ConfigError
 from codriving.experiment.contents import contents
 from codriving.experiment.episode import Labels
 from codriving.experiment.naming import folder_name, swept_values
+from codriving.experiment.objects import make_objects
 from codriving.runs.identity import CHOICES, CellEntry, NamedFile, fingerprint, settings_of
 from codriving.runs.redaction import redact
 
@@ -67,36 +69,14 @@ def make_cell(
     Raises:
         ConfigError: If an object cannot be built or has no name.
     """
-    plugins = resolved["plugins"]
-    scenario = build(resolved["scenario"], plugins, "scenario")
-    method = build(resolved["method"], plugins, "method")
-    _check_road(method, scenario)
-    labels = Labels(
-        scenario=_label(scenario, "name", "scenario"),
-        method=_label(method, "name", "method"),
-        variant=_label(method, "variant", "method"),
-        reasoner=_label(method, "reasoner", "method"),
-        # A method that has no memory need not say so.
-        memory=_label(method, "remembers", "method") if hasattr(method, "remembers") else "",
-    )
-    metrics = _label(build(resolved["metrics"], plugins, "metrics"), "name", "metrics")
+    scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
+    objects = make_objects(resolved)
+    method = objects.method
+    method.check_road(scenario.road, scenario.pace.target_speeds, 1 / scenario.pace.decision_frequency)
+    for key, made in (("scenario", scenario), ("method", method), ("metrics", objects.metrics)):
+        if not made.name:
+            raise ConfigError(f"{key}: {type(made).__name__} needs an attribute 'name' of type str for the tables")
+    labels = Labels(scenario.name, method.name, method.variant, method.reasoner, method.remembers)
     swept = swept_values(point.swept, resolved) if point else {}
     files = contents(resolved, method.files(scenario.road))
-    return Cell(folder_name(labels), labels, resolved, metrics, swept, choices or {}, files)
-
-
-def _check_road(method: object, scenario: Any) -> None:  # noqa: ANN401 - any scenario
-    """Let a method refuse a scenario before anything is driven, as one with trained weights has to."""
-    check = getattr(method, "check_road", None)
-    if check is not None:
-        pace = scenario.pace
-        check(scenario.road, pace.target_speeds, 1 / pace.decision_frequency)
-
-
-def _label(made: object, attribute: str, key: str) -> str:
-    value = getattr(made, attribute, None)
-    if not isinstance(value, str):
-        raise ConfigError(
-            f"{key}: {type(made).__name__} needs an attribute {attribute!r} of type str for the tables, got {value!r}"
-        )
-    return value
+    return Cell(folder_name(labels), labels, resolved, objects.metrics.name, swept, choices or {}, files)

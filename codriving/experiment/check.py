@@ -1,5 +1,6 @@
 """One negotiation and one decision by a language model on a stored scene: ``codriving check``."""
 
+import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -8,24 +9,25 @@ from codriving.config.build import build
 from codriving.config.choices import choices
 from codriving.config.compose import compose
 from codriving.config.validate import validate
+from codriving.datatypes.parts import Model, RuleModel, Scenario
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError
-from codriving.experiment.asking import REPLAY, model_of
-from codriving.experiment.checked import verdict
-from codriving.experiment.nodes import holds, replaced
-from codriving.experiment.objects import BuildObjects
+from codriving.experiment.asking import REPLAY
+from codriving.experiment.objects import make_objects, model_of
 
 SEED, STEP = 10_001, 4
 """The scene: four CAVs and three human drivers before an intersection, most of them in conflict."""
 
-_RULES = {"_target_": "codriving.llm.language_model.Offline"}
-_PROBE = "codriving.methods.probe.Probe"
+LONGEST = 300
+"""Characters of an answer that are shown."""
+
+_NAMES = {"negotiate": "Negotiation", "decide": "Decision"}
 
 
 def run_check(overrides: Sequence[str], config_dir: Path | None = None) -> int:
     """Ask a model once for an order and once for a decision, and print what came back: ``codriving check``.
 
     The scene is driven to by the rules, so that it is always the same. Nothing is taken from the answer cache or put
-    into it, unless ``llm.cache=replay`` is asked for.
+    into it, unless ``llm.cache=replay`` is chosen.
 
     Args:
         overrides: ``key=value`` tokens.
@@ -39,60 +41,100 @@ def run_check(overrides: Sequence[str], config_dir: Path | None = None) -> int:
     """
     resolved = compose(overrides, config_dir)
     validate(resolved)
-    if not holds(resolved["method"], resolved["llm"]):
+    resolved["llm"] = _settings(resolved["llm"])
+    model = model_of(resolved)
+    if model is None:
         raise ConfigError("this method asks no language model; leave method= out, or choose method=codriving")
-    if model_of(resolved) is None:
+    client = model.chat()
+    if client is None:
         others = ", ".join(name for name in choices("llm", config_dir) if name != "offline")
         print("No model is asked: with this llm the built-in rules reason, without network and key.")
         print(f"Models: {others or 'none'}. Check one with: codriving check llm=NAME")
         return 0
-    asked = _settings(resolved)
-    model = model_of(asked)
-    client = model.chat() if model is not None else None
-    assert model is not None
-    assert client is not None
     try:
         client.preflight()
-        time, deliberation = _ask(asked)
+        scene, transcript = _ask(resolved, model)
     except ModelUnavailableError as error:
         raise ModelError(str(error)) from error
-    print(f"{model.name} on {_scenario(asked)}, seed {SEED}, after {time:g} s\n")
-    code, lines = verdict(deliberation.transcript)
+    print(f"{model.name} on {scene}\n")
+    code, lines = report(transcript)
     print("\n".join(lines))
     return code
 
 
-def _scenario(resolved: Mapping[str, Any]) -> str:
-    return str(build(resolved["scenario"], resolved["plugins"], "scenario").name)
+def _settings(llm: Mapping[str, Any]) -> dict[str, Any]:
+    """The model itself has to answer, and it is asked in any case."""
+    changed = {"cache": "off", "ask_plain": True}
+    if llm.get("cache") == REPLAY:
+        del changed["cache"]
+    return {key: changed.get(key, value) for key, value in llm.items()}
 
 
-def _settings(resolved: Mapping[str, Any]) -> dict[str, Any]:
-    """The config of the check: the model itself has to answer, and it is to be asked in any case."""
-    llm = dict(resolved["llm"])
-    if llm.get("cache") not in (None, REPLAY):
-        llm["cache"] = "off"
-    if "ask_plain" in llm:
-        llm["ask_plain"] = True
-    return {**resolved, "llm": llm, "method": replaced(resolved["method"], resolved["llm"], llm)}
-
-
-def _ask(resolved: Mapping[str, Any]) -> tuple[float, Any]:
-    """Drive to the scene by the rules, then ask the model; gives the simulated time and what was deliberated."""
-    rules = {**resolved, "method": replaced(resolved["method"], resolved["llm"], _RULES)}
-    environment, driver, _ = BuildObjects({"check": rules})("check")
+def _ask(resolved: Mapping[str, Any], model: Model) -> tuple[str, Sequence[Mapping[str, Any]]]:
+    """Drive to the scene by the rules, then ask the model; gives the scene in words and what was asked and answered."""
+    by_rules, asked = make_objects(resolved, RuleModel()), make_objects(resolved, model)
+    environment, driver = by_rules.environment, by_rules.method
     world = environment.reset(SEED)
     driver.reset(environment.road_map, environment.driving_model, SEED)
     while environment.outcome is None:
-        moment = driver.act(world)
-        if world.step >= STEP and _is_open(moment.as_dict()):
+        deliberation = driver.act(world)
+        if world.step >= STEP and _is_open(deliberation.as_dict()):
             break
-        world = environment.step(moment.actions)
-    probe = build({"_target_": _PROBE, "method": resolved["method"]}, resolved["plugins"], "method")
-    return world.time, probe.act(environment.road_map, environment.driving_model, SEED, world)
+        world = environment.step(deliberation.actions)
+    asked.method.reset(environment.road_map, environment.driving_model, SEED)
+    scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
+    scene = f"{scenario.name}, seed {SEED}, after {world.time:g} s"
+    return scene, asked.method.ask_once(world).transcript
 
 
 def _is_open(line: Mapping[str, Any]) -> bool:
-    """Whether two CAVs have to agree on who goes first."""
+    """Whether two CAVs have to agree on a passing order."""
     cavs = line.get("cavs", [])
     names = {cav["id"] for cav in cavs}
     return any({p["first"], p["second"]} <= names for cav in cavs for p in cav["order"]["precedences"])
+
+
+def report(transcript: Sequence[Mapping[str, Any]]) -> tuple[int, list[str]]:
+    """Say what was answered, and whether it could be used.
+
+    Args:
+        transcript: What was asked and answered, as in ``transcript.jsonl``.
+
+    Returns:
+        The exit code, 1 if a fallback was needed, and what to print.
+
+    Raises:
+        ModelError: If nothing was asked.
+    """
+    if not transcript:
+        raise ModelError("the model was not asked anything in this scene; leave scenario= and cda= out")
+    lines = [text for line in transcript for text in [*_answer(line), ""]]
+    missing = [_NAMES.get(line["purpose"], line["purpose"]).lower() for line in transcript if line["value"] is None]
+    if missing:
+        return 1, [*lines, f"No usable answer for the {' and the '.join(missing)}: a fallback was needed."]
+    return 0, [*lines, "Answered in the form asked for."]
+
+
+def _answer(line: Mapping[str, Any]) -> list[str]:
+    calls = line["calls"]
+    costs = [call["cost"] for call in calls]
+    prompt, answer = (sum(call[name] for call in calls) for name in ("prompt_tokens", "completion_tokens"))
+    shown = {
+        "answer": "none that can be used" if line["value"] is None else _shown(json.dumps(line["value"])),
+        "problem": _shown(line["problem"]),
+        "said": _shown(calls[-1]["text"]) if line["value"] is None and calls else "",
+        "form": calls[-1]["form"] if calls else "",
+        "latency": f"{sum(call['seconds'] for call in calls):.2f} s",
+        "tokens": f"{prompt} of the prompt, {answer} of the answer",
+        "cost": "no price known" if None in costs else f"{sum(costs):.6f} USD",
+        "re-asks": str(max(0, len(calls) - 1 - line["shortened"])),
+    }
+    subject = f" of {_shown(line['subject'])}" if line["subject"] else ""
+    title = f"{_NAMES.get(line['purpose'], line['purpose'])}{subject}"
+    return [title, *(f"  {name:<8} {text}" for name, text in shown.items() if text)]
+
+
+def _shown(text: str) -> str:
+    """A text on one line; what a terminal would take for a command is escaped."""
+    plain = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in " ".join(text.split()))
+    return plain if len(plain) <= LONGEST else f"{plain[:LONGEST]}..."

@@ -10,6 +10,7 @@ from typing import Any
 
 from codriving.config.build import build
 from codriving.datatypes.outcome import Ending
+from codriving.datatypes.parts import Scenario
 from codriving.errors import UserError
 from codriving.experiment.stored import read_film
 from codriving.experiment.worker import AfterEpisode, Unit
@@ -58,7 +59,7 @@ class FilmEpisode(AfterEpisode):
         folder = self._place(unit)
         try:
             config = self.configs[unit.cell]
-            show = read_film(folder, build(config["scenario"], config["plugins"], "scenario").road)
+            show = read_film(folder, build(config["scenario"], Scenario, "scenario", config["plugins"]).road)
             # The unfinished film lies in the folder of the cell, which is swept when the run goes on.
             with whole_file(folder / FILM, beside=folder.parent) as partial:
                 show.write(partial, "mp4", _RATE, 1.0)

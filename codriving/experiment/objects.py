@@ -1,11 +1,54 @@
 """A resolved config to the objects that drive; done once a process and cell."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from codriving.config.build import TARGET, build
+from codriving.config.build import asks_for, build, targets
+from codriving.datatypes.parts import CaseMemory, Method, Metric, Model, Simulator
 from codriving.experiment.worker import Objects
+
+
+def model_of(config: Mapping[str, Any]) -> Model | None:
+    """Build the language model that the method of a config asks for; None if it asks for none.
+
+    Raises:
+        ConfigError: If it cannot be built.
+    """
+    plugins = config["plugins"]
+    return build(config["llm"], Model, "llm", plugins) if asks_for(config["method"], Model, plugins) else None
+
+
+def memory_of(config: Mapping[str, Any]) -> CaseMemory | None:
+    """Build the memory that the method of a config asks for; None if it asks for none, or none is chosen.
+
+    Raises:
+        ConfigError: If it cannot be built.
+    """
+    node, plugins = config["memory"], config["plugins"]
+    if node is None or not asks_for(config["method"], CaseMemory, plugins):
+        return None
+    return build(node, CaseMemory, "memory", plugins)
+
+
+def make_objects(config: Mapping[str, Any], llm: Model | None = None) -> Objects:
+    """Build the objects of a config; llm and memory are built once, and handed to the method if it asks for them.
+
+    Args:
+        llm: The model that reasons in the place of the one that the config chooses.
+
+    Raises:
+        ConfigError: If one of them cannot be built.
+    """
+    plugins = config["plugins"]
+    llm, memory = llm or model_of(config), memory_of(config)
+    return Objects(
+        environment=build(config["environment"], Simulator, "environment", plugins),
+        method=build(config["method"], Method, "method", plugins, {Model: llm, CaseMemory: memory}),
+        metrics=build(config["metrics"], Metric, "metrics", plugins),
+        llm=llm,
+        memory=memory,
+    )
 
 
 @dataclass(frozen=True)
@@ -20,14 +63,7 @@ class BuildObjects:
         Raises:
             ConfigError: If one of them cannot be built.
         """
-        config = self.configs[cell]
-        plugins = config["plugins"]
-        scenario = build(config["scenario"], plugins, "scenario")
-        return Objects(
-            environment=build({**config["environment"], "scenario": scenario}, plugins, "environment"),
-            method=build(config["method"], plugins, "method"),
-            metrics=build(config["metrics"], plugins, "metrics"),
-        )
+        return make_objects(self.configs[cell])
 
 
 def modules_to_preload(configs: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
@@ -35,19 +71,6 @@ def modules_to_preload(configs: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
 
     Only ours: a user's module that fails to import must fail where it is used, with its own message.
     """
-    used = {target.rpartition(".")[0] for config in configs for target in _targets(config)}
+    used = {target.rpartition(".")[0] for config in configs for target in targets(config)}
     ours = {module for module in used if module.startswith("codriving.")}
     return ("codriving.experiment.processes", __name__, *sorted(ours))
-
-
-def _targets(node: object) -> Iterator[str]:
-    """Every class that a config names."""
-    if isinstance(node, Mapping):
-        for name, value in node.items():
-            if name == TARGET and isinstance(value, str):
-                yield value
-            else:
-                yield from _targets(value)
-    elif isinstance(node, list):
-        for value in node:
-            yield from _targets(value)

@@ -65,7 +65,7 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
     """
     configs, choices = composed(points, config_dir)
     first = configs[0]
-    launcher: Launcher = build(first["launcher"], first["plugins"], "launcher")
+    launcher = build(first["launcher"], Launcher, "launcher", first["plugins"])
     if not _is_complete(first, len(configs)):
         # The simulator's import takes a second: let it pass while the configs are checked here.
         launcher.prepare(first["workers"], first["episodes"] * len(configs), modules_to_preload(configs))

@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from codriving.config.build import build
-from codriving.experiment.nodes import holds, replaced
+from codriving.experiment.objects import memory_of
 
 MEMORIES = "memory"
 """Folder, in the run folder, of the memories that grow in it; one file a cell."""
@@ -23,32 +22,23 @@ def pinned(resolved: Mapping[str, Any]) -> dict[str, Any]:
         UserError: If the snapshot cannot be read.
     """
     node = resolved["memory"]
-    if node is None or node.get("snapshot") != AUTO or not holds(resolved["method"], node):
-        return dict(resolved)
-    digest = build(node, resolved["plugins"], "memory").digest
-    return _with(resolved, node, {**node, "snapshot": digest})
+    memory = memory_of(resolved) if node is not None and node.get("snapshot") == AUTO else None
+    return dict(resolved) if memory is None else {**resolved, "memory": {**node, "snapshot": memory.digest}}
 
 
 def learns(resolved: Mapping[str, Any]) -> bool:
     """Tell whether the episodes of a cell learn from one another, so that they have to be driven in order."""
-    node = resolved.get("memory")
-    if node is None or not holds(resolved.get("method"), node):
-        return False
-    return bool(getattr(build(node, resolved["plugins"], "memory"), "learns", False))
+    memory = memory_of(resolved)
+    return memory is not None and memory.learns
 
 
 def growing(resolved: Mapping[str, Any], run: Path, cell: str) -> dict[str, Any]:
     """Give a memory that learns its file in the run folder, unless its config names one."""
     if not learns(resolved) or resolved["memory"].get("file") is not None:
         return dict(resolved)
-    node = resolved["memory"]
-    return _with(resolved, node, {**node, "file": str(memory_file(run, cell))})
+    return {**resolved, "memory": {**resolved["memory"], "file": str(memory_file(run, cell))}}
 
 
 def memory_file(run: Path, cell: str) -> Path:
     """Give the file of the memory that grew in a run."""
     return run / MEMORIES / f"{cell}.sqlite"
-
-
-def _with(resolved: Mapping[str, Any], old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
-    return {**resolved, "memory": new, "method": replaced(resolved["method"], old, new)}

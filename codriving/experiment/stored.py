@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from codriving.config.build import TARGET, build
 from codriving.config.choices import choices
 from codriving.config.compose import compose
+from codriving.datatypes.parts import Scenario
 from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.road import Road
 from codriving.datatypes.trajectory import Trajectory
@@ -125,8 +126,7 @@ def road_of(cell: CellEntry, config_dir: Path | None = None) -> Road:
         )
     config = compose([f"scenario={name}"], config_dir)
     node = _filled(config["scenario"], values["scenario"])
-    road: Road = build(node, config["plugins"], "scenario").road
-    return road
+    return build(node, Scenario, "scenario", config["plugins"]).road
 
 
 def _filled(node: object, values: object) -> Any:  # noqa: ANN401 - any plain value

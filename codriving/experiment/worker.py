@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from codriving.datatypes.outcome import Ending
-from codriving.datatypes.parts import Method, Metric, Simulator
+from codriving.datatypes.parts import CaseMemory, Method, Metric, Model, Simulator
 from codriving.errors import UserError
 from codriving.experiment.episode import EpisodeResult, Labels, failed_result, run_episode
 from codriving.runs.episode_folder import episode_folder, timing_of, write_episode
@@ -32,6 +32,8 @@ class Objects(NamedTuple):
     environment: Simulator
     method: Method
     metrics: Metric
+    llm: Model | None = None
+    memory: CaseMemory | None = None
 
 
 @dataclass(frozen=True)
@@ -132,7 +134,7 @@ class Worker:
         else:
             try:
                 objects = self._objects_of(unit.cell)
-                result = run_episode(*objects, seed=unit.seed, labels=labels, go_on=self._go_on)
+                result = run_episode(*objects[:3], seed=unit.seed, labels=labels, go_on=self._go_on)
             except UserError:
                 raise
             except Exception as error:

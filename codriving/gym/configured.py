@@ -43,10 +43,8 @@ def configured(
     tokens = [f"{key}={_written(f'scenario.{key}', value)}" for key, value in settings.items()]
     config = compose([f"scenario={name}", f"cda={cda}", *overrides, *(f"scenario.{token}" for token in tokens)], folder)
     plugins = config["plugins"]
-    scenario = build(config["scenario"], plugins, "scenario")
-    environment: Environment = build({**config["environment"], "scenario": scenario}, plugins, "environment")
-    level: CdaLevel = build(config["cda"], plugins, "cda")
-    return environment, level
+    environment = build(config["environment"], Environment, "environment", plugins)
+    return environment, build(config["cda"], CdaLevel, "cda", plugins)
 
 
 def _check_read(token: str) -> None:

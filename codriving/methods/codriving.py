@@ -1,6 +1,6 @@
 """CoDrivingLLM: the paper's method, with its CDA level, its reasoner and its memory put into the slots."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from codriving.datatypes.deliberation import ReasonedDeliberation
@@ -9,12 +9,14 @@ from codriving.datatypes.experience import Experience, Interaction
 from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Account, CaseMemory, Method, Model
 from codriving.datatypes.road import Road
+from codriving.datatypes.situation import Decision, Situation
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.experience_log import ExperienceLog
 from codriving.methods.language_model.ports import check_prompts, ports, prompt_files
 from codriving.methods.pipeline import Pipeline
+from codriving.reasoning.decision.rules import Decider, decide_one
 from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
 from codriving.reasoning.perception import Perception
 from codriving.reasoning.prediction.forecast import Forecast
@@ -89,6 +91,10 @@ class CoDriving(Method):
             self._log.note(world, deliberation.situations, deliberation.decisions)
         return deliberation
 
+    def ask_once(self, world: WorldState) -> ReasonedDeliberation:
+        self._pipeline.decider = _ForOne(self._pipeline.decider)
+        return self._pipeline.act(world)
+
     def conclude(self, world: WorldState, outcome: Outcome) -> Account:
         if self._log is None or self.memory is None:
             return {}, []
@@ -112,3 +118,15 @@ class CoDriving(Method):
 
     def unfinished_step(self, time: float) -> Account:
         return self._ledger.close_step(time) if self._ledger is not None else ({}, [])
+
+
+class _ForOne(Decider):
+    """Asks the decider for the CAV with the most conflicts alone; the rules decide for the others."""
+
+    def __init__(self, decider: Decider) -> None:
+        self.decider = decider
+
+    def decide(self, situations: Sequence[Situation]) -> list[Decision]:
+        """Return one decision a situation, in the same order."""
+        chosen = max(situations, key=lambda s: (len(s.allowed) > 1, len(s.conflicts)))
+        return [self.decider.decide([s])[0] if s is chosen else decide_one(s) for s in situations]

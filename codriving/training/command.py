@@ -11,6 +11,7 @@ from codriving.config.schema import ROOT
 from codriving.config.training import compose_training, trainings
 from codriving.errors import ConfigError, TrainingError
 from codriving.methods.learned.layout import FAMILIES
+from codriving.training.settings import MadqnSettings, Settings, SingleSettings
 
 INTERRUPTED = 130
 """Exit code of a process that the user stopped (128 + SIGINT)."""
@@ -39,7 +40,8 @@ def run_training(
     name = named(learner, family, config_dir)
     own, others = _split(overrides)
     config = compose_training(name, others, smoke, config_dir)
-    settings = build(config, key="train")
+    settings = build(config, Settings, "train")
+    assert isinstance(settings, MadqnSettings | SingleSettings)
     if importlib.util.find_spec("torch") is None:
         raise TrainingError(
             "training needs PyTorch, which is not installed: pip install 'codriving[train]', or make train in a "

@@ -196,7 +196,7 @@ def sheet_of(ways: Iterable[Way]) -> tuple[Sheet, float]:
 def draw(name: str) -> str:
     """Return the picture of a scenario."""
     config = compose([f"scenario={name}"], EXAMPLE)
-    scenario: Scenario = build(config["scenario"], config["plugins"], "scenario")
+    scenario: Scenario = build(config["scenario"], object, "scenario", config["plugins"])
     roads = road_map(scenario.road)
     sheet, height = sheet_of(roads.paths.values())
     parts = [

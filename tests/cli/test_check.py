@@ -8,7 +8,7 @@ from typer.testing import CliRunner, Result
 from codriving.cli.app import app
 from codriving.cli.completion import Line, complete_override
 from codriving.errors import ModelError
-from codriving.experiment.checked import verdict
+from codriving.experiment.check import report
 
 KEY = "sk-9d8f7a6s5d4f"
 
@@ -98,7 +98,7 @@ def test_settings_of_a_model_are_completed() -> None:
 
 
 def test_both_answered_in_form_is_exit_code_0() -> None:
-    code, lines = verdict([asked("negotiate"), asked("decide", subject="CAV2")])
+    code, lines = report([asked("negotiate"), asked("decide", subject="CAV2")])
     assert code == 0
     text = "\n".join(lines)
     assert "Decision of CAV2" in text
@@ -110,7 +110,7 @@ def test_both_answered_in_form_is_exit_code_0() -> None:
 def test_a_fallback_is_exit_code_1_and_says_why() -> None:
     said = asked("decide", value=None, problem="no JSON object")
     said["calls"] = [{**said["calls"][0], "text": "I would\x1b[31m brake", "cost": None}] * 2
-    code, lines = verdict([asked("negotiate"), said])
+    code, lines = report([asked("negotiate"), said])
     text = "\n".join(lines)
     assert code == 1
     for part in ("none that can be used", "no JSON object", r"I would\x1b[31m brake", "re-asks  1", "no price known"):
@@ -120,4 +120,4 @@ def test_a_fallback_is_exit_code_1_and_says_why() -> None:
 
 def test_nothing_asked_is_no_success() -> None:
     with pytest.raises(ModelError, match="not asked anything"):
-        verdict([])
+        report([])

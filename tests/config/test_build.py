@@ -4,7 +4,8 @@ from typing import Any
 
 import pytest
 
-from codriving.config.build import build
+from codriving.config.build import asks_for, build
+from codriving.datatypes.parts import Model
 from codriving.errors import ConfigError, ScenarioError
 
 
@@ -27,13 +28,13 @@ def car(package: str, **changes: object) -> dict[str, Any]:
 
 def message(package: str, **changes: object) -> str:
     with pytest.raises(ConfigError) as err:
-        build(car(package, **changes), [package], "car")
+        build(car(package, **changes), object, "car", [package])
     assert "\n" not in str(err.value)
     return str(err.value)
 
 
 def test_builds_nested_nodes_and_converts_without_guessing(garage: str) -> None:
-    made = build(car(garage), [garage], "car")
+    made = build(car(garage), object, "car", [garage])
     assert (made.seats, made.gears, made.size, made.extras) == (4, (1, 2, 3), (2.0, 1.5), ["radio"])
     assert isinstance(made.length, float)
     assert made.colour.name == "RED"
@@ -76,7 +77,7 @@ def test_missing_key(garage: str) -> None:
     node = car(garage)
     del node["seats"]
     with pytest.raises(ConfigError, match=r"^car\.seats is missing; Car needs it$"):
-        build(node, [garage], "car")
+        build(node, object, "car", [garage])
 
 
 def test_constructor_errors_get_the_key(garage: str) -> None:
@@ -88,14 +89,14 @@ def test_constructor_errors_get_the_key(garage: str) -> None:
 
 def test_constructor_errors_keep_their_class(garage: str) -> None:
     with pytest.raises(ScenarioError, match=r"^car: the car does not fit"):
-        build(car(garage, length=21), [garage], "car")
+        build(car(garage, length=21), object, "car", [garage])
 
 
 def test_annotations_that_cannot_be_resolved_are_left_to_the_constructor(garage: str) -> None:
     node = {"_target_": f"{garage}.Later", "gap": 1, "other": 2}
-    assert build(node, [garage]).other == 2
+    assert build(node, object, plugins=[garage]).other == 2
     with pytest.raises(ConfigError, match="gap must be a whole number"):
-        build({**node, "gap": "x"}, [garage])
+        build({**node, "gap": "x"}, object, plugins=[garage])
 
 
 @pytest.mark.parametrize(
@@ -104,25 +105,50 @@ def test_annotations_that_cannot_be_resolved_are_left_to_the_constructor(garage:
 )
 def test_nothing_outside_the_allowed_packages_is_imported(target: object) -> None:
     with pytest.raises(ConfigError, match="_target_"):
-        build({"_target_": target}, key="scenario")
+        build({"_target_": target}, object, "scenario")
 
 
 def test_only_classes_of_the_package_itself_can_be_named(garage: str) -> None:
     for name in ("function", "system", "StrEnum", "nothing"):
         with pytest.raises(ConfigError, match=f"has no class {name}"):
-            build({"_target_": f"{garage}.{name}"}, [garage], "car")
+            build({"_target_": f"{garage}.{name}"}, object, "car", [garage])
     with pytest.raises(ConfigError, match="list other packages under plugins"):
-        build({"_target_": f"{garage}.Wheel", "radius": 1.0})
+        build({"_target_": f"{garage}.Wheel", "radius": 1.0}, object)
 
 
 def test_missing_module_is_told_from_a_bug_inside_one(garage: str, tmp_path: Any) -> None:
     with pytest.raises(ConfigError, match="there is no module"):
-        build({"_target_": f"{garage}.cellar.Box"}, [garage], "car")
+        build({"_target_": f"{garage}.cellar.Box"}, object, "car", [garage])
     (tmp_path / "site" / garage / "attic.py").write_text("import no_such_module_anywhere\n")
     with pytest.raises(ModuleNotFoundError):
-        build({"_target_": f"{garage}.attic.Box"}, [garage], "car")
+        build({"_target_": f"{garage}.attic.Box"}, object, "car", [garage])
 
 
 def test_a_node_needs_a_target() -> None:
     with pytest.raises(ConfigError, match="scenario must hold a _target_"):
-        build({"cavs": 3}, key="scenario")
+        build({"cavs": 3}, object, "scenario")
+
+
+def test_a_class_is_refused_where_its_place_expects_another_before_it_is_called(garage: str) -> None:
+    nested = {"_target_": f"{garage}.Later", "gap": 1, "other": 2}
+    assert message(garage, wheel=nested) == (
+        f"car.wheel must be Wheel, but {garage}.Later is none; name another class, or let it inherit from "
+        f"{garage}.Wheel"
+    )
+    assert "car.seats must be a plain value" in message(garage, seats=nested)
+    with pytest.raises(ConfigError, match=r"^llm must be Model, but codriving\.metrics\.\S+ is none"):
+        build({"_target_": "codriving.metrics.standard.StandardMetrics", "free_speed": "x"}, Model, "llm")
+
+
+def test_what_is_handed_in_is_not_set_in_a_yaml(garage: str) -> None:
+    wheel = build({"_target_": f"{garage}.Wheel", "radius": 0.5}, object, plugins=[garage])
+    given = {type(wheel): wheel}
+    node = car(garage)
+    with pytest.raises(ConfigError, match=r"car\.wheel is not set here .* delete the line `wheel:` from its YAML"):
+        build(node, object, "car", [garage], given)
+    del node["wheel"]
+    assert build(node, object, "car", [garage], given).wheel is wheel
+    with pytest.raises(ConfigError, match="car cannot do without wheel, and none is chosen; set wheel=<name>"):
+        build(node, object, "car", [garage], {type(wheel): None})
+    assert asks_for([{"inner": node}], type(wheel), [garage])
+    assert not asks_for(node, Model, [garage])

@@ -49,7 +49,7 @@ def test_a_yaml_says_itself_what_it_needs_and_finds_it_beside_its_folder(project
     assert config["plugins"] == [PACKAGE]
     assert config["scenario"] == {"_target_": f"{PACKAGE}.streets.Street", "width": 4.0}
     assert config["environment"]["scenario"] == config["scenario"]
-    assert type(build(config["scenario"], config["plugins"], "scenario")).__name__ == "Street"
+    assert type(build(config["scenario"], object, "scenario", config["plugins"])).__name__ == "Street"
 
 
 def test_lists_of_all_files_count_together_each_name_once() -> None:
@@ -100,4 +100,4 @@ def test_a_package_that_is_nowhere_is_named_with_the_cure(project: Path) -> None
     (project / "conf" / "scenario" / "lost.yaml").write_text(YAML.format(package="lost_roads"))
     config = compose(["scenario=lost"], project / "conf")
     with pytest.raises(ConfigError, match="there is no module lost_roads; install it, or put it beside the folder"):
-        build(config["scenario"], config["plugins"], "scenario")
+        build(config["scenario"], object, "scenario", config["plugins"])

@@ -14,6 +14,10 @@ from codriving.config.locate import conf_dir, experiments_dir
 from codriving.config.schema import GROUPS, OPTIONAL
 from codriving.config.training import TRAININGS
 from codriving.config.validate import validate
+from codriving.datatypes.parts import CaseMemory, Model, RuleModel
+
+HANDED = {"llm", "memory"}
+"""What a method is handed."""
 
 SNAPSHOT = ("memory", "frozen")
 
@@ -28,8 +32,8 @@ def test_choice_builds(group: str, name: str, tmp_path: Path) -> None:
     if node is None:
         assert group in OPTIONAL
         return
-    made = build(node, key=group)
-    hidden = set(inspect.signature(type(made)).parameters) - set(node)
+    made = build(node, object, group, given={Model: RuleModel(), CaseMemory: None})
+    hidden = set(inspect.signature(type(made)).parameters) - set(node) - HANDED
     assert not hidden, f"defaults live in YAML alone, but {group}/{name}.yaml does not show {hidden}"
 
 

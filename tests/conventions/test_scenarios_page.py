@@ -62,7 +62,7 @@ def test_what_is_beyond_the_range_is_refused_with_the_range(scenario: str, key: 
         number = round(beyond) if key in ("cavs", "hdvs", "lanes") else beyond
         value = [number] * len(default) if isinstance(default, list) else number
         with pytest.raises(ConfigError, match=rf"scenario\.{key} must be .*\d to \d") as refusal:
-            build({**node(scenario), key: value}, key="scenario")
+            build({**node(scenario), key: value}, object, "scenario")
         ends = re.findall(r"([\d.]+) to ([\d.]+)", str(refusal.value))[0]
         assert [float(end) for end in ends] == pytest.approx([low, high], abs=0.1)
 

@@ -10,6 +10,7 @@ import pytest
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.outcome import Ending
+from codriving.experiment.objects import make_objects
 from codriving.ordering import ApproachingVehicle, Instance
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "nearest_first"
@@ -24,7 +25,7 @@ def config(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Any]]:
 
 
 def test_it_orders_by_distance_and_keeps_what_is_fixed(config: dict[str, Any]) -> None:
-    rule = build(config["method"], config["plugins"], "method").rule
+    rule = build(config["method"], object, "method", config["plugins"]).rule
     far, near = (
         ApproachingVehicle("CAV1", 100.0, 5.0, distance=40.0),
         ApproachingVehicle("CAV2", 100.0, 4.0, distance=20.0),
@@ -37,8 +38,7 @@ def test_it_orders_by_distance_and_keeps_what_is_fixed(config: dict[str, Any]) -
 
 
 def test_it_drives_an_episode(config: dict[str, Any]) -> None:
-    environment = build(config["environment"], config["plugins"], "environment")
-    method = build(config["method"], config["plugins"], "method")
+    environment, method, *_ = make_objects(config)
     world = environment.reset(10_000)
     method.reset(environment.road_map, environment.driving_model, 10_000)
     while environment.outcome is None:

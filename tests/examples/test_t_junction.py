@@ -20,6 +20,7 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
+from codriving.experiment.objects import make_objects
 from codriving.scenarios import Kind, Start, Turn
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "t_junction"
@@ -43,7 +44,7 @@ def module(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 def environment(module: ModuleType) -> Environment:
     """The example's road to drive on."""
     config = compose(["scenario=t_junction"], FOLDER / "conf")
-    made = build(config["environment"], config["plugins"], "environment")
+    made = build(config["environment"], object, "environment", config["plugins"])
     assert isinstance(made, Environment)
     assert type(made.scenario) is module.TJunction
     return made
@@ -84,7 +85,7 @@ def test_settings_out_of_range_are_refused(module: ModuleType) -> None:
         ({"start": [20.0, 25.0]}, "4 CAVs and up to 4 HDVs cannot start within 20 to 25 m along 3 legs"),
     ):
         with pytest.raises(ConfigError, match=message):
-            build({**node, **change}, ["t_junction"], "scenario")
+            build({**node, **change}, object, "scenario", ["t_junction"])
 
 
 def test_the_side_road_gives_way(environment: Environment) -> None:
@@ -103,7 +104,7 @@ def test_the_side_road_gives_way(environment: Environment) -> None:
 
 @pytest.mark.parametrize("seed", [10000, 10001, 10002])
 def test_all_cavs_arrive(environment: Environment, seed: int) -> None:
-    method = build(compose(["scenario=t_junction"], FOLDER / "conf")["method"])
+    method = make_objects(compose(["scenario=t_junction"], FOLDER / "conf")).method
     world = environment.reset(seed)
     method.reset(environment.road_map, environment.driving_model, seed)
     while environment.outcome is None:

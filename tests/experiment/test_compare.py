@@ -133,6 +133,6 @@ def test_the_command_to_go_on_has_the_table_as_a_word_of_its_own() -> None:
 
 @pytest.mark.parametrize("scenario", ["intersection", "roundabout"])
 def test_as_many_cavs_as_load_asks_for_can_start(scenario: str) -> None:
-    made = build(compose([f"scenario={scenario}", "scenario.cavs=12"])["scenario"])
+    made = build(compose([f"scenario={scenario}", "scenario.cavs=12"])["scenario"], object)
     assert isinstance(made, Intersection | Roundabout)
     assert all(sum(start.kind is Kind.CAV for start in made.scene(seed).starts) == 12 for seed in range(10000, 10010))

@@ -46,7 +46,6 @@ def test_what_cannot_be_built_is_refused(overrides: list[str], said: str) -> Non
 def test_a_memory_grows_in_the_run_folder_unless_it_has_a_file(tmp_path: Path) -> None:
     made = growing(config(), tmp_path, "cell")
     assert made["memory"]["file"] == str(tmp_path / "memory" / "cell.sqlite")
-    assert made["method"]["memory"] == made["memory"]
     own = config("memory.file=mine.sqlite")
     assert growing(own, tmp_path, "cell") == own
     plain = compose([])
@@ -57,7 +56,6 @@ def test_a_snapshot_is_noted_by_its_contents_wherever_it_lies(tmp_path: Path) ->
     one, two = (filled(tmp_path / name, [experience()]) for name in ("1.sqlite", "2.sqlite"))
     first, second = (pinned(compose(["memory=frozen", f"memory.file={path}"])) for path in (one, two))
     assert first["memory"]["snapshot"] == second["memory"]["snapshot"] != "auto"
-    assert first["method"]["memory"] == first["memory"]
     assert driving_values(first) == driving_values(second)
     filled(two, [experience(step=8)], first=20_007)
     third = pinned(compose(["memory=frozen", f"memory.file={two}"]))

@@ -18,9 +18,9 @@ from toy_models import CLIENTS, EPISODES, BuildAsking, ToyClient, asking_cell, a
 from codriving.datatypes.outcome import Ending
 from codriving.errors import ModelError, ModelUnavailableError, SpendingLimitError
 from codriving.experiment import run
-from codriving.experiment.asking import model_of
 from codriving.experiment.drive import HaltedError, drive, side_by_side
 from codriving.experiment.launchers import Serial
+from codriving.experiment.objects import model_of
 from codriving.experiment.processes import Processes
 from codriving.experiment.progress import show_progress
 from codriving.experiment.worker import Job, Report, Unit
@@ -105,9 +105,6 @@ def test_who_asks_no_model_is_driven_in_processes(tmp_path: Path) -> None:
 def test_a_model_is_found_only_where_the_method_asks_it() -> None:
     assert model_of(asking_cell().resolved) is not None
     assert model_of(asking_cell(asks=False).resolved) is None
-    assert model_of({"seed": 0}) is None
-    rules = {"_target_": "codriving.llm.language_model.Offline"}
-    assert model_of({"llm": rules, "method": {"llm": rules}, "plugins": []}) is None
 
 
 def test_an_episode_without_an_answer_is_an_error_and_only_it_is_repeated(

@@ -13,13 +13,14 @@ sys.path.insert(0, str(Path(__file__).parent / "episodes"))
 from toy_drive import ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics
 
 from codriving.config.build import build
-from codriving.datatypes.parts import Model
+from codriving.datatypes.parts import Method, Model
 from codriving.datatypes.world import WorldState
 from codriving.experiment import drive, run
 from codriving.experiment.cells import Cell
 from codriving.experiment.episode import Labels
 from codriving.experiment.launchers import Launcher
 from codriving.experiment.naming import distinct, folder_name
+from codriving.experiment.objects import model_of
 from codriving.experiment.plan import Plan
 from codriving.experiment.processes import Processes
 from codriving.experiment.worker import Objects
@@ -102,7 +103,7 @@ class ToyModel(Model):
 class Asking(ToyMethod):
     """Asks before each decision."""
 
-    def __init__(self, llm: ToyModel) -> None:
+    def __init__(self, llm: Model) -> None:
         super().__init__(reasoner=llm.name)
         self.llm = llm
 
@@ -128,14 +129,17 @@ class BuildAsking:
     def __call__(self, cell: str) -> Objects:
         """Build them."""
         sys.path.append(str(Path(__file__).parent))
-        return Objects(ToyEnvironment(), build(self.configs[cell]["method"], [PLUGIN], "method"), ToyMetrics())
+        config = self.configs[cell]
+        llm = model_of(config)
+        method = build(config["method"], Method, "method", [PLUGIN], {Model: llm})
+        return Objects(ToyEnvironment(), method, ToyMetrics(), llm)
 
 
 def asking_cell(name: str = "gpt", asks: bool = True, **settings: object) -> Cell:
     llm = {"_target_": f"{PLUGIN}.ToyModel", "name": name, **settings}
-    method = {"_target_": f"{PLUGIN}.Asking", "llm": llm} if asks else {"_target_": f"{PLUGIN}.Computing"}
+    method = {"_target_": f"{PLUGIN}.Asking"} if asks else {"_target_": f"{PLUGIN}.Computing"}
     labels = Labels("toy", "asking" if asks else "computing", "full", name if asks else "rules")
-    resolved = {"seed": 0, "plugins": [PLUGIN], "llm": llm, "method": method}
+    resolved = {"seed": 0, "plugins": [PLUGIN], "llm": llm, "memory": None, "method": method}
     return Cell(folder_name(labels), labels, resolved, "standard", {})
 
 

@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.parts import Method
+from codriving.experiment.objects import make_objects
 from codriving.gym.actions import ACTIONS
 from codriving.gym.parallel import ParallelDriving
 
@@ -37,7 +36,7 @@ def at_random(seed: int) -> Chooser:
 
 def by_the_rules(env: ParallelDriving) -> Chooser:
     """The built-in rules drive; made anew for every episode."""
-    method: Method = build(compose([])["method"])
+    method = make_objects(compose([])).method
     method.reset(env.environment.road_map, env.environment.driving_model, 0)
     return lambda env, _: {agent: ACTIONS.index(action) for agent, action in method.act(env.world).actions.items()}
 

@@ -8,12 +8,11 @@ import pytest
 from choosers import at_random, by_the_rules, episode
 
 import codriving
-from codriving.config.build import build
 from codriving.config.choices import choices
 from codriving.config.compose import compose
-from codriving.datatypes.parts import Method
 from codriving.datatypes.trajectory import Trajectory
 from codriving.environment.environment import Environment
+from codriving.experiment.objects import make_objects
 from codriving.gym.actions import ACTIONS
 from codriving.gym.parallel import ParallelDriving
 
@@ -62,9 +61,8 @@ def test_same_seed_and_actions_give_the_same_episode(name: str, make: Make) -> N
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_a_seed_is_the_episode_of_that_number_in_a_run(name: str, make: Make) -> None:
     config = compose([f"scenario={name}"])
-    world, method = build(config["environment"]), build(config["method"])
+    world, driver, *_ = make_objects(config)
     assert isinstance(world, Environment)
-    driver: Method = method
     state = world.reset(3)
     driver.reset(world.road_map, world.driving_model, 3)
     env = make(name)

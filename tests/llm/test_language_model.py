@@ -16,7 +16,7 @@ MODELS = ("openai", "anthropic", "gemini", "ollama", "vllm", "custom")
 
 
 def model(name: str = "openai", *overrides: str) -> Any:
-    return build(compose([f"llm={name}", *overrides])["llm"], key="llm")
+    return build(compose([f"llm={name}", *overrides])["llm"], object, "llm")
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -80,7 +80,7 @@ def test_equal_settings_share_a_client_and_others_do_not(tmp_path: Path) -> None
 def test_building_and_connecting_is_quick_because_nothing_is_imported_yet() -> None:
     code = (
         "import sys; from codriving.config.build import build; from codriving.config.compose import compose; "
-        "build(compose(['llm=custom'])['llm'], key='llm').chat(); "
+        "build(compose(['llm=custom'])['llm'], object, 'llm').chat(); "
         "print('litellm' in sys.modules, 'openai' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=True)

@@ -41,7 +41,7 @@ def made(name: str) -> Learned:
 
 @pytest.mark.parametrize(("name", "variant"), [("ppo", ""), ("tell", "taught by rules")])
 def test_names_for_tables(name: str, variant: str) -> None:
-    method = build(compose([f"method={name}"])["method"])
+    method = build(compose([f"method={name}"])["method"], object)
     assert (method.name, method.variant, method.reasoner) == (name, variant, "none")
 
 

@@ -39,7 +39,7 @@ def judged(world: Junction, *cars: Car) -> Judged:
 
 
 def test_names_for_tables() -> None:
-    made = build(compose(["method=madqn"])["method"])
+    made = build(compose(["method=madqn"])["method"], object)
     assert (made.name, made.variant, made.reasoner) == ("madqn", "", "none")
 
 

@@ -64,7 +64,7 @@ class InOrderOfNames(OrderRule):
 
 
 def method(name: str, *overrides: str) -> Ordered:
-    made = build(compose([f"method={name}", *overrides])["method"])
+    made = build(compose([f"method={name}", *overrides])["method"], object)
     assert isinstance(made, Ordered)
     return made
 

@@ -25,7 +25,7 @@ DECISIONS = 14
 
 
 def made(name: str) -> SingleVehicle:
-    method = build(compose([f"method={name}"])["method"])
+    method = build(compose([f"method={name}"])["method"], object)
     assert isinstance(method, SingleVehicle)
     return method
 

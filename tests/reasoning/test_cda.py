@@ -13,7 +13,7 @@ from codriving.reasoning.sharing.cda import CdaLevel
 
 
 def preset(*overrides: str) -> CdaLevel:
-    level = build(compose(overrides)["cda"])
+    level = build(compose(overrides)["cda"], object)
     assert isinstance(level, CdaLevel)
     return level
 

@@ -51,7 +51,7 @@ def questions(world: Junction, scenario: str) -> list[Question]:
         return json.dumps({"reason": "nobody is there", "action": "IDLE"})
 
     chat = ScriptedChat(script)
-    rule = build(compose(["method=dilu"])["method"]["rule"], (), "method")
+    rule = build(compose(["method=dilu"])["method"]["rule"], object, "method")
     made = DiLu(Scripted(chat), Book(), 1.0, 3, rule)
     made.reset(world.road_map, world.model, 0)
     cars = [replace(one, place=one.place + NEARER.get(scenario, 0.0)) for one in WORLDS[scenario]]

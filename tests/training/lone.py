@@ -30,6 +30,6 @@ def lone_config(learner: str, *overrides: str) -> dict[str, Any]:
 
 def lone(learner: str, *overrides: str) -> SingleSettings:
     """Its settings."""
-    made = build(lone_config(learner, *overrides), key="train")
+    made = build(lone_config(learner, *overrides), object, "train")
     assert isinstance(made, SingleSettings)
     return made

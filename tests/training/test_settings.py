@@ -15,7 +15,7 @@ MADQN = [name for name in trainings() if name.startswith("madqn")]
 
 
 def made(*overrides: str, name: str = "madqn_junction", smoke: bool = False) -> MadqnSettings:
-    settings = build(compose_training(name, overrides, smoke), key="train")
+    settings = build(compose_training(name, overrides, smoke), object, "train")
     assert isinstance(settings, MadqnSettings)
     return settings
 

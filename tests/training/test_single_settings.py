@@ -13,7 +13,7 @@ from codriving.training.settings import SingleSettings
 @pytest.mark.parametrize("family", FAMILIES)
 @pytest.mark.parametrize("learner", ["ppo", "tell"])
 def test_shipped_trainings_can_be_built(learner: str, family: str, smoke: bool) -> None:
-    made = build(compose_training(f"{learner}_{family}", (), smoke))
+    made = build(compose_training(f"{learner}_{family}", (), smoke), object)
     assert isinstance(made, SingleSettings)
     assert (made.learner, made.family, made.shared) == (learner, family, False)
     assert (made.guidance is None) == (learner == "ppo")
@@ -43,10 +43,10 @@ def test_settings_out_of_range_are_refused(override: str, words: str) -> None:
     if key == "traffic":
         config["traffic"] = []
     with pytest.raises(ConfigError, match=words):
-        build(config)
+        build(config, object)
 
 
 def test_no_copies_are_no_traffic() -> None:
     config = compose_training("ppo_junction", ("traffic.0.copies=0",), smoke=False)
     with pytest.raises(ConfigError, match="copies must be 1 or more"):
-        build(config)
+        build(config, object)

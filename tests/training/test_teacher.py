@@ -48,7 +48,7 @@ class Rules(RuleModel):
 
 
 def guidance(llm: object, every: int = 1) -> Guidance:
-    return Guidance(llm, build(DRIVER), every, Linear(1.0, 0.0, 100))  # type: ignore[arg-type]
+    return Guidance(llm, build(DRIVER, object), every, Linear(1.0, 0.0, 100))  # type: ignore[arg-type]
 
 
 def advisor(junction: Junction, llm: object, every: int = 1) -> Advisor:
@@ -127,7 +127,7 @@ def test_llm_puts_a_model_in_the_place_of_the_teacher() -> None:
     llm = chosen["guidance"]["llm"]
     assert (llm["model"], llm["temperature"]) == ("ollama_chat/llama3.1:8b", 0.5)
     assert chosen["seed"] == 3
-    assert build(llm).name == "ollama_chat/llama3.1:8b"
+    assert build(llm, object).name == "ollama_chat/llama3.1:8b"
     assert lone("tell").teacher == "rules"
     with pytest.raises(ConfigError, match="nobody teaches"):
         compose_training("ppo_junction", ("llm=ollama",), smoke=False)

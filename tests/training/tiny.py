@@ -32,6 +32,6 @@ def tiny_config(*overrides: str) -> dict[str, Any]:
 
 def tiny(*overrides: str) -> MadqnSettings:
     """Its settings."""
-    made = build(tiny_config(*overrides), key="train")
+    made = build(tiny_config(*overrides), object, "train")
     assert isinstance(made, MadqnSettings)
     return made

@@ -19,11 +19,11 @@ COUNTS = [
 def test_only_whole_numbers_are_counts(name: str, key: str, value: str) -> None:
     node = compose([f"scenario={name}", f"scenario.{key}={value}"])["scenario"]
     with pytest.raises(ConfigError, match=rf"^scenario\.{key} must be a whole number, got {value.title()}$"):
-        build(node, key="scenario")
+        build(node, object, "scenario")
 
 
 @pytest.mark.parametrize("name", ["intersection", "roundabout", "highway", "merge"])
 def test_so_are_the_ends_of_the_number_of_drivers(name: str) -> None:
     node = compose([f"scenario={name}", "scenario.hdvs=[2,3.5]"])["scenario"]
     with pytest.raises(ConfigError, match=re.escape("scenario.hdvs must be a list with a whole number in each place")):
-        build(node, key="scenario")
+        build(node, object, "scenario")

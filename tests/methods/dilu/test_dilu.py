@@ -166,7 +166,7 @@ def test_drives_in_every_scenario(scenario: str, configured: Callable[..., Envir
 
 
 def memory(file: Path, kind: str = "online") -> object:
-    return build(compose(["method=dilu", f"memory={kind}", f"memory.file={file}"])["memory"], (), "memory")
+    return build(compose(["method=dilu", f"memory={kind}", f"memory.file={file}"])["memory"], object, "memory")
 
 
 def test_what_is_learnt_is_recalled_alike_and_a_frozen_memory_stays_as_it_is(

@@ -42,7 +42,7 @@ def config(name: str, *overrides: str) -> dict[str, Any]:
 
 def configured(name: str, kind: type[D], *overrides: str) -> D:
     """The driver of a method as it is configured, at the beginning of an episode."""
-    made = build(config(name, *overrides))
+    made = build(config(name, *overrides), object)
     assert isinstance(made, SingleVehicle)
     assert isinstance(made.driver, kind)
     made.driver.reset()

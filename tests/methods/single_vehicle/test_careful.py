@@ -20,7 +20,7 @@ CONFIG = compose_training("tell_junction", (), smoke=False)["guidance"]["driver"
 
 def careful(**change: float) -> Careful:
     """The driver as the trainings have it."""
-    made = build({**CONFIG, **change})
+    made = build({**CONFIG, **change}, object)
     assert isinstance(made, Careful)
     return made
 

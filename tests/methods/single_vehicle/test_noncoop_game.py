@@ -153,4 +153,4 @@ def test_a_lane_change_before_somebody_who_would_have_to_brake_hard_is_refused(h
 )
 def test_settings_out_of_range_are_refused(key: str, said: str) -> None:
     with pytest.raises(ConfigError, match=said):
-        build(compose(["method=noncoop_game", f"method.driver.{key}"])["method"])
+        build(compose(["method=noncoop_game", f"method.driver.{key}"])["method"], object)

@@ -98,7 +98,7 @@ def test_settings_out_of_range_are_refused(key: str) -> None:
     low, high = LIMITS[key]
     for value in (low - 1, high + 1):
         with pytest.raises(ConfigError, match=f"{key} must be "):
-            build(compose(["method=pidm", f"method.driver.{key}={value}"])["method"])
+            build(compose(["method=pidm", f"method.driver.{key}={value}"])["method"], object)
 
 
 def test_of_those_who_wait_each_starts_after_the_one_before(junction: Junction) -> None:

@@ -29,7 +29,7 @@ ALONE = "scenario.hdvs=[0,0]"
 
 
 def method(name: str, *overrides: str) -> Ordered:
-    made = build(compose([f"method={name}", *overrides])["method"])
+    made = build(compose([f"method={name}", *overrides])["method"], object)
     assert isinstance(made, Ordered)
     return made
 

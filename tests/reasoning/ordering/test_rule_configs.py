@@ -14,7 +14,7 @@ NAMES = ("fcfs", "idfst", "mcts", "bruteforce")
 @pytest.mark.parametrize("name", NAMES)
 def test_yaml_builds_the_rule_of_its_name(name: str) -> None:
     node = yaml.safe_load((conf_dir() / "method" / f"{name}.yaml").read_text(encoding="utf-8"))["rule"]
-    rule = build(node, key="rule")
+    rule = build(node, object, "rule")
     assert rule.name == name
     assert rule.variant == ""
     defaults = {key: p.default for key, p in inspect.signature(type(rule)).parameters.items()}
