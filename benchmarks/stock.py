@@ -18,7 +18,7 @@ from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
 from codriving.environment.network import PAINT
-from codriving.environment.traffic.way import way
+from codriving.environment.traffic.route_following import route_path
 
 
 class Stock(AbstractEnv):
@@ -116,7 +116,7 @@ def _vehicle(ours: Environment, road: StockRoad, start: Start) -> Vehicle:
         vehicle.LANE_CHANGE_MIN_ACC_GAIN = drivers.gain_threshold
         vehicle.LANE_CHANGE_MAX_BRAKING_IMPOSED = drivers.safe_braking
         vehicle.randomize_behavior()
-    laid, graph = way(ours.road_map, start.route), road.network.graph
+    laid, graph = route_path(ours.road_map, start.route), road.network.graph
     bound = laid.route.lanes if laid.changes_after(start.position) else ()
     vehicle.route = [
         (a, b, k if len(graph[a][b]) == 1 or any(beside((a, b, k), lane) for lane in bound) else None)

@@ -9,9 +9,8 @@ from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Arc, Block, Lane, LaneId, Line, Point, Road, Route, Sine, Straight, Turn
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
-from codriving.environment.scenarios.crowd import Crowd
 from codriving.environment.scenarios.pace import Pace
-from codriving.environment.scenarios.placement import place
+from codriving.environment.scenarios.placement import Crowd, place
 from codriving.environment.scenarios.shapes import bend, turned
 from codriving.errors import require, require_interval, require_range
 from codriving.geometry.lane_path import lane_starts

@@ -7,21 +7,22 @@ from highway_env.vehicle.controller import MDPVehicle
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene import Start
-from codriving.environment.control import ControlGains
-from codriving.environment.corrections import Corrections
-from codriving.environment.traffic.on_way import OnWay
-from codriving.environment.traffic.way import Way
+from codriving.datatypes.vehicle import Kind
+from codriving.environment.settings import ControlGains, Corrections
+from codriving.environment.traffic.route_following import RouteFollower, RoutePath
 
 
-class ConnectedVehicle(OnWay, MDPVehicle):
+class ConnectedVehicle(RouteFollower, MDPVehicle):
     """A vehicle that takes one of the five actions a decision (paper Section II and Eq. 1)."""
+
+    kind = Kind.CAV
 
     @classmethod
     def start(
         cls,
         road: Road,
         start: Start,
-        ways: Mapping[str, Way],
+        route_paths: Mapping[str, RoutePath],
         target_speeds: tuple[float, ...],
         gains: ControlGains,
         corrections: Corrections,
@@ -31,11 +32,7 @@ class ConnectedVehicle(OnWay, MDPVehicle):
         Args:
             target_speeds: Speeds that FASTER and SLOWER step through [m/s].
         """
-        way = ways[start.route]
-        x, y = way.path.position(start.position)
-        heading = float(way.path.heading(start.position))
-        vehicle = cls(road, [float(x), float(y)], heading, start.speed, target_speeds=list(target_speeds))
-        vehicle.take_way(start, ways, corrections)
+        vehicle = cls.place(road, start, route_paths, corrections, target_speeds=list(target_speeds))
         gains.apply(vehicle)
         return vehicle
 
@@ -58,16 +55,12 @@ class ConnectedVehicle(OnWay, MDPVehicle):
         self.action = {"steering": self.keep_lane(), "acceleration": self.speed_control(self.target_speed)}
 
     def speed_to_index(self, speed: float) -> int:
-        """Return the number of the target speed that is closest to a speed; target speeds are evenly spaced.
-
-        Args:
-            speed: A speed [m/s].
-        """
+        """Return the number of the target speed that is closest to a speed [m/s]; target speeds are evenly spaced."""
         low, high, top = float(self.target_speeds[0]), float(self.target_speeds[-1]), len(self.target_speeds) - 1
         return min(max(round((speed - low) / (high - low) * top), 0), top)
 
     def available(self) -> tuple[Action, ...]:
-        """Return the actions that the road allows now; speed can always be asked for."""
+        """Return the actions that the road allows now; speed can always be changed."""
         actions = [Action.SLOWER, Action.IDLE, Action.FASTER]
         start, end, index = self.target_lane_index
         lanes = self.road.network.graph[start][end]

@@ -8,20 +8,18 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Scenario, Simulator
+from codriving.datatypes.scene import Scene
 from codriving.datatypes.trajectory import Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.datatypes.world import WorldState
 from codriving.environment.cav import ConnectedVehicle
-from codriving.environment.control import ControlGains
-from codriving.environment.corrections import Corrections
-from codriving.environment.judge import Judge
 from codriving.environment.network import build_network
-from codriving.environment.recorder import Recorder
-from codriving.environment.snapshot import snapshot
-from codriving.environment.spawn import spawn
-from codriving.environment.traffic.driver_profile import DriverProfile
+from codriving.environment.recorder import Recorder, snapshot
+from codriving.environment.settings import ControlGains, Corrections, DriverProfile
+from codriving.environment.termination import Termination
+from codriving.environment.traffic.human_driver import HumanDriver
+from codriving.environment.traffic.route_following import RoutePath, route_path
 from codriving.environment.traffic.traffic import Traffic
-from codriving.environment.traffic.way import Way, way
 from codriving.errors import EpisodeError
 from codriving.geometry.road_map import road_map
 
@@ -47,7 +45,9 @@ class Environment(Simulator):
         )
         self.road_map = road_map(scenario.road)
         self._network = build_network(scenario.road)
-        self._ways: dict[str, Way] = {route.id: way(self.road_map, route.id) for route in scenario.road.routes}
+        self._route_paths: dict[str, RoutePath] = {
+            route.id: route_path(self.road_map, route.id) for route in scenario.road.routes
+        }
         self._world: WorldState | None = None
         self._outcome: Outcome | None = None
 
@@ -61,9 +61,9 @@ class Environment(Simulator):
         scene = self.scenario.scene(seed)
         rng = np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(1,)))
         self._traffic = Traffic(self._network, rng, self.road_map, self.corrections)
-        spawn(self._traffic, scene, self._ways, self.driving_model.target_speeds, self.control, self.drivers)
+        spawn(self._traffic, scene, self._route_paths, self.driving_model.target_speeds, self.control, self.drivers)
         cavs = [start.id for start in scene.starts if start.kind is Kind.CAV]
-        self._judge = Judge(cavs, self.scenario.pace.time_limit, self.driving_model.step)
+        self._termination = Termination(cavs, self.scenario.pace.time_limit, self.driving_model.step)
         self._steps = self._decisions = 0
         self._recorder = Recorder()
         self._recorder.record(0, self._traffic.vehicles, {})
@@ -85,7 +85,7 @@ class Environment(Simulator):
             self._traffic.step(self.driving_model.step)
             self._steps += 1
             self._recorder.record(self._steps, self._traffic.vehicles, in_force)
-            self._outcome = self._judge.judge(self._traffic, self._time)
+            self._outcome = self._termination.check(self._traffic, self._time)
             if self._outcome is not None:
                 break
         self._decisions += 1
@@ -97,14 +97,14 @@ class Environment(Simulator):
         return self._outcome
 
     def trajectory(self) -> Trajectory:
-        """Return what everybody has driven so far.
+        """Return what all vehicles have driven so far.
 
         Raises:
             EpisodeError: If no episode has begun.
         """
         if self._world is None:
             raise EpisodeError("no episode has begun; call reset(seed) before trajectory()")
-        return self._recorder.trajectory(self.driving_model.step, self._judge.arrivals)
+        return self._recorder.trajectory(self.driving_model.step, self._termination.arrivals)
 
     @property
     def _time(self) -> float:
@@ -127,3 +127,25 @@ class Environment(Simulator):
             if action not in available[name]:
                 can = ", ".join(available[name])
                 raise EpisodeError(f"{name} cannot do {action} here; it can do {can}")
+
+
+def spawn(
+    traffic: Traffic,
+    scene: Scene,
+    route_paths: Mapping[str, RoutePath],
+    target_speeds: tuple[float, ...],
+    control: ControlGains,
+    drivers: DriverProfile,
+) -> None:
+    """Put all vehicles on the road, in the order of the scene.
+
+    Args:
+        target_speeds: Speeds that a CAV's FASTER and SLOWER step through [m/s].
+    """
+    corrections = traffic.corrections
+    for start in scene.starts:
+        traffic.vehicles.append(
+            ConnectedVehicle.start(traffic, start, route_paths, target_speeds, control, corrections)
+            if start.kind is Kind.CAV
+            else HumanDriver.start(traffic, start, route_paths, drivers, corrections)
+        )

@@ -29,20 +29,12 @@ class PlainMotion(_Base):
     impact: NDArray[np.float64] | None
 
     def steering_control(self, target_lane_index: LaneId) -> float:
-        """Steer back to the centre of a lane (paper Eq. 1: delta = arcsin(K_h (phi_r - phi) l / 2v)).
-
-        Returns:
-            Angle of the front wheels [rad].
-        """
+        """Return the angle of the front wheels [rad] (paper Eq. 1: delta = arcsin(K_h (phi_r - phi) l / 2v))."""
         lane = self.road.network.get_lane(target_lane_index)
         return self._steer(lane, *lane.local_coordinates(self.position))
 
     def keep_lane(self) -> float:
-        """Go on to the next lane where it is time to, and steer; `follow_road` and `steering_control` in one.
-
-        Returns:
-            Angle of the front wheels [rad].
-        """
+        """Go on to the next lane where it is time to, and steer [rad]; `follow_road` and `steering_control` in one."""
         lane = self.road.network.get_lane(self.target_lane_index)
         s, lateral = lane.local_coordinates(self.position)
         if s > lane.length - lane.VEHICLE_LENGTH / 2:
@@ -60,11 +52,7 @@ class PlainMotion(_Base):
         return clip(float(np.arctan(2 * float(np.tan(slip)))), self.MAX_STEERING_ANGLE)
 
     def move(self, dt: float) -> None:
-        """Integrate the bicycle model, the place before heading and speed (paper Eq. 1: beta = arctan(tan(delta) / 2)).
-
-        Args:
-            dt: Simulation step [s].
-        """
+        """Integrate the bicycle model, position before heading (paper Eq. 1: beta = arctan(tan(delta) / 2))."""
         self.clip_actions()
         beta = float(np.arctan(1 / 2 * float(np.tan(self.action["steering"]))))
         course = self.heading + beta

@@ -1,11 +1,14 @@
-"""A road as data becomes a road network of highway-env."""
+"""A road as data becomes a road network of highway-env, with lanes that compute the same numbers sooner."""
+
+import math
+from collections.abc import Sequence
 
 import numpy as np
-from highway_env.road.lane import AbstractLane, LineType, SineLane
-from highway_env.road.road import RoadNetwork
+from highway_env.road.lane import AbstractLane, CircularLane, LineType, SineLane, StraightLane
+from highway_env.road.road import LaneIndex, RoadNetwork
+from numpy.typing import NDArray
 
 from codriving.datatypes.road import Arc, Lane, Line, Road, Sine
-from codriving.environment.lanes import PlainCircularLane, PlainStraightLane
 from codriving.errors import ScenarioError
 
 PAINT = {
@@ -18,24 +21,14 @@ PAINT = {
 
 def build_lane(lane: Lane) -> AbstractLane:
     """Turn one lane into highway-env's class for its shape."""
-    painted = [PAINT[line] for line in lane.lines]
-    shape = lane.shape
+    shape, painted = lane.shape, [PAINT[line] for line in lane.lines]
     common = {
-        "width": lane.width,
-        "line_types": painted,
-        "forbidden": lane.forbidden,
-        "speed_limit": lane.speed_limit,
+        "width": lane.width, "line_types": painted, "forbidden": lane.forbidden, "speed_limit": lane.speed_limit,
         "priority": lane.priority,
-    }
+    }  # fmt: skip
     if isinstance(shape, Arc):
-        return PlainCircularLane(
-            np.array(shape.center),
-            shape.radius,
-            shape.start_phase,
-            shape.end_phase,
-            clockwise=shape.clockwise,
-            **common,
-        )
+        center, turn = np.array(shape.center), shape.clockwise
+        return PlainCircularLane(center, shape.radius, shape.start_phase, shape.end_phase, clockwise=turn, **common)
     start, end = np.array(shape.start), np.array(shape.end)
     if isinstance(shape, Sine):
         return SineLane(start, end, shape.amplitude, shape.pulsation, shape.phase, **common)
@@ -58,3 +51,58 @@ def build_network(road: Road) -> RoadNetwork:
                 "come before the others; reorder or renumber the lanes"
             )
     return network
+
+
+class PlainStraightLane(StraightLane):
+    """A straight lane."""
+
+    def local_coordinates(self, position: NDArray[np.float64]) -> tuple[float, float]:
+        """Return arc length and lateral offset of a place (2,) [m]."""
+        delta = position - self.start
+        # The method, since plain products may be rounded differently from numpy's fused ones.
+        return float(delta.dot(self.direction)), float(delta.dot(self.direction_lateral))
+
+
+class PlainCircularLane(CircularLane):
+    """An arc."""
+
+    def local_coordinates(self, position: NDArray[np.float64]) -> tuple[float, float]:
+        """Return arc length and lateral offset of a place (2,) [m]."""
+        delta = position - self.center
+        turn = float(np.arctan2(delta[1], delta[0])) - self.start_phase
+        # Not simplified: adding the start phase and taking it off again rounds, and highway-env does it.
+        phase = self.start_phase + (((turn + math.pi) % (2 * math.pi)) - math.pi)
+        radius = math.sqrt(delta.dot(delta))
+        return self.direction * (phase - self.start_phase) * self.radius, self.direction * (self.radius - radius)
+
+
+JOINT = 0.5
+"""Largest distance between the end of a lane and the start of one that continues it [m]."""
+
+BEND = 0.3
+"""Largest difference of their headings [rad]."""
+
+
+def continues(lane: AbstractLane, following: AbstractLane) -> bool:
+    """Whether one lane begins where another one ends, in the same direction."""
+    gap = np.linalg.norm(lane.position(lane.length, 0) - following.position(0, 0))
+    turn = lane.heading_at(lane.length) - following.heading_at(0)
+    return bool(gap < JOINT and abs((turn + np.pi) % (2 * np.pi) - np.pi) < BEND)
+
+
+def connected(network: RoadNetwork, index: LaneIndex, planned: Sequence[str]) -> list[tuple[AbstractLane, float]]:
+    """Find the lanes that physically precede and follow a lane.
+
+    Returns:
+        Each lane with the offset that turns its arc length into that of the given lane [m].
+    """
+    start, end, _ = index
+    lane = network.get_lane(index)
+    branches = network.graph.get(end, {})
+    found = []
+    for to, lanes in branches.items():
+        if not planned or to in planned:
+            found += [(other, lane.length) for other in lanes if continues(lane, other)]
+    for ends in network.graph.values():
+        found += [(other, -other.length) for other in ends.get(start, []) if continues(other, lane)]
+    return found

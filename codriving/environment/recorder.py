@@ -1,13 +1,16 @@
-"""Writes down where everybody is after every simulation step."""
+"""The simulator's state becomes data: a row a vehicle and simulation step, a world state a decision."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from codriving.datatypes.road import LaneId
 from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.vehicle import Intent, Kind, VehicleState
+from codriving.datatypes.world import WorldState
 from codriving.environment.cav import ConnectedVehicle
-from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.route_following import RouteFollower
+from codriving.environment.traffic.traffic import Traffic
 
 
 @dataclass(slots=True)
@@ -25,25 +28,18 @@ class Recorder:
     def __init__(self) -> None:
         self.logs: dict[str, _Log] = {}
 
-    def record(self, step: int, vehicles: list[OnWay], actions: dict[str, str]) -> None:
+    def record(self, step: int, vehicles: list[RouteFollower], actions: dict[str, str]) -> None:
         """Add one row a vehicle."""
         for v in vehicles:
             log = self.logs.get(v.id)
             if log is None:
-                kind = Kind.CAV if isinstance(v, ConnectedVehicle) else Kind.HDV
-                log = self.logs[v.id] = _Log(step, kind, v.way.route.id)
-            log.rows.append(
-                (float(v.position[0]), float(v.position[1]), float(v.heading), float(v.speed), acceleration(v))
-            )
+                log = self.logs[v.id] = _Log(step, v.kind, v.route_path.route.id)
+            x, y = v.position
+            log.rows.append((float(x), float(y), float(v.heading), float(v.speed), acceleration(v)))
             log.actions.append(actions.get(v.id, ""))
 
     def trajectory(self, step: float, arrivals: dict[str, float]) -> Trajectory:
-        """Return what was recorded.
-
-        Args:
-            step: Simulation step [s].
-            arrivals: Arrival time of each vehicle that arrived [s].
-        """
+        """Return what was recorded with a simulation step [s], and when vehicles arrived [s]."""
         tracks = []
         for name in sorted(self.logs):
             log = self.logs[name]
@@ -66,10 +62,40 @@ class Recorder:
         return Trajectory(step=step, tracks=tuple(tracks))
 
 
-def acceleration(vehicle: OnWay) -> float:
-    """Return the acceleration commanded in the last simulation step.
-
-    Returns:
-        Acceleration [m/s2].
-    """
+def acceleration(vehicle: RouteFollower) -> float:
+    """Return the acceleration commanded in the last simulation step [m/s2]."""
     return float(vehicle.action["acceleration"])
+
+
+def state_of(vehicle: RouteFollower) -> VehicleState:
+    """Copy the physical state of one vehicle."""
+    return VehicleState(
+        id=vehicle.id,
+        kind=vehicle.kind,
+        x=float(vehicle.position[0]),
+        y=float(vehicle.position[1]),
+        heading=float(vehicle.heading),
+        speed=float(vehicle.speed),
+        acceleration=acceleration(vehicle),
+        lane=_plain(vehicle.lane_index),
+        length=vehicle.LENGTH,
+        width=vehicle.WIDTH,
+    )
+
+
+def snapshot(traffic: Traffic, time: float, step: int) -> WorldState:
+    """Copy what a method may know of the world; nothing of the simulator leaves with it."""
+    vehicles = sorted(traffic.vehicles, key=lambda v: v.id)
+    cavs = [v for v in vehicles if isinstance(v, ConnectedVehicle)]
+    return WorldState(
+        time=time,
+        step=step,
+        vehicles=tuple(state_of(v) for v in vehicles),
+        intents={v.id: Intent(v.route_path.route.id, float(v.target_speed), _plain(v.target_lane_index)) for v in cavs},
+        available={v.id: v.available() for v in cavs},
+    )
+
+
+def _plain(lane: LaneId) -> LaneId:
+    """A lane id without numpy's integers, which highway-env leaves after a lane change."""
+    return lane[0], lane[1], int(lane[2])

@@ -12,12 +12,7 @@ BoolArray = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
-    """The ground that a vehicle covers.
-
-    Attributes:
-        length: Length [m].
-        width: Width [m].
-    """
+    """The ground that a vehicle covers [m]."""
 
     length: float
     width: float
@@ -27,7 +22,7 @@ PLANNING = Footprint(6.0, 3.2)
 """For planning and scheduling: vehicles cut corners by up to 0.8 m. Wider than 3.2 m, opposite 4 m lanes conflict."""
 
 TRUE = Footprint(5.0, 2.0)
-"""For judging: collisions and post-encroachment times."""
+"""For measuring: collisions and post-encroachment times."""
 
 
 def corners(x: ArrayLike, y: ArrayLike, heading: ArrayLike, length: float, width: float) -> FloatArray:
@@ -37,28 +32,17 @@ def corners(x: ArrayLike, y: ArrayLike, heading: ArrayLike, length: float, width
         x: Centres (...) [m].
         y: Centres (...) [m].
         heading: Headings (...) [rad].
-        length: Length along the heading [m].
-        width: Width across it [m].
     """
     cos, sin = np.cos(heading)[..., None], np.sin(heading)[..., None]
     along = np.array([0.5, 0.5, -0.5, -0.5]) * length
     across = np.array([0.5, -0.5, -0.5, 0.5]) * width
-    return np.stack(
-        (
-            np.asarray(x)[..., None] + along * cos - across * sin,
-            np.asarray(y)[..., None] + along * sin + across * cos,
-        ),
-        axis=-1,
-    )
+    px = np.asarray(x)[..., None] + along * cos - across * sin
+    py = np.asarray(y)[..., None] + along * sin + across * cos
+    return np.stack((px, py), axis=-1)
 
 
 def overlap(corners_a: FloatArray, corners_b: FloatArray) -> bool:
-    """Return whether two boxes overlap; touching is not overlapping.
-
-    Args:
-        corners_a: Corner points (4, 2) [m].
-        corners_b: Corner points (4, 2) [m].
-    """
+    """Return whether two boxes with corner points (4, 2) [m] overlap; touching is not overlapping."""
     return bool(overlaps(corners_a, corners_b))
 
 

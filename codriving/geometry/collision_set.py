@@ -36,11 +36,7 @@ class Cells:
 
 
 def collision_set(path_i: Path, path_j: Path, footprint: Footprint) -> Cells:
-    """Return all pairs of path points at which two footprints overlap, ordered by j and then by i.
-
-    Args:
-        footprint: Size of both vehicles [m].
-    """
+    """Return all pairs of path points at which two footprints overlap, ordered by j and then by i."""
     near = _near_cells(path_i.points, path_j.points, float(np.hypot(footprint.length, footprint.width)))
     found = near.only(cell_separation(path_i, path_j, near, footprint) < -TOUCH)
     order = np.lexsort((found.i, found.j))
@@ -48,11 +44,7 @@ def collision_set(path_i: Path, path_j: Path, footprint: Footprint) -> Cells:
 
 
 def cell_separation(path_i: Path, path_j: Path, cells: Cells, footprint: Footprint) -> FloatArray:
-    """Return the signed separation of the two footprints at every cell (n,) [m]; negative if they overlap.
-
-    Args:
-        footprint: Size of both vehicles [m].
-    """
+    """Return the signed separation of the two footprints at every cell (n,) [m]; negative if they overlap."""
     heading = path_i.headings[cells.i]
     turn = path_j.headings[cells.j] - heading
     dx, dy = (path_j.points[cells.j] - path_i.points[cells.i]).T

@@ -45,9 +45,7 @@ def bridge(start: Point, heading: float, end: Point, end_heading: float) -> Curv
     Networks such as highway-env's roundabout leave metres between the end of a lane and the start of the next.
 
     Args:
-        start: Where the gap begins [m].
         heading: Heading at the start [rad].
-        end: Where the gap ends [m].
         end_heading: Heading at the end [rad].
     """
     p, q = np.array(start), np.array(end)
@@ -87,9 +85,8 @@ def taper(left: Curve, entered: Curve, length: float) -> Curve:
     def point(u: FloatArray) -> FloatArray:
         along = 1 - share * (1 - u)
         weight = ((1 - np.cos(np.pi * u)) / 2)[:, None]
-        value: FloatArray = (1 - weight) * left.at(along * left.length)[0] + weight * entered.at(
-            along * entered.length
-        )[0]
+        one, other = left.at(along * left.length)[0], entered.at(along * entered.length)[0]
+        value: FloatArray = (1 - weight) * one + weight * other
         return value
 
     u = np.linspace(0.0, 1.0, max(16, math.ceil(2 * share * left.length / _FINE)))
@@ -105,11 +102,7 @@ def taper(left: Curve, entered: Curve, length: float) -> Curve:
 
 
 def first_part(curve: Curve, length: float) -> Curve:
-    """Return the beginning of a curve.
-
-    Args:
-        length: How much of it [m].
-    """
+    """Return the first metres of a curve [m]."""
     return Curve(length, curve.at)
 
 

@@ -65,7 +65,7 @@ class LaneChanges:
         return self._beside[key]
 
     def covered(self, route_id: str, lane: LaneId, x: float, y: float) -> tuple[tuple[str, float], ...]:
-        """Return the routes beside a route onto whose lanes a body at a place still or already reaches.
+        """Return the routes beside a route onto whose lanes a body still or already reaches.
 
         Args:
             x: Centre of the body [m].

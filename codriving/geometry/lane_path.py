@@ -17,11 +17,7 @@ JOINED = 1e-3
 
 
 def lane_path(lane: Lane, spacing: float = SPACING) -> Path:
-    """Sample the centre line of one lane.
-
-    Args:
-        spacing: Nominal distance between two points [m]; the exact one divides the length evenly.
-    """
+    """Sample the centre line of one lane; the exact spacing [m] divides the length evenly."""
     return _sample([lane_curve(lane.shape)], spacing)
 
 
@@ -30,7 +26,6 @@ def route_path(lanes: Sequence[Lane], change: float = 0.0, spacing: float = SPAC
 
     Args:
         change: Length of the way from a lane to the one beside it, at the end of the one that is left [m].
-        spacing: Nominal distance between two points [m].
     """
     return _sample([curve for _, curve in joined_curves(lanes, change)], spacing)
 
@@ -38,10 +33,7 @@ def route_path(lanes: Sequence[Lane], change: float = 0.0, spacing: float = SPAC
 def lane_starts(lanes: Sequence[Lane], change: float = 0.0) -> tuple[float, ...]:
     """Return the arc length at which each lane begins on the path that joins them [m].
 
-    A lane that is changed to begins in the middle of the change.
-
-    Args:
-        change: Length of a lane change [m].
+    A lane that is changed to begins in the middle of the change, whose length is given [m].
     """
     starts, s = [], 0.0
     for kind, curve in joined_curves(lanes, change):
@@ -54,11 +46,7 @@ def lane_starts(lanes: Sequence[Lane], change: float = 0.0) -> tuple[float, ...]
 
 
 def joined_curves(lanes: Sequence[Lane], change: float) -> list[tuple[str, Curve]]:
-    """Return the curves of a route in order, each with what it is: a ``lane``, a ``bridge`` or a lane ``change``.
-
-    Args:
-        change: Length of a lane change [m].
-    """
+    """Return the curves of a route in order, each with what it is: a ``lane``, a ``bridge`` or a lane ``change``."""
     curves: list[tuple[str, Curve]] = []
     for k, lane in enumerate(lanes):
         curve = lane_curve(lane.shape)

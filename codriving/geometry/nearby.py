@@ -37,7 +37,7 @@ class Nearby:
     def routes(
         self, x: float, y: float, heading: float | None, tolerance: float = 2.0, angle: float = math.pi / 3
     ) -> tuple[tuple[str, float], ...]:
-        """Return the routes that pass by a place, as someone who only sees a vehicle there would guess them.
+        """Return the routes that pass by a place, as far as the place and heading of a vehicle tell.
 
         Args:
             x: Place [m].
@@ -64,7 +64,7 @@ class Nearby:
             if abs(lateral) <= tolerance and -tolerance <= s <= path.length + tolerance:
                 found.append((self._names[k], s))
         for name, lane, start, taper in self._ending:
-            # Whoever has not changed lanes yet is beside the taper, but still on this route.
+            # A vehicle that has not changed lanes yet is beside the taper, but still on this route.
             s, lateral = lane.project(x, y)
             if abs(lateral) <= tolerance and lane.length - taper <= s <= lane.length + tolerance:
                 turned = 0.0 if heading is None else math.remainder(heading - float(lane.heading(s)), math.tau)

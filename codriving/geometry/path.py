@@ -1,4 +1,4 @@
-"""A way through the road as a polyline, measured by arc length."""
+"""A centre line as a polyline, measured by arc length, and places and tracks projected on it."""
 
 import math
 from dataclasses import dataclass, field
@@ -49,11 +49,7 @@ class Path:
         return np.linspace(0.0, self.length, len(self.points))
 
     def position(self, s: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Return x and y [m] at arc length s [m]; the path goes straight on before its start and past its end.
-
-        Args:
-            s: Arc length, a number or an array of any shape [m].
-        """
+        """Return x and y [m] at arc lengths s [m]; the path goes straight on before its start and past its end."""
         s = np.asarray(s, dtype=np.float64)
         inside = np.clip(s, 0.0, self.length)
         k = np.minimum((inside / self.spacing).astype(np.intp), len(self.points) - 2)
@@ -67,11 +63,7 @@ class Path:
         )
 
     def place(self, s: float) -> tuple[float, float, float]:
-        """Return x and y [m] and heading [rad] at one arc length, as `position` and `heading` do, without numpy.
-
-        Args:
-            s: Arc length [m].
-        """
+        """Return x and y [m] and heading [rad] at one arc length [m], as `position` and `heading` do, without numpy."""
         inside = min(max(s, 0.0), self.length)
         k = min(int(inside / self.spacing), len(self._places) - 2)
         t = inside / self.spacing - k
@@ -111,12 +103,7 @@ class Path:
         return self.project_at(first + int((dx * dx + dy * dy).argmin()), x, y)
 
     def project_all(self, x: FloatArray, y: FloatArray) -> list[tuple[float, float]]:
-        """Return what `project` returns for each of several points.
-
-        Args:
-            x: Points (m,) [m].
-            y: Points (m,) [m].
-        """
+        """Return what `project` returns for each of several points (m,) [m]."""
         dx, dy = self._x - x[:, None], self._y - y[:, None]
         nearest = (dx * dx + dy * dy).argmin(axis=1)
         return [self.project_at(*one) for one in zip(nearest.tolist(), x.tolist(), y.tolist(), strict=True)]
@@ -146,3 +133,31 @@ class Path:
         distance = (px - t * dx) ** 2 + (py - t * dy) ** 2
         side = dx * py - dy * px
         return distance, (k + t) * self.spacing, math.copysign(math.sqrt(distance), side)
+
+
+def progress(path: Path, x: FloatArray, y: FloatArray, heading: FloatArray) -> FloatArray:
+    """Project a whole track on its route.
+
+    Where the route passes a place twice (both directions of a leg), the heading tells which is meant. A vehicle that
+    drives forward never loses ground, so sideways motion and corner cutting cannot move it back.
+
+    Args:
+        x: Positions (n,) [m].
+        y: Positions (n,) [m].
+        heading: Headings (n,) [rad].
+
+    Returns:
+        Arc length (n,) that never falls [m].
+    """
+    px, py = path.points.T
+    ux, uy = np.cos(path.headings), np.sin(path.headings)
+    square = (x[:, None] - px) ** 2 + (y[:, None] - py) ** 2
+    towards = np.outer(np.cos(heading), ux) + np.outer(np.sin(heading), uy)
+    square[towards < math.cos(math.pi / 3)] += 1e6
+    nearest = square.argmin(axis=1)
+    # Linear refinement: how far past the nearest point, along the path there.
+    along = ux[nearest] * (x - px[nearest]) + uy[nearest] * (y - py[nearest])
+    inner = (nearest > 0) & (nearest < len(px) - 1)
+    along = np.where(inner, np.clip(along, -path.spacing / 2, path.spacing / 2), along)
+    result: FloatArray = np.maximum.accumulate(nearest * path.spacing + along)
+    return result

@@ -16,11 +16,11 @@ from codriving.geometry.road_check import check_road
 from codriving.geometry.zone import ConflictZone, following_zone
 
 _REMEMBERED = 10_000
-"""Projections that are remembered; many vehicles ask for the same ones within a decision step."""
+"""Projections that are remembered; many vehicles need the same ones within a decision step."""
 
 
 class RoadMap:
-    """Paths of all routes, and the conflict zones between them, which are worked out when they are asked for.
+    """Paths of all routes, and the conflict zones between them, which are worked out when they are first needed.
 
     Raises:
         ScenarioError: If the road is not consistent in itself.
@@ -53,15 +53,7 @@ class RoadMap:
         self._planning = self._zones[PLANNING] = {}
 
     def project(self, route_id: str, x: float, y: float) -> tuple[float, float]:
-        """Return arc length and lateral offset of a place on a route [m], as `Path.project` does, each worked out once.
-
-        Args:
-            x: Place [m].
-            y: Place [m].
-
-        Raises:
-            KeyError: If the route does not exist.
-        """
+        """Return arc length and lateral offset of a place on a route [m], each worked out once."""
         key = (route_id, x, y)
         found = self._projected.get(key)
         if found is None:
@@ -71,14 +63,7 @@ class RoadMap:
         return found
 
     def project_all(self, route_id: str, places: Iterable[tuple[float, float]]) -> None:
-        """Work out together what `project` will be asked for.
-
-        Args:
-            places: Places, x and y [m].
-
-        Raises:
-            KeyError: If the route does not exist.
-        """
+        """Work out together what `project` will return for some places, x and y [m]."""
         new = list(dict.fromkeys(place for place in places if (route_id, *place) not in self._projected))
         if not new:
             return
@@ -89,36 +74,18 @@ class RoadMap:
             self._projected[route_id, *place] = found
 
     def lane_at(self, route_id: str, s: float) -> LaneId:
-        """Return the lane of a route at an arc length.
-
-        Args:
-            s: Arc length; before the start of the route the first lane counts [m].
-
-        Raises:
-            KeyError: If the route does not exist.
-        """
+        """Return the lane of a route at an arc length [m]; before the start of the route that is the first lane."""
         for lane, start in self._backwards[route_id]:
             if start <= s:
                 return lane
         return self.routes[route_id].lanes[0]
 
     def lane_start(self, route_id: str, lane_id: LaneId) -> float:
-        """Return the arc length on a route at which one of its lanes begins [m].
-
-        Raises:
-            KeyError: If the route or the lane on it does not exist.
-        """
+        """Return the arc length on a route at which one of its lanes begins [m]."""
         return self._starts[route_id, lane_id]
 
     def zones(self, route_i: str, route_j: str, footprint: Footprint = PLANNING) -> tuple[ConflictZone, ...]:
-        """Return the conflict zones of two routes, seen from the first, in the order in which it meets them.
-
-        Args:
-            footprint: Size of both vehicles [m].
-
-        Raises:
-            KeyError: If a route does not exist.
-        """
+        """Return the conflict zones of two routes, seen from the first, in the order in which it meets them."""
         known = self._planning if footprint is PLANNING else self._zones.setdefault(footprint, {})
         found = known.get((route_i, route_j))
         if found is None:

@@ -11,8 +11,7 @@ from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.geometry.box import TRUE
 from codriving.geometry.curve import FloatArray
-from codriving.geometry.path import Path
-from codriving.geometry.progress import progress
+from codriving.geometry.path import Path, progress
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
 

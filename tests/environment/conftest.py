@@ -9,12 +9,10 @@ import pytest
 from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Road
 from codriving.datatypes.scene import Scene, Start
-from codriving.environment.control import ControlGains
-from codriving.environment.corrections import Corrections
 from codriving.environment.environment import Environment
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.environment.scenarios.pace import Pace
-from codriving.environment.traffic.driver_profile import DriverProfile
+from codriving.environment.settings import ControlGains, Corrections, DriverProfile
 from codriving.environment.traffic.human_driver import HumanDriver
 
 GAINS = ControlGains(speed=1.6, heading=5.0, lateral=1 / 0.6)

@@ -14,7 +14,7 @@ from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
 from codriving.environment.traffic.human_driver import HumanDriver
-from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.route_following import RouteFollower
 
 Build = Callable[..., Environment]
 CAV, HDV = Kind.CAV, Kind.HDV
@@ -47,7 +47,7 @@ def drive(env: Environment, decisions: int, action: Action = Action.IDLE) -> Env
     return env
 
 
-def on_road(env: Environment) -> dict[str, OnWay]:
+def on_road(env: Environment) -> dict[str, RouteFollower]:
     return {vehicle.id: vehicle for vehicle in env._traffic.vehicles}
 
 
@@ -149,7 +149,7 @@ def test_drivers_wait_before_the_junction(by_hand: Build) -> None:
     told, first = [], []
     while env.outcome is None:
         road = on_road(env)
-        if road["HDV1"].waits_at == road["HDV1"].way.route.entry:
+        if road["HDV1"].waits_at == road["HDV1"].route_path.route.entry:
             told.append(road["HDV1"].s)
         if road["HDV1"].s > 104.0 and not first:
             first.append(road["CAV1"].s)

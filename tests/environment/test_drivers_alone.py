@@ -7,7 +7,7 @@ import pytest
 
 from codriving.datatypes.outcome import Collision
 from codriving.environment.environment import Environment
-from codriving.environment.judge import Judge
+from codriving.environment.termination import Termination
 from codriving.environment.traffic.human_driver import HumanDriver
 
 Build = Callable[..., Environment]
@@ -42,13 +42,13 @@ def alone(env: Environment, seed: int, limit: float = 90.0) -> Drive:
     env.reset(seed)
     traffic, dt = env._traffic, env.driving_model.step
     traffic.vehicles = [vehicle for vehicle in traffic.vehicles if isinstance(vehicle, HumanDriver)]
-    judge, slowest, time = Judge(["nobody"], 10 * limit, dt), 0.0, 0.0
+    judge, slowest, time = Termination(["nobody"], 10 * limit, dt), 0.0, 0.0
     while traffic.vehicles and time < limit:
         traffic.act()
         traffic.step(dt)
         time += dt
         slowest = min([slowest, *(vehicle.speed for vehicle in traffic.vehicles)])
-        judge.judge(traffic, time)
+        judge.check(traffic, time)
     return Drive([vehicle.id for vehicle in traffic.vehicles], slowest, judge._bystanders, time)
 
 

@@ -15,9 +15,9 @@ from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.datatypes.world import WorldState
 from codriving.environment.environment import Environment
-from codriving.environment.traffic.body_ahead import body_ahead
-from codriving.environment.traffic.driver_profile import DriverProfile
-from codriving.environment.traffic.way import way
+from codriving.environment.settings import DriverProfile
+from codriving.environment.traffic.human_driver import body_ahead
+from codriving.environment.traffic.route_following import route_path
 from codriving.errors import ConfigError, EpisodeError, ScenarioError
 from codriving.geometry.road_map import road_map
 
@@ -163,12 +163,12 @@ def test_goal_too_near_to_the_end_of_the_road_is_refused(intersection: Build) ->
     road = intersection().scenario.road
     routes = tuple(replace(route, goal=route.goal + 70.0) for route in road.routes)
     with pytest.raises(ScenarioError, match="must have its goal 8 m or more before its end at"):
-        way(road_map(replace(road, routes=routes)), "south-north")
+        route_path(road_map(replace(road, routes=routes)), "south-north")
 
 
 @pytest.mark.parametrize("name", ["south-north", "south-east", "south-west"])
 def test_following_a_way_gives_the_same_numbers_as_projecting(name: str, intersection: Build) -> None:
-    laid_out = way(intersection().road_map, name)
+    laid_out = route_path(intersection().road_map, name)
     rng = np.random.default_rng(0)
     for s in rng.uniform(-3, laid_out.path.length + 3, 300):
         x, y = (float(v) for v in laid_out.path.position(s))

@@ -49,7 +49,7 @@ def test_whatever_is_decided_everybody_is_where_the_world_says(env: Environment)
         world = env.reset(seed)
         while env.outcome is None and world.step < 30:
             for vehicle in env._traffic.vehicles:
-                s, lateral = vehicle.way.path.project(*map(float, vehicle.position))
+                s, lateral = vehicle.route_path.path.project(*map(float, vehicle.position))
                 assert vehicle.s == pytest.approx(s, abs=1e-6)
                 assert vehicle.offset == pytest.approx(lateral, abs=1e-6)
                 assert vehicle.speed >= 0.0
@@ -86,7 +86,7 @@ def test_same_seed_same_trajectory_after_other_seeds(env: Environment) -> None:
 @on_each
 def test_ways_are_laid_out_as_the_map_says(env: Environment) -> None:
     for route in env.scenario.road.routes:
-        laid = env._ways[route.id]
+        laid = env._route_paths[route.id]
         assert laid.route.goal <= laid.end < road_map(env.scenario.road).paths[route.id].length
         for s in np.linspace(0.0, laid.path.length, 50):
             assert laid.lane_at(s) == env.road_map.lane_at(route.id, s)
@@ -94,7 +94,7 @@ def test_ways_are_laid_out_as_the_map_says(env: Environment) -> None:
 
 def test_a_way_knows_the_lane_that_ends_and_plans_the_one_beside(configured: Build) -> None:
     made = configured("scenario=merge", "scenario.lanes=2", "scenario.before=150", "scenario.converge=80")
-    ramp, main = made._ways["ramp"], made._ways["main-1"]
+    ramp, main = made._route_paths["ramp"], made._route_paths["main-1"]
     assert ramp.ending == ("b", "c", 2)
     assert ramp.lane_end == pytest.approx(made.scenario.road.blocks[0].position[0], abs=1.5)
     assert (main.ending, main.lane_end) == (None, np.inf)

@@ -10,8 +10,8 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.cav import ConnectedVehicle
-from codriving.environment.corrections import Corrections
 from codriving.environment.environment import Environment
+from codriving.environment.settings import Corrections
 from codriving.geometry.box import PLANNING, TRUE, corners
 
 Build = Callable[..., Environment]

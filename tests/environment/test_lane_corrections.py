@@ -11,7 +11,7 @@ from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
-from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.route_following import RouteFollower
 
 Build = Callable[..., Environment]
 
@@ -49,7 +49,7 @@ RAMP = Road(
 )
 
 
-def on_road(env: Environment) -> dict[str, OnWay]:
+def on_road(env: Environment) -> dict[str, RouteFollower]:
     return {vehicle.id: vehicle for vehicle in env._traffic.vehicles}
 
 

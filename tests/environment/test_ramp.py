@@ -13,7 +13,7 @@ from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
 from codriving.environment.traffic.human_driver import GAP, HumanDriver
-from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.route_following import RouteFollower
 
 Build = Callable[..., Environment]
 CAV, HDV = Kind.CAV, Kind.HDV
@@ -39,7 +39,7 @@ def on_merge(by_hand: Build, merge: Road) -> Build:
     return build
 
 
-def on_road(env: Environment) -> dict[str, OnWay]:
+def on_road(env: Environment) -> dict[str, RouteFollower]:
     return {vehicle.id: vehicle for vehicle in env._traffic.vehicles}
 
 
@@ -100,7 +100,7 @@ def test_a_driver_changes_before_the_end_while_the_main_road_is_free(on_merge: B
     changed = []
     while "HDV1" in on_road(env) and env.outcome is None:
         driver = on_road(env)["HDV1"]
-        if driver.way.route.id == "main-1":
+        if driver.route_path.route.id == "main-1":
             changed.append(float(driver.position[0]))
         world = env.step({cav.id: Action.SLOWER for cav in world.cavs})
     assert changed[0] < 290.0, "long before the lane ends"
@@ -109,7 +109,7 @@ def test_a_driver_changes_before_the_end_while_the_main_road_is_free(on_merge: B
     assert track.x[-1] > 500.0
 
 
-def put_at_the_end(env: Environment, away: float, name: str = "HDV1") -> OnWay:
+def put_at_the_end(env: Environment, away: float, name: str = "HDV1") -> RouteFollower:
     """Move a vehicle to the ramp lane, some way before its end [m]."""
     vehicle = on_road(env)[name]
     vehicle.position[:], vehicle.heading = (ENDS - away, 8.0), 0.0
@@ -160,7 +160,7 @@ def test_a_late_change_leads_to_the_main_road_whatever_the_ramp_is_called(
     env.reset(0)
     put_at_the_end(env, 12.0, "CAV1")
     on_road(env)["CAV1"].act(Action.LANE_LEFT)
-    assert on_road(env)["CAV1"].way.route.id == "main-1"
+    assert on_road(env)["CAV1"].route_path.route.id == "main-1"
     assert on_road(env)["CAV1"].offset == pytest.approx(4.0)
 
 
@@ -189,7 +189,7 @@ def test_a_driver_who_runs_into_the_block_is_towed_away(on_merge: Build) -> None
         world = env.step({cav.id: Action.SLOWER for cav in world.cavs})
     assert "HDV1" not in on_road(env)
     assert env.outcome is None
-    (collision,) = env._judge._bystanders
+    (collision,) = env._termination._bystanders
     assert (collision.striker, collision.struck, collision.pair) == ("HDV1", "block1", "HDV-block")
 
 

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
-from codriving.environment.traffic.on_way import OnWay
 from codriving.environment.traffic.right_of_way import (
     HORIZON,
     OVERSHOOT,
@@ -21,12 +20,13 @@ from codriving.environment.traffic.right_of_way import (
     pace,
     will_meet,
 )
+from codriving.environment.traffic.route_following import RouteFollower
 
 Build = Callable[..., Environment]
 CAV, HDV = Kind.CAV, Kind.HDV
 
 
-def placed(by_hand: Build, *starts: Start) -> tuple[Environment, dict[str, OnWay]]:
+def placed(by_hand: Build, *starts: Start) -> tuple[Environment, dict[str, RouteFollower]]:
     env = by_hand(starts=list(starts))
     env.reset(0)
     return env, {vehicle.id: vehicle for vehicle in env._traffic.vehicles}

@@ -12,8 +12,8 @@ from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.cav import ConnectedVehicle
-from codriving.environment.control import ControlGains
 from codriving.environment.environment import Environment
+from codriving.environment.settings import ControlGains
 from codriving.errors import ConfigError
 from codriving.reasoning.prediction.rollout import rollout
 

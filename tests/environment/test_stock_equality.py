@@ -14,12 +14,11 @@ from highway_env.vehicle.kinematics import Vehicle
 from benchmarks.stock import populated, stock_network
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.cav import ConnectedVehicle
-from codriving.environment.corrections import Corrections
-from codriving.environment.environment import Environment
+from codriving.environment.environment import Environment, spawn
 from codriving.environment.network import build_network
-from codriving.environment.spawn import spawn
+from codriving.environment.settings import Corrections
+from codriving.environment.traffic.route_following import route_path
 from codriving.environment.traffic.traffic import Traffic
-from codriving.environment.traffic.way import way
 
 OFF = tuple(field.name for field in fields(Corrections))
 SECONDS, SUBSTEPS, DT = 20, 5, 0.1
@@ -60,8 +59,8 @@ def stock_road(env: Environment, seed: int) -> tuple[RegulatedRoad, dict[str, Ve
 def our_road(env: Environment, seed: int) -> Traffic:
     rng = np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(1,)))
     traffic = Traffic(build_network(env.scenario.road), rng, env.road_map, env.corrections)
-    ways = {name: way(env.road_map, name) for name in env.road_map.routes}
-    spawn(traffic, env.scenario.scene(seed), ways, env.driving_model.target_speeds, env.control, env.drivers)
+    route_paths = {name: route_path(env.road_map, name) for name in env.road_map.routes}
+    spawn(traffic, env.scenario.scene(seed), route_paths, env.driving_model.target_speeds, env.control, env.drivers)
     return traffic
 
 

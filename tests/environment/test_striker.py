@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codriving.environment.striker import who_struck
+from codriving.environment.collisions import responsibility
 
 EAST, SOUTH, WEST = 0.0, math.pi / 2, math.pi
 
@@ -33,10 +33,10 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_striker_is_a(case: str, swapped: bool) -> None:
     one, other = CASES[case][::-1] if swapped else CASES[case]
-    striker, struck = who_struck(one, other, 0.1)
+    striker, struck = responsibility(one, other, 0.1)
     assert (striker.id, struck.id) == ("A", "B")
 
 
 def test_cars_that_have_overlapped_all_the_time() -> None:
     one, other = car("A", 0.0, 0.0, EAST, 0.0), car("B", 1.0, 0.0, EAST, 0.0)
-    assert {v.id for v in who_struck(one, other, 0.1)} == {"A", "B"}
+    assert {v.id for v in responsibility(one, other, 0.1)} == {"A", "B"}

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from codriving.geometry.band import Band, FollowingBand
+from codriving.geometry.zone import Band, FollowingBand
 
 BULGE = 0.1
 numbers = st.floats(-50.0, 50.0)

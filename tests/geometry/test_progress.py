@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from codriving.geometry.path import Path
-from codriving.geometry.progress import progress
+from codriving.geometry.path import Path, progress
 from codriving.geometry.road_map import RoadMap
 
 U_TURN = Path(

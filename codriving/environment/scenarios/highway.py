@@ -8,9 +8,8 @@ from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Lane, Line, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
-from codriving.environment.scenarios.crowd import Crowd
 from codriving.environment.scenarios.pace import Pace
-from codriving.environment.scenarios.placement import place
+from codriving.environment.scenarios.placement import Crowd, place
 from codriving.errors import require_range
 
 LANE_WIDTH = 4.0
@@ -27,19 +26,12 @@ def _lines(index: int, lanes: int) -> tuple[Line, Line]:
 
 
 class Highway(Scenario):
-    """Several CAVs and human drivers on parallel lanes; everybody may change lanes.
+    """Several CAVs and human drivers on parallel lanes; all may change lanes.
+
+    The settings that scenarios share are those of `Crowd` and `Pace`.
 
     Args:
         finish: Distance after which a vehicle has arrived [m].
-        start: Nearest and farthest start along a lane [m].
-        cav_speed: Lowest and highest start speed of CAVs [m/s].
-        hdv_speed: Lowest and highest start speed of HDVs, which is also the speed they want [m/s].
-        spacing: Smallest distance between two starts on one lane [m].
-        simulation_frequency: Simulation steps per second [Hz].
-        decision_frequency: Decisions per second [Hz].
-        time_limit: Longest duration of an episode [s].
-        target_speeds: Speeds that FASTER and SLOWER step through [m/s].
-        detection_range: Radius of perception of a CAV [m].
 
     Raises:
         ConfigError: If a setting is out of range.
@@ -74,7 +66,7 @@ class Highway(Scenario):
 
     @cached_property
     def road(self) -> Road:
-        """Parallel lanes, and a route along each; nobody has the right of way."""
+        """Parallel lanes, and a route along each; none has the right of way."""
         lanes, routes = [], []
         length = self.finish + BEYOND
         for k in range(self.lanes):

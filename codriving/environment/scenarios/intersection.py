@@ -8,9 +8,8 @@ from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Arc, Lane, LaneId, Line, Point, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
-from codriving.environment.scenarios.crowd import Crowd
 from codriving.environment.scenarios.pace import Pace
-from codriving.environment.scenarios.placement import place
+from codriving.environment.scenarios.placement import Crowd, place
 from codriving.environment.scenarios.shapes import turned
 from codriving.errors import require_range
 from codriving.geometry.lane_path import lane_starts
@@ -92,18 +91,11 @@ def _routes(lanes: tuple[Lane, ...], exit_distance: float) -> tuple[Route, ...]:
 class Intersection(Scenario):
     """Several CAVs among human drivers, each with a random leg, destination, place and speed.
 
+    The settings that scenarios share are those of `Crowd` and `Pace`.
+
     Args:
         leg_length: Length of each leg before the junction [m].
-        start: Nearest and farthest start along a leg [m].
-        cav_speed: Lowest and highest start speed of CAVs [m/s].
-        hdv_speed: Lowest and highest start speed of HDVs, which is also the speed they want [m/s].
-        spacing: Smallest distance between two starts on one leg [m].
         exit_distance: Distance past the junction at which a vehicle has arrived [m].
-        simulation_frequency: Simulation steps per second [Hz].
-        decision_frequency: Decisions per second [Hz].
-        time_limit: Longest duration of an episode [s].
-        target_speeds: Speeds that FASTER and SLOWER step through [m/s].
-        detection_range: Radius of perception of a CAV [m].
 
     Raises:
         ConfigError: If a setting is out of range.

@@ -9,9 +9,8 @@ from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Block, Lane, LaneId, LaneShape, Line, Road, Route, Sine, Straight, Turn
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
-from codriving.environment.scenarios.crowd import Crowd
 from codriving.environment.scenarios.pace import Pace
-from codriving.environment.scenarios.placement import place
+from codriving.environment.scenarios.placement import Crowd, place
 from codriving.errors import require_range
 
 LANE_WIDTH = 4.0
@@ -22,7 +21,7 @@ SWAY = 3.25
 """Half of what the ramp comes closer while it converges, as in highway-env [m]."""
 
 TAPER = 40.0
-"""Length of the last part of the ramp lane, in which whoever is still on it has to be changing [m]."""
+"""Length of the last part of the ramp lane, in which a vehicle that is still on it has to be changing [m]."""
 
 PAST_MERGE = 80.0
 """Distance past the end of the ramp lane at which a vehicle has arrived [m]."""
@@ -31,20 +30,13 @@ PAST_MERGE = 80.0
 class Merge(Scenario):
     """Several CAVs on the main road and on the ramp, among human drivers.
 
+    The settings that scenarios share are those of `Crowd` and `Pace`.
+
     Args:
         before: Length of the road before the ramp begins to converge [m].
         converge: Length over which it converges [m].
         parallel: Length of the ramp lane beside the main road [m].
         after: Length of the road past the end of the ramp lane [m].
-        start: Nearest and farthest start along the road [m].
-        cav_speed: Lowest and highest start speed of CAVs [m/s].
-        hdv_speed: Lowest and highest start speed of HDVs, which is also the speed they want [m/s].
-        spacing: Smallest distance between two starts on one lane [m].
-        simulation_frequency: Simulation steps per second [Hz].
-        decision_frequency: Decisions per second [Hz].
-        time_limit: Longest duration of an episode [s].
-        target_speeds: Speeds that FASTER and SLOWER step through [m/s].
-        detection_range: Radius of perception of a CAV [m].
 
     Raises:
         ConfigError: If a setting is out of range.

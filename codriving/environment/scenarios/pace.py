@@ -43,12 +43,9 @@ class Pace:
         )
         speeds = self.target_speeds
         gaps = [b - a for a, b in pairwise(speeds)]
+        within = len(speeds) >= 2 and speeds[0] >= 0 and speeds[-1] <= TOP_SPEED
         require(
-            len(speeds) >= 2
-            and speeds[0] >= 0
-            and speeds[-1] <= TOP_SPEED
-            and min(gaps) > 0
-            and max(gaps) - min(gaps) < 1e-9,
+            within and min(gaps) > 0 and max(gaps) - min(gaps) < 1e-9,
             f"target_speeds must be two or more evenly spaced, rising speeds within 0 to {TOP_SPEED:g} m/s "
             f"(highway-env's actions assume it), got {list(speeds)}",
         )

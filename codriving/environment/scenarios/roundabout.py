@@ -9,11 +9,10 @@ from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Arc, Lane, LaneId, LaneShape, Line, Point, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Scene, Start
 from codriving.datatypes.vehicle import Kind
-from codriving.environment.scenarios.crowd import Crowd
 from codriving.environment.scenarios.pace import Pace
-from codriving.environment.scenarios.placement import place
+from codriving.environment.scenarios.placement import Crowd, place
 from codriving.environment.scenarios.shapes import turned
-from codriving.errors import ConfigError, require_range
+from codriving.errors import require, require_range
 from codriving.geometry.box import PLANNING
 
 LEGS = ("south", "east", "north", "west")
@@ -27,13 +26,15 @@ TURNS = {Turn.RIGHT: 1, Turn.STRAIGHT: 2, Turn.LEFT: 3}
 """Legs that a route passes until it leaves."""
 
 TOGETHER = 3.0
-"""Least length of the ring between an entry and the next exit [m]; with less, those who come and go would cross."""
+"""Least length of the ring between an entry and the next exit [m]; with less, those that come and go would cross."""
 
 
 class Ring:
     """The measures of the ring and of the arcs that lead to it and away from it.
 
     Highway-env's own legs meet the ring at an angle of 66 degrees; these touch it, as built roundabouts do.
+
+    The settings that scenarios share are those of `Crowd` and `Pace`.
 
     Args:
         radius: Radius of the centre line of the ring [m].
@@ -44,7 +45,7 @@ class Ring:
         touch: Angle between the end of the ring at a leg and the perpendicular to that leg [rad].
         bend: Length of the arc between a leg and the ring [m].
         around: Length of the ring [m].
-        clear: Distance before the ring at which a vehicle on the arc still keeps clear of everybody on the ring, the
+        clear: Distance before the ring at which a vehicle on the arc still keeps clear of all on the ring, the
             footprints of both as large as reasoning plans with [m].
     """
 
@@ -53,7 +54,7 @@ class Ring:
         self.touch = math.acos((LANE_WIDTH / 2 + entry_radius) / (radius + entry_radius))
         self.bend = entry_radius * self.touch
         self.around = 2 * math.pi * radius
-        # The front corner of who comes in, seen from the middle of the arc, against the outermost corner on the ring.
+        # The front corner of a vehicle coming in, seen from the middle of the arc, against the outermost on the ring.
         ahead, aside = PLANNING.length / 2, PLANNING.width / 2
         corner, on_ring = math.hypot(entry_radius + aside, ahead), math.hypot(radius + aside, ahead)
         apart = radius + entry_radius
@@ -122,20 +123,13 @@ class Ring:
 class Roundabout(Scenario):
     """Several CAVs among human drivers, some of whom are on the ring already.
 
+    The settings that scenarios share are those of `Crowd` and `Pace`.
+
     Args:
         radius: Radius of the centre line of the ring [m].
         entry_radius: Radius of the arcs between the legs and the ring [m].
         leg_length: Length of the straight part of each leg [m].
-        start: Nearest and farthest start along a leg [m].
-        cav_speed: Lowest and highest start speed of CAVs [m/s].
-        hdv_speed: Lowest and highest start speed of HDVs, which is also the speed they want [m/s].
-        spacing: Smallest distance between two starts on one lane [m].
         exit_distance: Distance down the exit, from the ring, at which a vehicle has arrived [m].
-        simulation_frequency: Simulation steps per second [Hz].
-        decision_frequency: Decisions per second [Hz].
-        time_limit: Longest duration of an episode [s].
-        target_speeds: Speeds that FASTER and SLOWER step through [m/s].
-        detection_range: Radius of perception of a CAV [m].
 
     Raises:
         ConfigError: If a setting is out of range.
@@ -168,11 +162,11 @@ class Roundabout(Scenario):
         require_range("entry_radius", entry_radius, 10, 40, " m")
         require_range("leg_length", leg_length, 40, 500, " m")
         self._ring = Ring(radius, entry_radius, leg_length)
-        if self._ring.on_ring(1) < TOGETHER:
-            raise ConfigError(
-                f"entry_radius {entry_radius:g} m is too large for a ring of radius {radius:g} m: entries and exits "
-                "would overlap; use a smaller entry_radius or a larger radius"
-            )
+        require(
+            self._ring.on_ring(1) >= TOGETHER,
+            f"entry_radius {entry_radius:g} m is too large for a ring of radius {radius:g} m: entries and exits "
+            "would overlap; use a smaller entry_radius or a larger radius",
+        )
         require_range("exit_distance", exit_distance, 5, self._ring.bend + leg_length - 10, " m")
         self.crowd = Crowd(cavs, hdvs, start, cav_speed, hdv_speed, spacing)
         self.crowd.check(12, 12, leg_length - 15, "15 m before the end of the leg at the latest", SPEED_LIMIT)
@@ -182,11 +176,11 @@ class Roundabout(Scenario):
 
     @cached_property
     def road(self) -> Road:
-        """The ring and its legs; whoever is on the ring goes first."""
+        """The ring and its legs; vehicles on the ring go first."""
         return Road("roundabout", self._ring.lanes(), self._ring.routes(self.exit_distance), True)
 
     def scene(self, seed: int) -> Scene:
-        """Draw leg, destination, place and speed of every vehicle, and who is on the ring already.
+        """Draw leg, destination, place and speed of every vehicle, and which are on the ring already.
 
         Raises:
             ScenarioError: If the vehicles do not fit.

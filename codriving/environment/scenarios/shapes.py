@@ -1,4 +1,4 @@
-"""Small geometry for those who lay out a road: turn a point about the middle, and bend a lane from here to there."""
+"""Geometry to lay out a road with: turn a point about the middle, and bend a lane from here to there."""
 
 import math
 
@@ -12,12 +12,7 @@ _STRAIGHT = 1e-6
 
 
 def turned(point: Point, angle: float) -> Point:
-    """Turn a point about the origin.
-
-    Args:
-        point: x and y [m].
-        angle: How far, from x towards y, which is clockwise on the screen, where y points down [rad].
-    """
+    """Turn a point [m] about the origin from x towards y [rad], clockwise on the screen, where y points down."""
     rotation = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     x, y = rotation @ np.array(point)
     return float(x), float(y)
@@ -27,9 +22,7 @@ def bend(start: Point, heading: float, end: Point) -> Straight | Arc:
     """Return the arc that leaves a point in a direction and leads to another point; a straight line if that is ahead.
 
     Args:
-        start: First point of the centre line [m].
-        heading: Direction there [rad].
-        end: Last point of the centre line [m].
+        heading: Direction at the start [rad].
 
     Raises:
         ScenarioError: If the end is the start or straight behind it.

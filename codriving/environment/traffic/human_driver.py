@@ -1,7 +1,7 @@
 """A human driver: highway-env's IDM and MOBIL, with its faults corrected."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from highway_env.road.road import Road
@@ -10,12 +10,9 @@ from highway_env.vehicle.objects import Obstacle, RoadObject
 
 from codriving.datatypes.road import LaneId
 from codriving.datatypes.scene import Start
-from codriving.environment.corrections import Corrections
 from codriving.environment.motion import STANDSTILL, clip
-from codriving.environment.traffic.body_ahead import body_ahead
-from codriving.environment.traffic.driver_profile import DriverProfile
-from codriving.environment.traffic.on_way import OnWay
-from codriving.environment.traffic.way import Way
+from codriving.environment.settings import Corrections, DriverProfile
+from codriving.environment.traffic.route_following import RouteFollower, RoutePath
 
 CREEP = 1.0
 """Below this speed a driver counts as standing [m/s]."""
@@ -24,11 +21,11 @@ GAP = 4.0
 """Time gap before which a driver who stands starts onto the lane beside [s]; so long it is in the way."""
 
 
-class HumanDriver(OnWay, IDMVehicle):
+class HumanDriver(RouteFollower, IDMVehicle):
     """An uncontrolled vehicle that shares nothing and follows its own route.
 
     Attributes:
-        waits_at: Arc length of the line at which the driver has been told to wait [m], or None.
+        waits_at: Arc length of the line at which the driver has to wait [m], or None.
         sight: How far ahead along the route it looks for bodies [m].
     """
 
@@ -37,21 +34,22 @@ class HumanDriver(OnWay, IDMVehicle):
 
     @classmethod
     def start(
-        cls, road: Road, start: Start, ways: Mapping[str, Way], profile: DriverProfile, corrections: Corrections
+        cls,
+        road: Road,
+        start: Start,
+        route_paths: Mapping[str, RoutePath],
+        profile: DriverProfile,
+        corrections: Corrections,
     ) -> "HumanDriver":
         """Put a human driver on the road; the start speed is the speed that the driver wants."""
-        way = ways[start.route]
-        x, y = way.path.position(start.position)
-        heading = float(way.path.heading(start.position))
-        driver = cls(road, [float(x), float(y)], heading, start.speed)
-        driver.take_way(start, ways, corrections)
+        driver = cls.place(road, start, route_paths, corrections)
         profile.apply(driver, to_class=not corrections.own_parameters)
         driver.sight = profile.sight
         driver.randomize_behavior()
         return driver
 
     def act(self, action: dict[str, float] | str | None = None) -> None:
-        """Steer along the route and follow whoever is ahead on it."""
+        """Steer along the route and follow the vehicle ahead on it."""
         if not self.corrections.route_leader or self.crashed:
             super().act(action)
             return
@@ -66,28 +64,24 @@ class HumanDriver(OnWay, IDMVehicle):
         self.action = {"steering": steering, "acceleration": clip(self.following_acceleration(), self.ACC_MAX)}
 
     def step(self, dt: float) -> None:
-        """Move by one simulation step.
-
-        Args:
-            dt: Simulation step [s].
-        """
+        """Move by one simulation step [s]."""
         self.timer += dt
         super().step(dt)
 
     def following_acceleration(self) -> float:
-        """Return IDM's acceleration behind the nearest body on the route, and before the line to wait at.
-
-        Returns:
-            Acceleration before clipping [m/s2].
-        """
+        """Return IDM's acceleration to the nearest body on the route and the line to wait at, unclipped [m/s2]."""
         leader, gap = body_ahead(self, self.road.vehicles + self.road.objects, self.sight)
         changing = self.lane_index != self.target_lane_index
         wanted = [0.0]
         if leader is not None and not (changing and self._leaves(leader)):
             # IDM counts from centre to centre; a body that crosses is met at its near side.
             wanted.append(self.gap_behind(leader) / max(gap + self.LENGTH, 0.01))
-        if not changing and self.lane_index == self.way.ending and self.way.lane_end < self.s + self.sight:
-            room = self.way.lane_end - self.s - self.LENGTH / 2
+        if (
+            not changing
+            and self.lane_index == self.route_path.ending
+            and self.route_path.lane_end < self.s + self.sight
+        ):
+            room = self.route_path.lane_end - self.s - self.LENGTH / 2
             wanted.append(self._gap_at(self.speed) / max(room + self.LENGTH, 0.01))
         if self.waits_at is not None:
             wanted.append(self._gap_at(self.speed) / max(self.waits_at - self.s + self.LENGTH / 2, 0.01))
@@ -130,6 +124,78 @@ class HumanDriver(OnWay, IDMVehicle):
         super().change_lane_policy()
 
     def _finds_gap(self, lane_index: LaneId) -> bool:
-        """Whether whoever comes on a lane is far enough behind; MOBIL only minds how hard it had to brake now."""
+        """Whether the vehicle behind on a lane is far enough away; MOBIL only minds how hard it had to brake now."""
         _, behind = self.road.neighbour_vehicles(self, lane_index)
         return behind is None or behind.lane_distance_to(self) - self.LENGTH > behind.speed * GAP
+
+
+BODY_MARGIN = 0.6
+"""Lateral room that a driver wants beside a body before it counts as out of the way [m]."""
+
+LARGE = 8.0
+"""Longer bodies may be in the way even if their centre is not near it [m]."""
+
+
+def body_ahead(driver: RouteFollower, others: Sequence[RoadObject], sight: float) -> tuple[RoadObject | None, float]:
+    """Find the nearest body on the route of a driver.
+
+    Args:
+        sight: How far the driver looks [m].
+
+    Returns:
+        The body, or None, and the free distance to it [m].
+    """
+    route_path, end = driver.route_path, len(driver.route_path.points) - 2
+    first = _row((driver.s - driver.LENGTH) / route_path.spacing, end)
+    last = _row((driver.s + sight) / route_path.spacing, end)
+    # The quick look must leave out no body that could be in the way; it doesn't know large bodies, other lanes than
+    # that of the route, nor what lies beyond the end of the route.
+    plain = abs(driver.shift) < 0.5 and last < end
+    x, y = driver.position.tolist()
+    seen = []
+    for other in others:
+        if other is not driver and other.solid:
+            px, py = other.position.tolist()
+            if math.hypot(px - x, py - y) < sight and (route_path.is_near(px, py) or not plain or other.LENGTH > LARGE):
+                seen.append((other, px, py))
+    best: tuple[RoadObject | None, float] = (None, math.inf)
+    if not seen:
+        return best
+    rows = slice(first, last + 2)
+    places = np.array([(px, py) for _, px, py in seen])
+    dx, dy = route_path.x[rows] - places[:, :1], route_path.y[rows] - places[:, 1:]
+    nearest = (dx**2 + dy**2).argmin(axis=1).tolist()
+    for (other, px, py), k in zip(seen, nearest, strict=True):
+        if 0 < k == last + 1 - first and last < end:
+            continue
+        gap = _gap(driver, other, px, py, first + k)
+        if gap < best[1]:
+            best = (other, gap)
+    return best
+
+
+def _gap(driver: RouteFollower, other: RoadObject, x: float, y: float, k: int) -> float:
+    """Free distance to a body closest to the k-th point of the route [m]; inf if it isn't ahead and in the way."""
+    route_path = driver.route_path
+    dx, dy = x - route_path.points[k][0], y - route_path.points[k][1]
+    heading = route_path.headings[k]
+    cos, sin = float(np.cos(heading)), float(np.sin(heading))
+    across = abs(dy * cos - dx * sin - driver.shift)
+    ahead = k * route_path.spacing + (dx * cos + dy * sin) - driver.s
+    if ahead <= 0 or across > _widest(driver, other):
+        return math.inf
+    half, side = other.LENGTH / 2, other.WIDTH / 2
+    turn = other.heading - heading
+    c, s = abs(float(np.cos(turn))), abs(float(np.sin(turn)))
+    if across > driver.WIDTH / 2 + (s * half + c * side) + BODY_MARGIN:
+        return math.inf
+    return float(ahead - (c * half + s * side) - driver.LENGTH / 2)
+
+
+def _widest(driver: RouteFollower, other: RoadObject) -> float:
+    """Largest lateral distance at which a body could be in the way, however it is turned [m]."""
+    return float(driver.WIDTH / 2 + other.LENGTH / 2 + other.WIDTH / 2 + BODY_MARGIN)
+
+
+def _row(row: float, end: int) -> int:
+    return int(min(max(row, 0), end))

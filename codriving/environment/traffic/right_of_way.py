@@ -1,4 +1,4 @@
-"""Who meets whom at the junction, and who can still wait before it."""
+"""Which vehicles meet at the junction, and which can still wait before it."""
 
 from collections.abc import Iterable
 
@@ -7,7 +7,7 @@ from highway_env.vehicle.behavior import IDMVehicle
 from numpy.typing import NDArray
 
 from codriving.datatypes.conflict import Relation
-from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.route_following import RouteFollower
 from codriving.geometry.road_map import RoadMap
 
 Array = NDArray[np.float64]
@@ -18,7 +18,7 @@ HORIZON = np.arange(0.25, 3.0, 0.25)
 LAST = float(HORIZON[-1])
 
 SIGHT = 25.0
-"""How far ahead a driver minds who is in the junction [m]."""
+"""How far ahead a driver minds vehicles in the junction [m]."""
 
 OVERSHOOT = 1.0
 """How far a driver may come over the line or into a zone and still wait there; the bodies do not touch yet [m]."""
@@ -30,24 +30,24 @@ GRID = 1.0
 """More than what the tables of a zone reach beyond its ends [m]."""
 
 
-def will_meet(road_map: RoadMap, one: OnWay, other: OnWay) -> bool:
+def will_meet(road_map: RoadMap, one: RouteFollower, other: RouteFollower) -> bool:
     """Whether two vehicles would be in a conflict zone together within three seconds.
 
     Vehicles that merely follow one another are left to the car-following model. A CAV is expected to keep its speed. A
-    human driver may also speed up: whoever has braked to wait would else be let go for its low speed, speed up, and be
+    human driver may also speed up: one who has braked to wait would else be let go for the low speed, speed up, and be
     in the way when it is too late to wait.
     """
     return meet(road_map, one, other, motions(one), motions(other))
 
 
-def meet(road_map: RoadMap, one: OnWay, other: OnWay, ones: Array, others: Array) -> bool:
+def meet(road_map: RoadMap, one: RouteFollower, other: RouteFollower, ones: Array, others: Array) -> bool:
     """Whether two vehicles would be in a conflict zone together, by where each may be soon.
 
     Args:
-        ones: The first one's ``motions``, handed over because they are the same against everybody.
+        ones: The first one's ``motions``, handed over because they are the same against all others.
     """
     reach_one, reach_other = ones[-1, -1] + GRID, others[-1, -1] + GRID
-    for zone in road_map.zones(one.way.route.id, other.way.route.id):
+    for zone in road_map.zones(one.route_path.route.id, other.route_path.route.id):
         if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
             continue
         if one.s > zone.exit_i or other.s > zone.exit_j or reach_one < zone.entry_i or reach_other < zone.entry_j:
@@ -58,7 +58,7 @@ def meet(road_map: RoadMap, one: OnWay, other: OnWay, ones: Array, others: Array
     return False
 
 
-def motions(vehicle: OnWay) -> Array:
+def motions(vehicle: RouteFollower) -> Array:
     """Where a vehicle may be on its route at the times of the horizon.
 
     Returns:
@@ -74,23 +74,19 @@ def motions(vehicle: OnWay) -> Array:
     return np.stack((steady, np.maximum(steady, faster)))
 
 
-def pace(vehicle: OnWay) -> float:
-    """Speed at which a vehicle is expected to go on: a driver who creeps or stands means to start.
-
-    Returns:
-        Speed [m/s].
-    """
+def pace(vehicle: RouteFollower) -> float:
+    """Return the speed at which a vehicle is expected to go on [m/s]: a driver who creeps or stands means to start."""
     return float(max(vehicle.speed, STARTING if isinstance(vehicle, IDMVehicle) else 0.0))
 
 
-def can_wait(driver: OnWay) -> bool:
+def can_wait(driver: RouteFollower) -> bool:
     """Whether a driver can still stop before the junction, its front over the line by a metre at most."""
-    room = driver.way.route.entry + OVERSHOOT - driver.s - driver.LENGTH / 2
+    room = driver.route_path.route.entry + OVERSHOOT - driver.s - driver.LENGTH / 2
     return bool(room > 0 and driver.speed**2 / (2 * driver.ACC_MAX) <= room)
 
 
-def occupied_ahead(road_map: RoadMap, driver: OnWay, others: Iterable[OnWay]) -> float | None:
-    """Find the nearest conflict zone on a driver's way that somebody is in, if the driver can still stop before it.
+def occupied_ahead(road_map: RoadMap, driver: RouteFollower, others: Iterable[RouteFollower]) -> float | None:
+    """Find the nearest occupied conflict zone on a driver's route, if the driver can still stop before it.
 
     Returns:
         Arc length of the driver's centre at which it must stand [m], or None.
@@ -100,7 +96,7 @@ def occupied_ahead(road_map: RoadMap, driver: OnWay, others: Iterable[OnWay]) ->
     for other in others:
         if other is driver:
             continue
-        for zone in road_map.zones(driver.way.route.id, other.way.route.id):
+        for zone in road_map.zones(driver.route_path.route.id, other.route_path.route.id):
             if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
                 continue
             inside = zone.entry_j < other.s < (zone.exit_j if zone.merge_j is None else zone.merge_j)

@@ -12,15 +12,15 @@ from highway_env.vehicle.kinematics import Vehicle
 from highway_env.vehicle.objects import Landmark, Obstacle, RoadObject
 
 from codriving.datatypes.road import Block
-from codriving.environment.connected_lanes import connected
-from codriving.environment.corrections import Corrections
+from codriving.environment.network import connected
+from codriving.environment.settings import Corrections
 from codriving.environment.traffic.human_driver import HumanDriver
-from codriving.environment.traffic.on_way import OnWay
 from codriving.environment.traffic.right_of_way import can_wait, meet, motions, occupied_ahead, will_meet
+from codriving.environment.traffic.route_following import RouteFollower
 from codriving.geometry.road_map import RoadMap
 
 ATTENTION = 5
-"""How often a driver looks who else is coming [Hz]."""
+"""How often a driver looks for other vehicles [Hz]."""
 
 
 class Traffic(RegulatedRoad):
@@ -35,11 +35,7 @@ class Traffic(RegulatedRoad):
         self._connected: dict[tuple[Any, ...], list[tuple[AbstractLane, float]]] = {}
 
     def step(self, dt: float) -> None:
-        """Move everybody by one simulation step.
-
-        Args:
-            dt: Simulation step [s].
-        """
+        """Move all vehicles by one simulation step [s]."""
         if not self.corrections.true_collisions:
             super().step(dt)
             return
@@ -54,7 +50,7 @@ class Traffic(RegulatedRoad):
     def enforce_road_rules(self) -> None:
         """Tell drivers of lower priority to wait, at the entry of the junction only if that is corrected.
 
-        CAVs are never told anything, as in highway-env: they must treat the right of way by their own reasoning.
+        CAVs are not made to wait, as in highway-env: they must treat the right of way by their own reasoning.
         """
         if not self.road_map.road.regulated:
             return
@@ -66,7 +62,7 @@ class Traffic(RegulatedRoad):
                 if vehicle.waits_at is not None:
                     vehicle.target_speed = vehicle.lane.speed_limit
                 vehicle.waits_at = None
-        # Where everybody may be soon is worked out once, since nothing below changes it.
+        # Where each may be soon is worked out once, since nothing below changes it.
         soon = {vehicle: motions(vehicle) for vehicle in self.vehicles} if self.corrections.route_prediction else {}
         for one, other in combinations(self.vehicles, 2):
             if not (isinstance(one, HumanDriver) or isinstance(other, HumanDriver)):
@@ -77,12 +73,12 @@ class Traffic(RegulatedRoad):
             elif not self.is_conflict_possible(one, other):
                 continue
             yielding = self.respect_priorities(one, other)
-            # Whoever is in the junction cannot give way any more; then the other one does.
+            # A vehicle in the junction cannot give way any more; then the other one does.
             for vehicle in (yielding, other if yielding is one else one):
                 if isinstance(vehicle, HumanDriver) and can_wait(vehicle):
-                    vehicle.waits_at = vehicle.way.route.entry
+                    vehicle.waits_at = vehicle.route_path.route.entry
                     break
-                if not isinstance(vehicle, HumanDriver) and vehicle.s < vehicle.way.route.entry:
+                if not isinstance(vehicle, HumanDriver) and vehicle.s < vehicle.route_path.route.entry:
                     break
         for vehicle in self.vehicles:
             if isinstance(vehicle, HumanDriver) and vehicle.waits_at is None:
@@ -90,7 +86,7 @@ class Traffic(RegulatedRoad):
                 if place is not None:
                     vehicle.waits_at = place + vehicle.DISTANCE_WANTED - vehicle.LENGTH / 2
 
-    def is_conflict_possible(self, v1: OnWay, v2: OnWay) -> bool:
+    def is_conflict_possible(self, v1: RouteFollower, v2: RouteFollower) -> bool:
         """Whether two vehicles would meet within three seconds at constant speed, along their routes if corrected."""
         if self.corrections.route_prediction:
             return will_meet(self.road_map, v1, v2)

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from codriving.datatypes.road import Turn
 from codriving.datatypes.vehicle import Kind
-from codriving.environment.scenarios.gaps import LENGTH, braking_gap
 from codriving.environment.scenarios.intersection import Intersection
+from codriving.environment.scenarios.placement import LENGTH, braking_gap
 from codriving.errors import ConfigError, ScenarioError
 from codriving.geometry.road_map import road_map
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from codriving.environment.scenarios.pace import Pace, require_interval, require_range
-from codriving.errors import ConfigError
+from codriving.environment.scenarios.pace import Pace
+from codriving.errors import ConfigError, require_interval, require_range
 
 GOOD: dict[str, Any] = {
     "simulation_frequency": 10.0,

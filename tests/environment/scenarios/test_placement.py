@@ -9,9 +9,7 @@ import pytest
 from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
 from codriving.datatypes.scene import Start
 from codriving.datatypes.vehicle import Kind
-from codriving.environment.scenarios.crowd import Crowd
-from codriving.environment.scenarios.gaps import braking_gap, leaves_room, room_on_lane
-from codriving.environment.scenarios.placement import place
+from codriving.environment.scenarios.placement import Crowd, braking_gap, leaves_room, place
 from codriving.errors import ScenarioError
 
 
@@ -41,9 +39,9 @@ def test_spacing_holds_whatever_the_speeds() -> None:
 
 
 def test_room_on_a_lane() -> None:
-    assert room_on_lane(0.0, 5.0, 10.0) == 1
-    assert room_on_lane(55.0, 5.0, 10.0) == 6, "11 m apart: 5 m of car and a gap of 6 m"
-    assert room_on_lane(55.0, 0.0, 20.0) == 3
+    assert Crowd(2, (0, 0), (20.0, 20.0), (5.0, 9.0), (5.0, 9.0), 10.0).room == 1
+    assert Crowd(2, (0, 0), (20.0, 75.0), (5.0, 9.0), (6.0, 9.0), 10.0).room == 6, "11 m apart: 5 m of car, gap of 6 m"
+    assert Crowd(2, (0, 0), (20.0, 75.0), (0.0, 9.0), (6.0, 9.0), 20.0).room == 3
 
 
 LANES = tuple(Lane((name, "end", 0), Straight((0, y), (100, y))) for name, y in (("r", 0.0), ("q", 50.0)))

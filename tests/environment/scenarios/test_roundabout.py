@@ -65,8 +65,8 @@ def test_everybody_has_room_also_round_the_ring(
     seed: int, cavs: int, hdvs: int, on_ring: float, spacing: float
 ) -> None:
     people = {"cavs": cavs, "hdvs": (0, hdvs), "cav_speed": (0.0, 9.0), "hdv_speed": (6.0, 9.0)}
-    of = roundabout(**people, on_ring=on_ring, spacing=spacing, radius=20.0, start=(20.0, 75.0))
     try:
+        of = roundabout(**people, on_ring=on_ring, spacing=spacing, radius=20.0, start=(20.0, 75.0))
         scene = of.scene(seed)
     except ScenarioError:
         assert cavs + hdvs > 8, "so few always fit"

@@ -17,7 +17,7 @@ from codriving.datatypes.trajectory import Track
 from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
 from codriving.geometry.box import TRUE
-from codriving.geometry.progress import progress
+from codriving.geometry.path import progress
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.ordered import Ordered
 from codriving.reasoning.conflicts import is_open

@@ -1,10 +1,63 @@
-"""How the human drivers of a run drive: the parameters of IDM and MOBIL."""
+"""Settings of the environment: control gains, human drivers, and which faults of highway-env 1.12 are corrected."""
 
 from dataclasses import dataclass
 
 from highway_env.vehicle.behavior import IDMVehicle
+from highway_env.vehicle.controller import ControlledVehicle
 
-from codriving.errors import ConfigError
+from codriving.errors import require, require_range
+
+
+@dataclass(frozen=True, slots=True)
+class ControlGains:
+    """How hard a vehicle follows its target speed and lane.
+
+    Attributes:
+        speed: K_a in a = K_a (v_r - v) [1/s]; the paper's value is 1.6.
+        heading: K_h in delta = arcsin(K_h (phi_r - phi) l / 2v) [1/s]; the paper's value is 5.
+        lateral: Gain from the lateral offset to the lateral speed that sets phi_r [1/s]; highway-env's value is 1/0.6.
+
+    Raises:
+        ConfigError: If a gain is not positive or makes the controller unstable.
+    """
+
+    speed: float
+    heading: float
+    lateral: float
+
+    def __post_init__(self) -> None:
+        for name, most in (("speed", 5), ("heading", 10), ("lateral", 5)):
+            value = getattr(self, name)
+            require(0 < value <= most, f"control.{name} must be above 0 and at most {most} 1/s, got {value:g}")
+
+    def apply(self, vehicle: ControlledVehicle) -> None:
+        """Set the gains on one vehicle; its class stays as it is."""
+        vehicle.KP_A = self.speed
+        vehicle.KP_HEADING = self.heading
+        vehicle.KP_LATERAL = self.lateral
+
+
+@dataclass(frozen=True, slots=True)
+class Corrections:
+    """One switch for every fault; all on in ``conf/config.yaml``.
+
+    With every switch off a vehicle moves as highway-env's own classes do, bit for bit.
+
+    Attributes:
+        own_parameters: highway-env's intersection writes driver parameters into the class, for every later scenario of
+            the process. On: they belong to the driver.
+    """
+
+    no_reverse: bool
+    route_prediction: bool
+    route_leader: bool
+    route_lane: bool
+    yield_at_entry: bool
+    start_into_gap: bool
+    connected_lanes: bool
+    own_parameters: bool
+    remove_at_sink: bool
+    true_collisions: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,9 +101,7 @@ class DriverProfile:
             "safe_braking": (0.1, 9),
         }
         for name, (low, high) in ranges.items():
-            value = getattr(self, name)
-            if not low <= value <= high:
-                raise ConfigError(f"drivers.{name} must be {low:g} to {high:g}, got {value:g}")
+            require_range(f"drivers.{name}", getattr(self, name), low, high)
 
     def apply(self, driver: IDMVehicle, to_class: bool) -> None:
         """Set the parameters.

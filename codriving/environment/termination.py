@@ -1,16 +1,16 @@
-"""Who has arrived, who has crashed, and whether the episode is over: the exact outcome."""
+"""Which vehicles have arrived or crashed, and whether the episode is over: the exact outcome."""
 
 from collections.abc import Iterable
 
 from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.collisions import find_block_collisions, find_collisions
-from codriving.environment.traffic.on_way import OnWay
+from codriving.environment.traffic.route_following import RouteFollower
 from codriving.environment.traffic.traffic import Traffic
 
 
-class Judge:
-    """Watches one episode and takes off the road who has arrived, left or been towed away.
+class Termination:
+    """Watches one episode and takes vehicles off the road that have arrived, left or been towed away.
 
     Args:
         time_limit: Longest duration [s].
@@ -26,26 +26,19 @@ class Judge:
         self._time_limit, self._dt = time_limit, dt
         self._bystanders: list[Collision] = []
 
-    def judge(self, traffic: Traffic, time: float) -> Outcome | None:
-        """Look at the road after a simulation step.
-
-        Args:
-            time: Present time [s].
-
-        Returns:
-            The outcome if the episode is over, else None.
-        """
+    def check(self, traffic: Traffic, time: float) -> Outcome | None:
+        """Look at the road after a simulation step; return the outcome if the episode is over, else None."""
         collision = self._collide(traffic, time)
         crashed = () if collision is None else (collision.striker, collision.struck)
         gone = []
         for vehicle in traffic.vehicles:
-            if vehicle.s >= vehicle.way.route.goal and vehicle.id in self._waiting:
+            if vehicle.s >= vehicle.route_path.route.goal and vehicle.id in self._waiting:
                 if vehicle.id in crashed:
                     continue
                 self.arrivals[vehicle.id] = time
                 self._waiting.discard(vehicle.id)
                 gone.append(vehicle)
-            elif vehicle.s >= vehicle.way.end and traffic.corrections.remove_at_sink:
+            elif vehicle.s >= vehicle.route_path.end and traffic.corrections.remove_at_sink:
                 gone.append(vehicle)
         lost = tuple(v.id for v in traffic.vehicles if v.id in self._waiting and _is_off_road(v))
         if gone:
@@ -91,6 +84,6 @@ class Judge:
         )
 
 
-def _is_off_road(vehicle: OnWay) -> bool:
+def _is_off_road(vehicle: RouteFollower) -> bool:
     """Whether the centre of a vehicle has left its lane by more than half a lane."""
     return bool(abs(vehicle.offset - vehicle.shift) > vehicle.lane.width)

@@ -1,0 +1,245 @@
+"""Route following: a route laid out on the road, and vehicles that know where they are along it."""
+
+import math
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise, zip_longest
+from typing import Self
+
+import numpy as np
+from highway_env.road.lane import AbstractLane
+from highway_env.road.road import Road
+from highway_env.vehicle.objects import RoadObject
+from numpy.typing import NDArray
+
+from codriving.datatypes.road import LaneId, Route, beside
+from codriving.datatypes.scene import Start
+from codriving.datatypes.vehicle import Kind
+from codriving.environment.motion import PlainMotion
+from codriving.environment.settings import Corrections
+from codriving.errors import ScenarioError
+from codriving.geometry.path import Path
+from codriving.geometry.road_map import RoadMap
+
+SINK_MARGIN = 8.0
+"""A vehicle leaves the road this far before the end of its route [m]."""
+
+CELL = 8.0
+"""Side of the squares in which a route notes where it passes [m]."""
+
+NEARBY = 10.0
+"""From a square that a route does not note, every point of it is farther than this [m]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RoutePath:
+    """A route, its centre line, and where each of its lanes begins.
+
+    Attributes:
+        starts: Arc length at which each lane of the route begins [m].
+        x: The points of the centre line (n,) [m].
+        y: The same (n,) [m].
+        points: The same one by one, which is faster for a few of them [m].
+        headings: Heading at each point [rad].
+        spacing: Arc length between two points [m].
+        lane_end: Arc length at which a lane ends that has to be left before [m]; inf if there is none.
+        ending: That lane, or None.
+    """
+
+    route: Route
+    path: Path
+    starts: tuple[float, ...]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    points: tuple[tuple[float, float], ...]
+    headings: tuple[float, ...]
+    spacing: float
+    cells: frozenset[tuple[int, int]]
+    lane_end: float = math.inf
+    ending: LaneId | None = None
+
+    @property
+    def end(self) -> float:
+        """Arc length at which a vehicle leaves the road at the latest [m]."""
+        return self.path.length - SINK_MARGIN
+
+    def lane_at(self, s: float) -> LaneId:
+        """Return the lane of the route at an arc length [m]."""
+        return self.route.lanes[max(0, bisect_right(self.starts, s) - 1)]
+
+    def changes_after(self, s: float) -> int:
+        """Return how many lane changes the route still needs after an arc length [m]."""
+        lanes = self.route.lanes
+        return sum(1 for k, (a, b) in enumerate(pairwise(lanes), start=1) if beside(a, b) and self.starts[k] > s)
+
+    def plan(self, s: float) -> list[LaneId]:
+        """Return the lanes still to be driven after an arc length [m]; at a lane change, the lane beside only."""
+        lanes = self.route.lanes[max(0, bisect_right(self.starts, s) - 1) :]
+        return [lane for lane, after in zip_longest(lanes, lanes[1:]) if after is None or not beside(lane, after)]
+
+    def is_near(self, x: float, y: float) -> bool:
+        """Whether a point [m] may be within 10 m of the centre line; the answer is quick and errs towards yes."""
+        return (x // CELL, y // CELL) in self.cells
+
+    def follow(self, x: float, y: float, near: float) -> tuple[float, float]:
+        """Return arc length and lateral offset [m] of a point that has moved on a little.
+
+        The same numbers as ``path.project(x, y, near)``, by walking from the last arc length.
+        """
+        points, last = self.points, len(self.points) - 1
+        k = min(max(round(near / self.spacing), 0), last)
+        here = _square(points[k], x, y)
+        for direction in (1, -1):
+            while 0 <= k + direction <= last and (there := _square(points[k + direction], x, y)) < here:
+                k, here = k + direction, there
+        return self.path.project_at(k, x, y)
+
+
+def _square(point: tuple[float, float], x: float, y: float) -> float:
+    dx, dy = point[0] - x, point[1] - y
+    return dx * dx + dy * dy
+
+
+def route_path(road_map: RoadMap, route: str) -> RoutePath:
+    """Lay a route out on its road.
+
+    Raises:
+        ScenarioError: If the goal lies where vehicles have already left the road.
+    """
+    found, path = road_map.routes[route], road_map.paths[route]
+    if found.goal > path.length - SINK_MARGIN:
+        raise ScenarioError(
+            f"route {route!r} of road {road_map.road.name!r} must have its goal {SINK_MARGIN:g} m or more before its "
+            f"end at {path.length:.2f} m, where vehicles leave the road; got goal {found.goal:g} m"
+        )
+    starts = tuple(road_map.lane_start(route, lane) for lane in found.lanes)
+    x, y = path.points.T.copy()
+    points = tuple(zip(x.tolist(), y.tolist(), strict=True))
+    left = [k for k, (a, b) in enumerate(pairwise(found.lanes), start=1) if beside(a, b)]
+    lane_end = starts[left[0]] + found.taper / 2 if left else math.inf
+    ending = found.lanes[left[0] - 1] if left else None
+    headings = tuple(path.headings.tolist())
+    return RoutePath(found, path, starts, x, y, points, headings, path.spacing, _cells(x, y), lane_end, ending)
+
+
+def _cells(x: NDArray[np.float64], y: NDArray[np.float64]) -> frozenset[tuple[int, int]]:
+    """Return the squares that hold a place at most `NEARBY` from some point, and a few more."""
+    around = range(-math.ceil(NEARBY / CELL), math.ceil(NEARBY / CELL) + 1)
+    passed = set(zip((x // CELL).astype(int).tolist(), (y // CELL).astype(int).tolist(), strict=True))
+    return frozenset((i + di, j + dj) for i, j in passed for di in around for dj in around)
+
+
+class RouteFollower(PlainMotion):
+    """Mixin over highway-env's controlled vehicles.
+
+    Attributes:
+        s: Arc length along the route [m].
+        offset: Lateral offset from the route [m].
+        shift: Lateral offset of the present lane's centre from the route [m]; 0 on the lane of the route itself.
+    """
+
+    kind = Kind.HDV
+    target_lane_index: LaneId
+    id: str
+    route_path: RoutePath
+    route_paths: Mapping[str, RoutePath]
+    s: float
+    offset: float
+    shift: float = 0.0
+    corrections: Corrections
+
+    @classmethod
+    def place(
+        cls,
+        road: Road,
+        start: Start,
+        route_paths: Mapping[str, RoutePath],
+        corrections: Corrections,
+        **settings: list[float],
+    ) -> Self:
+        """Put a vehicle on the road, at the start of its route."""
+        route_path = route_paths[start.route]
+        x, y = route_path.path.position(start.position)
+        heading = float(route_path.path.heading(start.position))
+        vehicle = cls(road, [float(x), float(y)], heading, start.speed, **settings)
+        vehicle.id, vehicle.route_paths, vehicle.corrections = start.id, route_paths, corrections
+        vehicle.route_path, vehicle.s, vehicle.offset = route_path, start.position, 0.0
+        vehicle._plan()
+        if corrections.route_lane:
+            vehicle._find_lane()
+            vehicle.target_lane_index = vehicle.lane_index
+        return vehicle
+
+    def _plan(self) -> None:
+        """Hand the rest of the route to highway-env."""
+        # From the present lane on: highway-env takes any other road if the plan does not begin with it or the next one.
+        # No number where there are several lanes: it would bind drivers to that lane, and pull back CAVs that left it.
+        # Where the route needs a lane change, the lane to change to: there drivers change as soon as it is safe.
+        graph = self.road.network.graph
+        left = self.route_path.route.lanes if self.route_path.changes_after(self.s) else ()
+        self.route = [
+            (a, b, k if len(graph[a][b]) == 1 or any(beside((a, b, k), lane) for lane in left) else None)
+            for a, b, k in self.route_path.plan(self.s)
+        ]
+
+    def follow_target_lane(self) -> None:
+        """Take the route along the lane that is steered for, if another lane than that of the route was chosen.
+
+        Of the routes along that lane which end where the present one does, one that needs the fewest further changes,
+        and had the fewest before.
+        """
+        target = (self.target_lane_index[0], self.target_lane_index[1], int(self.target_lane_index[2]))
+        present = self.route_path.lane_at(self.s)
+        leaves = (
+            self.route_path.ending is not None
+            and target != self.route_path.ending
+            and self.s < self.route_path.lane_end
+        )
+        if not (beside(target, present) or (target == present and leaves)):
+            return
+        x, y = self.position.tolist()
+        options = []
+        for name, route_path in self.route_paths.items():
+            if target in route_path.route.lanes and route_path.route.lanes[-1][1] == self.route_path.route.lanes[-1][1]:
+                s, offset = route_path.path.project(x, y)
+                if route_path.lane_at(s) == target:
+                    options.append((route_path.changes_after(s), route_path.changes_after(-math.inf), name, s, offset))
+        if options:
+            *_, name, self.s, self.offset = min(options)
+            self.route_path = self.route_paths[name]
+            self._plan()
+            self._find_lane()
+
+    def on_state_update(self) -> None:
+        """Update the lane after a step of the dynamics."""
+        if not self.corrections.route_lane:
+            super().on_state_update()
+        x, y = self.position.tolist()
+        self.s, self.offset = self.route_path.follow(x, y, self.s)
+        if self.corrections.route_lane:
+            self._find_lane()
+
+    def _find_lane(self) -> None:
+        start, end, index = self.route_path.lane_at(self.s)
+        lanes = self.road.network.graph[start][end]
+        self.shift = 0.0
+        if len(lanes) > 1:
+            sides = [lane.local_coordinates(self.position) for lane in lanes]
+            index = min(range(len(lanes)), key=lambda i: abs(sides[i][1]))
+            self.shift = self.offset - sides[index][1]
+        self.lane_index = (start, end, index)
+        self.lane = lanes[index]
+
+    def step(self, dt: float) -> None:
+        """Move by one simulation step [s], never backwards if that is corrected."""
+        self.move(dt)
+        if self.corrections.no_reverse and self.speed < 0:
+            self.speed = 0.0
+
+    def lane_distance_to(self, other: RoadObject | None, lane: AbstractLane | None = None) -> float:
+        """Return the distance to another vehicle, positive if it is ahead [m]; along the route if corrected."""
+        if other is None or lane is not None or not self.corrections.route_leader:
+            return float(super().lane_distance_to(other, lane))
+        s, _ = self.route_path.path.project(float(other.position[0]), float(other.position[1]))
+        return s - self.s
