@@ -15,14 +15,14 @@ PUSHED = 3.0
 
 def find_collisions(
     vehicles: list[RouteFollower], time: float, dt: float, by_footprint: bool
-) -> list[tuple[RouteFollower, RouteFollower, Collision]]:
+) -> list[tuple[tuple[RouteFollower, ...], Collision]]:
     """Find every pair of vehicles that have collided.
 
     Args:
         time: Present time, for the record [s].
         dt: Time since the last search [s].
     """
-    found = []
+    found: list[tuple[tuple[RouteFollower, ...], Collision]] = []
     pushed = 0.0 if by_footprint else PUSHED
     placed = [(vehicle, *vehicle.position.tolist(), float(vehicle.diagonal) / 2) for vehicle in vehicles]
     for (one, x, y, half), (other, x2, y2, half2) in combinations(placed, 2):
@@ -32,22 +32,22 @@ def find_collisions(
         if _overlap(one, other) if by_footprint else one.crashed and other.crashed:
             striker, struck = responsibility(one, other, dt)
             pair = "-".join(sorted((one.kind, other.kind)))
-            found.append((striker, struck, Collision(time, striker.id, struck.id, pair)))
+            found.append(((striker, struck), Collision(time, striker.id, struck.id, pair)))
     return found
 
 
 def find_block_collisions(
     vehicles: list[RouteFollower], obstacles: list[RoadObject], time: float, by_footprint: bool
-) -> list[tuple[RouteFollower, Collision]]:
+) -> list[tuple[tuple[RouteFollower, ...], Collision]]:
     """Find every vehicle that has run into something solid that stands on the road."""
-    found = []
+    found: list[tuple[tuple[RouteFollower, ...], Collision]] = []
     for k, obstacle in enumerate(obstacles, start=1):
         for vehicle in vehicles:
             if abs(vehicle.position[0] - obstacle.position[0]) > vehicle.diagonal + obstacle.diagonal:
                 continue
             if _overlap(vehicle, obstacle) if by_footprint else vehicle.crashed and obstacle.crashed:
                 record = Collision(time, vehicle.id, f"block{k}", f"{vehicle.kind}-block")
-                found.append((vehicle, record))
+                found.append(((vehicle,), record))
     return found
 
 

@@ -54,21 +54,20 @@ class Termination:
         return None
 
     def _collide(self, traffic: Traffic, time: float) -> Collision | None:
-        """Tow away human drivers who hit each other or a block; return the first collision of a CAV."""
-        first = None
+        """Tow away human drivers that hit each other or a block; return the first collision of a CAV."""
         exact = traffic.corrections.true_collisions
-        for striker, struck, collision in find_collisions(traffic.vehicles, time, self._dt, exact):
-            if isinstance(striker, ConnectedVehicle) or isinstance(struck, ConnectedVehicle):
+        pair = self._tow(traffic, find_collisions(traffic.vehicles, time, self._dt, exact))
+        block = self._tow(traffic, find_block_collisions(traffic.vehicles, traffic.objects, time, exact))
+        return pair or block
+
+    def _tow(self, traffic: Traffic, found: list[tuple[tuple[RouteFollower, ...], Collision]]) -> Collision | None:
+        first = None
+        for vehicles, collision in found:
+            if any(isinstance(v, ConnectedVehicle) for v in vehicles):
                 first = first or collision
             else:
                 self._bystanders.append(collision)
-                traffic.vehicles = [v for v in traffic.vehicles if v not in (striker, struck)]
-        for vehicle, collision in find_block_collisions(traffic.vehicles, traffic.objects, time, exact):
-            if isinstance(vehicle, ConnectedVehicle):
-                first = first or collision
-            else:
-                self._bystanders.append(collision)
-                traffic.vehicles = [v for v in traffic.vehicles if v is not vehicle]
+                traffic.vehicles = [v for v in traffic.vehicles if v not in vehicles]
         return first
 
     def _end(

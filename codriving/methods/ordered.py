@@ -13,7 +13,7 @@ from codriving.reasoning.execution.lane_requests import LaneRequests
 from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.agreement import agreement
 from codriving.reasoning.ordering.problem import pose
-from codriving.reasoning.ordering.protocol import Ordering, OrderRule
+from codriving.reasoning.ordering.protocol import OrderRule
 from codriving.reasoning.perception import Perception
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.plans import PLANS
@@ -54,18 +54,16 @@ class Ordered(Method):
 
         agreed = agreement(moment, problem, ordering.times, reason, True)
         drive = self.executor.drive(moment, ordering)
-        changes = self._lane_changes(moment, ordering, agreed, drive)
+        changes = self._lane_changes(moment, agreed, drive)
         situations = tuple(_situation(moment, name, agreed, drive, changes.get(name)) for name in moment.scenes)
         decisions = tuple(
             changes.get(name) or Decision(name, drive.actions[name], drive.reasons[name]) for name in moment.scenes
         )
         return ReasonedDeliberation(world.time, world.step, situations, decisions, {**ordering.counts, **drive.counts})
 
-    def _lane_changes(
-        self, moment: Moment, ordering: Ordering, agreed: PassingOrder, drive: Drive
-    ) -> dict[str, Decision]:
+    def _lane_changes(self, moment: Moment, agreed: PassingOrder, drive: Drive) -> dict[str, Decision]:
         """Return the lane changes that are wanted, pass the gap test and have been granted."""
-        requests = self._requests.gather(moment, ordering, agreed, drive.expected, self._lag)
+        requests = self._requests.gather(moment, agreed, drive.expected, self._lag)
         if not requests:
             return {}
         granted = self.rule.grant(requests)

@@ -61,6 +61,7 @@ def test_south_straight_against_west_straight(intersection: RoadMap) -> None:
 
 
 @given(st.floats(0.25, math.pi - 0.25), st.floats(-1, 1))
+@settings(deadline=None)
 def test_limits_of_skew_crossings_are_exact(angle: float, shift: float) -> None:
     (zone,) = find_zones(_straight(0, shift, 0), _straight(0, 0, angle), TRUE)
     # Minkowski sum of the two boxes, cut along the direction of either path.

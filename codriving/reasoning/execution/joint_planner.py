@@ -8,11 +8,20 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.geometry.box import TRUE
 from codriving.reasoning.conflicts import is_open
-from codriving.reasoning.execution.violations import SIZES, Array, Meeting, Steps, first_true, minds_humans
+from codriving.reasoning.execution.violations import (
+    SIZES,
+    Array,
+    Meeting,
+    Steps,
+    first_true,
+    meetings_behind,
+    minds_humans,
+)
 from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.protocol import JointPlan
-from codriving.reasoning.prediction.expectation import CLEARS, is_behind, worth
+from codriving.reasoning.prediction.expectation import is_behind, worth
 from codriving.reasoning.prediction.plans import PLANS
 from codriving.reasoning.prediction.rollout import Plan
 from codriving.reasoning.safety.safety_input import then_stop
@@ -21,9 +30,6 @@ from codriving.reasoning.safety.same_lane import LANE_END_GAP
 Flags = NDArray[np.bool_]
 
 LANE_CHANGES = frozenset((Action.LANE_LEFT, Action.LANE_RIGHT))
-
-BODY = 5.0
-"""Length of a vehicle [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,18 +155,14 @@ class JointPlans:
     def _meetings(self, first: str, second: str) -> list[Meeting]:
         """Where one CAV has to mind another one that has been planned before it."""
         if (first, second) not in self._met:
-            found = []
-            short = round(CLEARS / self.moment.forecast.sample) + 1
-            n = self.moment.forecast.steps + 1
-            for r, (route, place) in enumerate(self.vehicles[second].routes):
-                for way, there in self.vehicles[first].routes:
-                    for zone in self.moment.road_map.zones(route, way):
-                        if is_behind(zone, place, there):
-                            until = n if r == 0 else short
-                            found.append(Meeting((zone,), place, there, until, self._following, 0.0))
-                        elif r == 0 and is_open(zone, place, there):
-                            smaller = tuple(self.moment.road_map.zones(route, way, size) for size in SIZES[1:])
-                            found.append(Meeting((zone,), place, there, n, self._lag, self.pad, smaller))
+            ego, other, zones = self.vehicles[second], self.vehicles[first], self.moment.road_map.zones
+            found = meetings_behind(self.moment, ego, other, self._following)
+            n, (route, place) = self.moment.forecast.steps + 1, ego.routes[0]
+            for way, there in other.routes:
+                for zone in zones(route, way):
+                    if is_open(zone, place, there) and not is_behind(zone, place, there):
+                        sizes = ((zone,), *(zones(route, way, size) for size in SIZES[1:]))
+                        found.append(Meeting(sizes, place, there, n, self._lag, self.pad))
             self._met[first, second] = found
         return self._met[first, second]
 
@@ -196,19 +198,12 @@ class JointPlans:
 
 def drives_ahead(moment: Moment, vehicles: Mapping[str, TrackedVehicle]) -> set[tuple[str, str]]:
     """Return the pairs of CAVs (ahead, behind) that follow one another, whatever the order says."""
-    found = set()
-    for behind in vehicles.values():
-        for ahead in vehicles.values():
-            if ahead.id == behind.id:
-                continue
-            for route, place in behind.routes:
-                for other, there in ahead.routes:
-                    zones = moment.road_map.zones(route, other)
-                    if any(is_behind(zone, place, there) for zone in zones):
-                        found.add((ahead.id, behind.id))
-            if _is_alongside(moment, behind, ahead):
-                found.add((ahead.id, behind.id))
-    return found
+    return {
+        (ahead.id, behind.id)
+        for behind in vehicles.values()
+        for ahead in vehicles.values()
+        if ahead.id != behind.id and (meetings_behind(moment, behind, ahead, 0) or _is_alongside(moment, behind, ahead))
+    }
 
 
 def _is_alongside(moment: Moment, changing: TrackedVehicle, other: TrackedVehicle) -> bool:
@@ -221,7 +216,7 @@ def _is_alongside(moment: Moment, changing: TrackedVehicle, other: TrackedVehicl
         return False
     for zone in moment.road_map.zones(route, way):
         if zone.merge_i is not None and zone.merge_j is not None and is_open(zone, place, there):
-            return zone.merge_j - there < zone.merge_i - place + BODY
+            return zone.merge_j - there < zone.merge_i - place + TRUE.length
     return False
 
 

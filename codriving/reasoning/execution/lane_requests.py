@@ -5,8 +5,9 @@ from collections.abc import Mapping
 from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.scene_description import Role, SceneDescription
+from codriving.datatypes.vehicle import VehicleState
+from codriving.geometry.box import TRUE
 from codriving.reasoning.moment import Moment
-from codriving.reasoning.ordering.protocol import Ordering
 from codriving.reasoning.ordering.request import Request
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.idm import IntelligentDriver
@@ -25,9 +26,6 @@ COOL_DOWN = 2.0
 SLOWEST = 3.0
 """Below this speed lanes are not changed just to get farther, since both would be blocked [m/s]."""
 
-BODY = 5.0
-"""Length of a vehicle [m]."""
-
 DRIVER = IntelligentDriver()
 
 
@@ -41,7 +39,6 @@ class LaneRequests:
     def gather(
         self,
         moment: Moment,
-        ordering: Ordering,
         agreed: PassingOrder,
         expected: Mapping[str, tuple[Expected, ...]],
         lag: int,
@@ -108,20 +105,15 @@ def _overlaps(
     scenes: Mapping[str, SceneDescription], name: str, wanted: Mapping[str, tuple[Action, float]]
 ) -> frozenset[str]:
     """Return the CAVs whose lane change needs the same piece of road at the same time."""
-    found = set()
-    mine = scenes[name]
-    lanes = _lanes(mine, wanted[name][0])
-    for other in wanted:
-        theirs = scenes[other]
-        if other == name or theirs.ego.lane[:2] != mine.ego.lane[:2]:
-            continue
-        room = BODY + MARGIN + HEADWAY * max(mine.ego.speed, theirs.ego.speed)
-        away = ((mine.ego.x - theirs.ego.x) ** 2 + (mine.ego.y - theirs.ego.y) ** 2) ** 0.5
-        if away < room and lanes & _lanes(theirs, wanted[other][0]):
-            found.add(other)
-    return frozenset(found)
+    mine = scenes[name].ego
 
+    def lanes(cav: str) -> set[int]:
+        index = scenes[cav].ego.lane[2]
+        return {index, index + SIDES[wanted[cav][0]]}
 
-def _lanes(scene: SceneDescription, action: Action) -> frozenset[int]:
-    index = scene.ego.lane[2]
-    return frozenset((index, index + SIDES[action]))
+    def near(other: VehicleState) -> bool:
+        room = TRUE.length + MARGIN + HEADWAY * max(mine.speed, other.speed)
+        return bool(((mine.x - other.x) ** 2 + (mine.y - other.y) ** 2) ** 0.5 < room)
+
+    others = [other for other in wanted if other != name and scenes[other].ego.lane[:2] == mine.lane[:2]]
+    return frozenset(other for other in others if near(scenes[other].ego) and lanes(name) & lanes(other))

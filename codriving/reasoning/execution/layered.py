@@ -3,6 +3,7 @@
 from codriving.datatypes.action import Action
 from codriving.datatypes.scene_description import Role
 from codriving.errors import require_range
+from codriving.geometry.box import TRUE
 from codriving.reasoning.execution.executor import Drive, Executor
 from codriving.reasoning.execution.joint_planner import JointPlans
 from codriving.reasoning.execution.planned import drive_of
@@ -11,9 +12,6 @@ from codriving.reasoning.ordering.problem import window
 from codriving.reasoning.ordering.protocol import Ordering
 from codriving.reasoning.safety.safety_input import then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
-
-BODY = 5.0
-"""Length of a vehicle [m]."""
 
 LATE = 0.1
 """Difference of times that does not count [s]."""
@@ -108,7 +106,7 @@ def _occupied(moment: Moment, name: str) -> str:
     """Return the vehicle that is inside the first zone that a vehicle comes to."""
     ahead = [c for c in moment.conflicts[name] if c.distances[0] > 0]
     nearest = min((c.distances[0] for c in ahead), default=0.0)
-    inside = [c.other for c in ahead if c.distances[0] <= nearest + BODY and c.distances[1] <= 0]
+    inside = [c.other for c in ahead if c.distances[0] <= nearest + TRUE.length and c.distances[1] <= 0]
     return inside[0] if inside else ""
 
 

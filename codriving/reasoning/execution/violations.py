@@ -23,6 +23,9 @@ Steps = NDArray[np.int64]
 SIZES: tuple[Footprint, ...] = (PLANNING, BODY, TRUE)
 """Sizes of vehicles for planning; a smaller one is taken where vehicles are already closer together than the larger."""
 
+ROOM = 0.5
+"""Room that a driver who gives way leaves to the zone [m]."""
+
 
 def first_true(flags: NDArray[np.bool_]) -> Steps:
     """Return the first step at which a flag of each row is set."""
@@ -60,43 +63,41 @@ def meets(zone: ConflictZone, ego: Array, low: Array, high: Array, lag: int, pad
 
 @dataclass(frozen=True, slots=True)
 class Meeting:
-    """A stretch that two CAVs share."""
+    """A stretch that two vehicles share, with its zones for each size of vehicles, the largest first."""
 
-    zones: tuple[ConflictZone, ...]
-    place: float  # Its arc length [m]
+    zones: tuple[tuple[ConflictZone, ...], ...]
+    place: float  # Arc length of the one that goes second [m]
     there: float  # Arc length of the one that goes first [m]
     until: int
     lag: int
     pad: float  # Additional room along the route [m]
-    smaller: tuple[tuple[ConflictZone, ...], ...] = ()
 
     def steps(self, travels: Array, first: Array) -> Steps:
-        """Return when each plan first comes too close.
-
-        Args:
-            travels: Distance of each plan over time (plans, n) [m].
-            first: Distance of the one that goes first over time (n,) [m].
-        """
-        found = self._in(self.zones, travels, first, self.lag, self.pad)
-        for k, zones in enumerate(self.smaller):
+        """Return when each plan (plans, n) [m] first comes too close to the one that goes first (n,) [m]."""
+        n = travels.shape[1]
+        for k, zones in enumerate(self.zones):
+            # As long as the bodies have room the margins stay; a vehicle that is closer than that may only get away.
+            lag, pad = (self.lag, self.pad) if k < 2 else (0, 0.0)
+            found: Steps = np.full(len(travels), n)
+            for zone in zones:
+                motion = self.place + travels[:, : self.until]
+                steps = passes_too_early(zone, motion, self.there + first, lag, pad)
+                found = np.minimum(found, np.where(steps < self.until, steps, n))
             if found.any():
                 break
-            # As long as the bodies have room the margins stay; a vehicle that is closer than that may only get away.
-            found = self._in(zones, travels, first, *((self.lag, self.pad) if k == 0 else (0, 0.0)))
-        return found
-
-    def _in(self, zones: tuple[ConflictZone, ...], travels: Array, first: Array, lag: int, pad: float) -> Steps:
-        n = travels.shape[1]
-        found: Steps = np.full(len(travels), n)
-        for zone in zones:
-            motion = self.place + travels[:, : self.until]
-            steps = passes_too_early(zone, motion, self.there + first, lag, pad)
-            found = np.minimum(found, np.where(steps < self.until, steps, n))
         return found
 
 
-ROOM = 0.5
-"""Room that a driver who gives way leaves to the zone [m]."""
+def meetings_behind(moment: Moment, behind: TrackedVehicle, ahead: TrackedVehicle, lag: int) -> list[Meeting]:
+    """Return where a vehicle drives behind another one; a lane that it is leaving counts until its body is off it."""
+    n, short = moment.forecast.steps + 1, round(CLEARS / moment.forecast.sample) + 1
+    return [
+        Meeting(((zone,),), place, there, short if r else n, lag, 0.0)
+        for r, (route, place) in enumerate(behind.routes)
+        for other, there in ahead.routes
+        for zone in moment.road_map.zones(route, other)
+        if is_behind(zone, place, there)
+    ]
 
 
 def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, following: int, pad: float) -> Steps:
@@ -108,25 +109,12 @@ def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, 
     found: Steps = np.full(len(travels), travels.shape[1])
     people = {m.id: m for m in moment.vehicles[ego.id].values() if not m.is_cav}
     for other in people.values():
-        found = np.minimum(found, _drives_ahead(moment, ego, other, travels, following))
+        low, _ = moment.forecast.likely(other.speed)
+        for meeting in meetings_behind(moment, ego, other, following):
+            found = np.minimum(found, meeting.steps(travels, low))
     for c in moment.conflicts[ego.id]:
         if c.other in people:
             found = np.minimum(found, _in_zone(moment, c, people[c.other], travels, lag, pad))
-    return found
-
-
-def _drives_ahead(moment: Moment, ego: TrackedVehicle, other: TrackedVehicle, travels: Array, following: int) -> Steps:
-    n = travels.shape[1]
-    found: Steps = np.full(len(travels), n)
-    low, _ = moment.forecast.likely(other.speed)
-    for k, (route, place) in enumerate(ego.routes):
-        # A lane that the CAV is leaving is minded until its body is off it.
-        until = n if k == 0 else round(CLEARS / moment.forecast.sample) + 1
-        for way, there in other.routes:
-            for zone in moment.road_map.zones(route, way):
-                if is_behind(zone, place, there):
-                    steps = passes_too_early(zone, place + travels[:, :until], there + low, following, 0.0)
-                    found = np.minimum(found, np.where(steps < until, steps, n))
     return found
 
 

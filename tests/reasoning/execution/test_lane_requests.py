@@ -30,9 +30,8 @@ NOBODY = PassingOrder((), ())
 def ask(world: Junction, *cars: Car, requests: LaneRequests | None = None, time: float = 0.0) -> list[Request]:
     """What is asked for on a road without conflicts."""
     moment = moment_of(world.thoughts(*cars), time)
-    empty = Ordering((), {})
-    driven = planned().drive(moment, empty)
-    return (requests or LaneRequests()).gather(moment, empty, NOBODY, driven.expected, 8)
+    driven = planned().drive(moment, Ordering((), {}))
+    return (requests or LaneRequests()).gather(moment, NOBODY, driven.expected, 8)
 
 
 def gain(world: Junction, *cars: Car, action: Action = LEFT) -> float:

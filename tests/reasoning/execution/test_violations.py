@@ -159,7 +159,7 @@ def meeting(
     junction: Junction, place: float, there: float, lag: int = 5, pad: float = 1.0, until: int = SAMPLES
 ) -> Meeting:
     zones = [tuple(junction.road_map.zones(*ROUTES, size)) for size in SIZES]
-    return Meeting(zones[0], place, there, until, lag, pad, tuple(zones[1:]))
+    return Meeting(tuple(zones), place, there, until, lag, pad)
 
 
 def straight(*speeds: float) -> np.ndarray:
