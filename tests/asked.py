@@ -8,13 +8,10 @@ from typing import Any
 from worlds import FULL, Junction
 
 from codriving.datatypes.parts import Model
-from codriving.llm.language_model import Offline
 from codriving.llm.ledger import Ledger
 from codriving.llm.question import Question
 from codriving.llm.scripted import Script, ScriptedChat
 from codriving.methods.codriving import CoDriving
-from codriving.methods.language_model.ports import ports
-from codriving.reasoning.ordering.negotiation import AgreedOrder
 from codriving.reasoning.sharing.cda import CdaLevel
 
 
@@ -53,15 +50,10 @@ def reasoned(world: Junction, script: Script, **change: Any) -> Reasoned:
     """The method with a model behind its ports, ready for an episode; toggles that differ from full are named."""
     model = Scripted(ScriptedChat(script), ask_plain=change.pop("ask_plain", False))
     level = CdaLevel(**{**FULL, **change})
-    method = CoDriving(level, Offline(), None, 1.5)
+    method = CoDriving(level, model, None, 1.5)
     method.reset(world.road_map, world.model, 0)
-    pipeline = method._pipeline
-    coordinator, decider, ledger = ports(model, level.binding, level.intent_sharing)
-    assert ledger is not None
-    if level.negotiation:
-        pipeline.negotiation = AgreedOrder(coordinator)
-    pipeline.decider = decider
-    return Reasoned(method, model.scripted, ledger)
+    assert method._model is not None
+    return Reasoned(method, model.scripted, method._model.ledger)
 
 
 def shown(question: Question) -> str:

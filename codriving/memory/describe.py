@@ -1,19 +1,18 @@
-"""A situation as it is remembered: the same things that a decider is told, without a name, a place or a route."""
+"""A situation as it is remembered: the same facts that a decider gets, without a name, a place or a route."""
 
 from math import cos, hypot, isfinite, sin
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.experience import Description
-from codriving.datatypes.scene_description import Role, TrackedVehicle
+from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
 from codriving.datatypes.situation import Situation
 
-NOBODY = "nobody"
 DRIVERS = {"CAV": "CAV", "HDV": "human", None: "unknown"}
 
 
 def describe(situation: Situation) -> Description:
-    """Describe a situation."""
+    """Describe a situation in words, and by the numbers and kinds that the words are made of."""
     numbers: dict[str, float] = {}
     kinds: dict[str, str] = {}
     scene = _scene(situation, numbers, kinds)
@@ -23,38 +22,35 @@ def describe(situation: Situation) -> Description:
 
 
 def _scene(situation: Situation, numbers: dict[str, float], kinds: dict[str, str]) -> str:
-    """The CAV itself, and who is next to it on its lane and anywhere else."""
-    told, ego = situation.scene, situation.scene.ego
-    numbers["speed"], numbers["target"] = ego.speed, told.intent.target_speed
-    words = [f"Driving {ego.speed:.1f} m/s, target {told.intent.target_speed:.1f} m/s"]
+    """The CAV itself, and the vehicles next to it on its lane and on others."""
+    scene, ego, target = situation.scene, situation.scene.ego, situation.scene.intent.target_speed
+    numbers["speed"], numbers["target"] = ego.speed, target
+    words = [f"Driving {ego.speed:.1f} m/s, target {target:.1f} m/s"]
     for role, name, where in ((Role.LEADING, "lead", "ahead"), (Role.REARING, "rear", "behind")):
-        other = next((n for n in told.neighbours if n.role is role), None)
+        other = next((n for n in scene.neighbours if n.role is role), None)
         if other is None or other.gap is None:
-            words.append(f"{NOBODY} {where} on the lane")
+            words.append(f"nobody {where} on the lane")
             continue
         numbers[f"{name}_gap"], numbers[f"{name}_speed"] = max(other.gap, 0.0), other.speed
         words.append(f"a vehicle {other.gap:.0f} m {where} on the lane at {other.speed:.1f} m/s")
-    if told.must_change is not None:
-        numbers["room"] = told.must_change.room
-        words.append(f"the lane has to be changed within {told.must_change.room:.0f} m")
-    words += _beside(situation, numbers)
-    words += _nearest(situation, numbers)
+    if scene.must_change is not None:
+        numbers["room"] = scene.must_change.room
+        words.append(f"the lane has to be changed within {scene.must_change.room:.0f} m")
+    words += _beside(scene, numbers) + _nearest(scene, numbers)
     kinds["allowed"] = " ".join(sorted(str(action) for action in situation.allowed))
-    words.append(f"allowed: {kinds['allowed']}")
-    return "; ".join(words) + "."
+    return "; ".join([*words, f"allowed: {kinds['allowed']}"]) + "."
 
 
-def _beside(situation: Situation, numbers: dict[str, float]) -> list[str]:
-    """Who is next ahead and next behind on the lanes beside, where lanes are known."""
-    told, ego = situation.scene, situation.scene.ego
+def _beside(scene: SceneDescription, numbers: dict[str, float]) -> list[str]:
+    """The vehicles next ahead and next behind on the lanes beside, where lanes are known."""
     words = []
-    for lane in told.adjacent_lanes:
-        side = "left" if lane[2] < ego.lane[2] else "right"
+    for lane in scene.adjacent_lanes:
+        side = "left" if lane[2] < scene.ego.lane[2] else "right"
         numbers[f"{side}_lane"] = 1.0
         gaps: dict[str, tuple[float, float]] = {}
-        for n in (n for n in told.neighbours if n.lane == lane):
-            along = cos(ego.heading) * (n.x - ego.x) + sin(ego.heading) * (n.y - ego.y)
-            gap = max(abs(along) - (n.length + ego.length) / 2, 0.0)
+        for n in (n for n in scene.neighbours if n.lane == lane):
+            along, _ = _offset(scene, n)
+            gap = max(abs(along) - (n.length + scene.ego.length) / 2, 0.0)
             where = "ahead" if along > 0 else "behind"
             gaps[where] = min(gaps.get(where, (gap, n.speed)), (gap, n.speed))
         for where, (gap, speed) in sorted(gaps.items()):
@@ -65,24 +61,24 @@ def _beside(situation: Situation, numbers: dict[str, float]) -> list[str]:
     return words
 
 
-def _nearest(situation: Situation, numbers: dict[str, float]) -> list[str]:
-    """Whoever is nearest of those ahead, wherever they drive: all that is seen where no conflicts are."""
-    ego = situation.scene.ego
-    along, across = cos(ego.heading), sin(ego.heading)
-
-    def place(n: TrackedVehicle) -> tuple[float, float]:
-        dx, dy = n.x - ego.x, n.y - ego.y
-        return along * dx + across * dy, along * dy - across * dx
-
-    ahead = [n for n in situation.scene.neighbours if n.role is not Role.LEADING and place(n)[0] > 0]
+def _nearest(scene: SceneDescription, numbers: dict[str, float]) -> list[str]:
+    """The nearest of all vehicles ahead but the leader: all that is seen where no conflicts are."""
+    ego = scene.ego
+    ahead = [n for n in scene.neighbours if n.role is not Role.LEADING and _offset(scene, n)[0] > 0]
     if not ahead:
         return []
     nearest = min(ahead, key=lambda n: (hypot(n.x - ego.x, n.y - ego.y), n.id))
-    numbers["near_ahead"], numbers["near_right"] = place(nearest)
+    far, right = numbers["near_ahead"], numbers["near_right"] = _offset(scene, nearest)
     numbers["near_speed"] = nearest.speed
-    side = "right" if numbers["near_right"] > 0 else "left"
-    far, aside = numbers["near_ahead"], abs(numbers["near_right"])
-    return [f"the nearest other vehicle {far:.0f} m ahead and {aside:.0f} m to the {side} at {nearest.speed:.1f} m/s"]
+    side = "right" if right > 0 else "left"
+    where = f"{far:.0f} m ahead and {abs(right):.0f} m to the {side}"
+    return [f"the nearest other vehicle {where} at {nearest.speed:.1f} m/s"]
+
+
+def _offset(scene: SceneDescription, n: TrackedVehicle) -> tuple[float, float]:
+    """How far ahead and how far to the right of the CAV a vehicle is [m]."""
+    dx, dy, along, across = n.x - scene.ego.x, n.y - scene.ego.y, cos(scene.ego.heading), sin(scene.ego.heading)
+    return along * dx + across * dy, along * dy - across * dx
 
 
 def _conflict(situation: Situation, numbers: dict[str, float], kinds: dict[str, str]) -> str:
@@ -116,7 +112,7 @@ def _words(c: Conflict, driver: str, numbers: dict[str, float]) -> str:
 
 
 def _order(situation: Situation, numbers: dict[str, float], kinds: dict[str, str]) -> str:
-    """Who goes first in the most urgent conflict, and how many go before the CAV altogether."""
+    """Which vehicle goes first in the most urgent conflict, and how many go before the CAV altogether."""
     ego = situation.scene.ego.id
     before = {p.first for p in situation.order.precedences if p.second == ego}
     numbers["before"] = len(before)

@@ -39,9 +39,9 @@ def read_memory(path: Path) -> Reading:
         MemoryFileError: If it is missing, damaged or of another version.
     """
     with closing(open_file(path, write=False)) as connection:
-        told = about(connection)
+        said = about(connection)
         try:
-            name, dimension = told["embedder"], int(told["dimension"])
+            name, dimension = said["embedder"], int(said["dimension"])
             rows = connection.execute("SELECT * FROM interactions ORDER BY id").fetchall()
             snapshot = load(connection, dimension, name, [row[0] for row in rows])
         except (KeyError, ValueError) as error:

@@ -47,7 +47,7 @@ CREATE INDEX sightings_of ON sightings (experience);
 
 
 def create(path: Path, embedder: str, dimension: int) -> None:
-    """Make an empty file; if several processes do, the first wins and nobody ever sees half of it.
+    """Make an empty file; if several processes do, the first wins, and half of it is never seen.
 
     Raises:
         MemoryFileError: If it cannot be written.
@@ -73,7 +73,7 @@ def create(path: Path, embedder: str, dimension: int) -> None:
 def open_file(path: Path, write: bool) -> sqlite3.Connection:
     """Open a file that is there.
 
-    A writer that was killed may have left a journal beside it; whoever opens it next puts it back as it was.
+    A writer that was killed may have left a journal beside it; opening it for writing puts it back as it was.
 
     Raises:
         MemoryFileError: If it is missing, no such file, or of another version.
@@ -81,7 +81,8 @@ def open_file(path: Path, write: bool) -> sqlite3.Connection:
     if not path.is_file():
         raise MemoryFileError(f"there is no file of memories {path}; make one with codriving memory build")
     try:
-        connection = connect(f"{path.resolve().as_uri()}?mode={'rw' if write or _journal(path).exists() else 'ro'}")
+        mode = "rw" if write or path.with_name(f"{path.name}-journal").exists() else "ro"
+        connection = connect(f"{path.resolve().as_uri()}?mode={mode}")
         try:
             _check(path, connection)
         except BaseException:
@@ -139,10 +140,6 @@ def damaged(path: Path, error: Exception) -> MemoryFileError:
 def unwritable(path: Path, error: Exception) -> MemoryFileError:
     """The error for a file that cannot be written."""
     return MemoryFileError(f"cannot write the memory {path}: {error}; make room, or name another file")
-
-
-def _journal(path: Path) -> Path:
-    return path.with_name(f"{path.name}-journal")
 
 
 def _check(path: Path, connection: sqlite3.Connection) -> None:

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.experience import Experience, Interaction
 from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Account, CaseMemory, Method, Model
 from codriving.datatypes.road import Road
@@ -13,8 +12,9 @@ from codriving.datatypes.situation import Decision, Situation
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
-from codriving.methods.experience_log import ExperienceLog
-from codriving.methods.language_model.ports import check_prompts, ports, prompt_files
+from codriving.methods.experience_log import ConflictLog, learn
+from codriving.methods.language_model.ports import ports
+from codriving.methods.language_model.prompted_model import check_model, prompt_files, prompted
 from codriving.methods.pipeline import Pipeline
 from codriving.reasoning.decision.rules import Decider, decide_one
 from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
@@ -44,11 +44,7 @@ class CoDriving(Method):
     def __init__(self, cda: CdaLevel, llm: Model, memory: CaseMemory | None, margin: float) -> None:
         if not 0 <= margin <= 5:
             raise ConfigError(f"margin must be 0 to 5 s, got {margin:g}")
-        check_prompts(llm)
-        if memory is not None and memory.reflections and llm.chat() is None:
-            raise ConfigError(
-                "memory.reflection=llm needs a language model; set llm= to one, or memory.reflection=rules"
-            )
+        check_model(llm, memory)
         self.cda, self.llm, self.memory, self.margin = cda, llm, memory, margin
         self.variant, self.reasoner = cda.variant, llm.name
         self.remembers = memory.label if memory is not None else ""
@@ -59,12 +55,8 @@ class CoDriving(Method):
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Fill the slots for a new episode."""
         forecast = Forecast(model, (*CONTINUATIONS, *PLANS))
-        coordinator, decider, ledger = ports(
-            llm=self.llm,
-            binding=self.cda.binding,
-            sees_conflicts=self.cda.intent_sharing,
-        )
-        self._ledger = ledger
+        self._model = prompted(self.llm)
+        coordinator, decider = ports(self._model, self.llm.ask_plain, self.cda.binding, self.cda.intent_sharing)
         self._pipeline = Pipeline(
             perception=Perception(
                 road_map=road_map,
@@ -78,10 +70,10 @@ class CoDriving(Method):
             decider=decider,
             margin=self.margin,
             memory=self.memory,
-            ledger=ledger,
+            ledger=self._model.ledger if self._model is not None else None,
         )
         self._road_map, self._seed = road_map, seed
-        self._log = ExperienceLog(road_map, model) if self.memory is not None and self.memory.learns else None
+        self._log = ConflictLog(road_map, model) if self.memory is not None and self.memory.learns else None
         if self.memory is not None:
             self.memory.begin(seed)
 
@@ -98,26 +90,18 @@ class CoDriving(Method):
     def conclude(self, world: WorldState, outcome: Outcome) -> Account:
         if self._log is None or self.memory is None:
             return {}, []
-        experiences = self._log.conclude(world, outcome.collision)
-        counts, lines = self._reflect(experiences, world.time)
-        interaction = Interaction(self._road_map.road.name, self._seed, self.name, self.variant, self.reasoner)
-        new = self.memory.learn(interaction, experiences)
-        return {**counts, "experiences": len(experiences), "experiences_new": new}, lines
+        experiences = self._log.conclude(world, outcome)
+        account: Account = {}, []
+        if self.memory.reflections and self._model is not None:
+            from codriving.methods.language_model.reflection import reflect
 
-    def _reflect(self, experiences: list[Experience], time: float) -> Account:
-        """Let a language model write the lessons of mistakes, in place, if the memory wants that."""
-        chat = self.llm.chat()
-        if self.memory is None or not self.memory.reflections or chat is None or self._ledger is None:
-            return {}, []
-        from codriving.llm.prompts.render import load_prompts
-        from codriving.methods.language_model.reflection import Reflection
-
-        prompts = load_prompts(self.llm.prompts)
-        experiences[:] = Reflection(chat, prompts, self._ledger, self.memory.reflections).reflect(experiences)
-        return self._ledger.close_step(time)
+            experiences = reflect(self._model, experiences, self.memory.reflections)
+            account = self.unfinished_step(world.time)
+        learnt = learn(self.memory, self, self._road_map.road.name, self._seed, experiences)
+        return {**account[0], **learnt}, account[1]
 
     def unfinished_step(self, time: float) -> Account:
-        return self._ledger.close_step(time) if self._ledger is not None else ({}, [])
+        return self._model.ledger.close_step(time) if self._model is not None else ({}, [])
 
 
 class _ForOne(Decider):

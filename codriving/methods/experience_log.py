@@ -1,11 +1,14 @@
-"""Looks on while an episode is driven, and judges at its end what each action did (paper Section III-D.1)."""
+"""What every CAV knew and decided in one episode, and what of that is worth remembering at its end."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.experience import Experience, Verdict
-from codriving.datatypes.outcome import Collision
+from codriving.datatypes.experience import Experience, Interaction, Verdict
+from codriving.datatypes.outcome import Collision, Outcome
+from codriving.datatypes.parts import CaseMemory, Method
 from codriving.datatypes.scene_description import Role
 from codriving.datatypes.situation import Decision, Situation
 from codriving.datatypes.world import WorldState
@@ -24,69 +27,120 @@ FASTER_THAN: Mapping[Action | None, tuple[Action, ...]] = {
 """What would have been faster than an action."""
 
 
-class ExperienceLog:
-    """One episode as it is looked back on.
+@dataclass(frozen=True, slots=True)
+class LoggedDecision:
+    """One decision of one CAV.
 
-    Effects are judged with all states and the intents of all CAVs, whatever the CDA level hides from those who decide:
-    what came of an action is seen from outside. A human driver's route is not known here either. What is *remembered*
-    of a situation is only what the CAV was told.
+    Attributes:
+        time: Simulated time [s].
     """
 
-    def __init__(self, road_map: RoadMap, model: DrivingModel) -> None:
-        self._road_map, self._model = road_map, model
-        self._tracking, self._sharing = Tracking(road_map), SharedStates()
-        self._steps: dict[str, list[HistoryStep]] = {}
-        self._told: dict[str, list[tuple[int, Situation]]] = {}
-        self._begun: float | None = None
+    time: float
+    step: int
+    situation: Situation
+    decision: Decision
+
+
+class ExperienceLog(ABC):
+    """The decisions of one episode; a method says which of them are remembered, and with which lesson."""
+
+    def __init__(self) -> None:
+        self.decisions: dict[str, list[LoggedDecision]] = {}
 
     def note(self, world: WorldState, situations: Sequence[Situation], decisions: Sequence[Decision]) -> None:
         """Note one decision step."""
-        told = {s.scene.ego.id: (s, d.action) for s, d in zip(situations, decisions, strict=True)}
-        self._look(world, told)
-        for name, (situation, _) in told.items():
-            self._told.setdefault(name, []).append((world.step, situation))
+        for situation, decision in zip(situations, decisions, strict=True):
+            logged = LoggedDecision(world.time, world.step, situation, decision)
+            self.decisions.setdefault(decision.ego, []).append(logged)
 
-    def conclude(self, world: WorldState, collision: Collision | None) -> list[Experience]:
-        """Judge everything that was decided.
+    def conclude(self, world: WorldState, outcome: Outcome) -> list[Experience]:
+        """Return what is worth remembering, by step and id of the CAV."""
+        return sorted(self.experiences(world, outcome), key=lambda e: (e.step, e.ego))
 
-        Returns:
-            What is worth keeping, by step and id of the CAV.
-        """
+    @abstractmethod
+    def experiences(self, world: WorldState, outcome: Outcome) -> list[Experience]:
+        """Return what is worth remembering, in any order."""
+
+
+class ConflictLog(ExperienceLog):
+    """CoDrivingLLM's: judges at the end of an episode what each action did to a conflict (paper Section III-D.1).
+
+    Effects are judged with all states and the intents of all CAVs, whatever the CDA level hides from the deciders:
+    what came of an action is seen from outside. A human driver's route is not known here either. What is *remembered*
+    of a situation is only what the CAV knew.
+    """
+
+    def __init__(self, road_map: RoadMap, model: DrivingModel) -> None:
+        super().__init__()
+        self._road_map, self._model = road_map, model
+        self._tracking, self._sharing = Tracking(road_map), SharedStates()
+        self._steps: dict[str, list[HistoryStep]] = {}
+        self._begun: float | None = None
+
+    def note(self, world: WorldState, situations: Sequence[Situation], decisions: Sequence[Decision]) -> None:
+        super().note(world, situations, decisions)
+        self._look(world, {d.ego: (s, d.action) for s, d in zip(situations, decisions, strict=True)})
+
+    def experiences(self, world: WorldState, outcome: Outcome) -> list[Experience]:
         self._look(world, {})
         found = []
-        for name, told in self._told.items():
-            way = DecisionHistory(tuple(self._steps[name]), self._model.decision_interval, self._crash(name, collision))
-            for k, (step, situation) in enumerate(told):
-                action = way.steps[k].action
-                assert action is not None
-                effect = effect_of(way, k)
+        for name, logged in self.decisions.items():
+            collision = self._own_collision(name, outcome.collision)
+            history = DecisionHistory(tuple(self._steps[name]), self._model.decision_interval, collision)
+            for k, one in enumerate(logged):
+                action = one.decision.action
+                effect = effect_of(history, k)
                 verdict = verdict_of(effect, action)
                 if verdict is not Verdict.NEUTRAL:
-                    found.append(Experience(describe(situation), action, verdict, effect, LESSONS[verdict], step, name))
-        return sorted(found, key=lambda e: (e.step, e.ego))
+                    described = describe(one.situation)
+                    found.append(Experience(described, action, verdict, effect, LESSONS[verdict], one.step, name))
+        return found
 
-    def _look(self, world: WorldState, told: dict[str, tuple[Situation, Action]]) -> None:
+    def _look(self, world: WorldState, decided: Mapping[str, tuple[Situation, Action]]) -> None:
         if self._begun is None:
             self._begun = world.time
         views = self._sharing.detections(world, self._model)
         scenes = describe_scenes(world, views, world.intents, self._tracking)
-        everybody = {v.id: v for v in world.vehicles}
         for name, scene in scenes.items():
-            situation, action = told.get(name, (None, None))
-            self._steps.setdefault(name, []).append(
-                HistoryStep(
-                    ego=scene.ego,
-                    others={other: state for other, state in everybody.items() if other != name},
-                    conflicts=find_conflicts(scene, self._road_map),
-                    lead_gap=next((n.gap for n in scene.neighbours if n.role is Role.LEADING), None),
-                    action=action,
-                    could_go=situation is not None and any(a in situation.allowed for a in FASTER_THAN.get(action, ())),
-                )
+            situation, action = decided.get(name, (None, None))
+            step = HistoryStep(
+                ego=scene.ego,
+                others={vehicle.id: vehicle for vehicle in world.vehicles if vehicle.id != name},
+                conflicts=find_conflicts(scene, self._road_map),
+                lead_gap=next((n.gap for n in scene.neighbours if n.role is Role.LEADING), None),
+                action=action,
+                could_go=situation is not None and any(a in situation.allowed for a in FASTER_THAN.get(action, ())),
             )
+            self._steps.setdefault(name, []).append(step)
 
-    def _crash(self, name: str, collision: Collision | None) -> OwnCollision | None:
+    def _own_collision(self, name: str, collision: Collision | None) -> OwnCollision | None:
         if collision is None or name not in (collision.striker, collision.struck) or self._begun is None:
             return None
         strikes = name == collision.striker
         other = collision.struck if strikes else collision.striker
         return OwnCollision(collision.time - self._begun, other, strikes)
+
+
+def recall(memory: CaseMemory | None, situations: Sequence[Situation], most: int | None = None) -> list[Situation]:
+    """Put what is remembered of similar situations into each (paper Algorithm 1).
+
+    Args:
+        most: How many memories each situation gets; None for all that the memory recalls.
+    """
+    if memory is None or not situations:
+        return list(situations)
+    found = zip(situations, memory.recall(situations), strict=True)
+    return [replace(situation, memories=memories[:most]) if memories else situation for situation, memories in found]
+
+
+def learn(
+    memory: CaseMemory, method: Method, scenario: str, seed: int, experiences: Sequence[Experience]
+) -> dict[str, float]:
+    """Put the experiences of an episode into a memory.
+
+    Returns:
+        Counters by column.
+    """
+    interaction = Interaction(scenario, seed, method.name, method.variant, method.reasoner)
+    new = memory.learn(interaction, experiences)
+    return {"experiences": len(experiences), "experiences_new": new}

@@ -1,13 +1,13 @@
 """The paper's algorithm: share states, share intents, negotiate, check, recall, decide (Algorithm 1)."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.llm.ledger import Ledger
+from codriving.methods.experience_log import recall
 from codriving.reasoning.decision.rules import Decider
 from codriving.reasoning.ordering.negotiation import Negotiation
 from codriving.reasoning.perception import Perception
@@ -39,9 +39,10 @@ class Pipeline:
         orders = self.negotiation.orders(moment)
         lag = round(self.margin / moment.forecast.sample)
         expected = expect_all(moment, orders, lag)
-        situations = self._remembering(
-            [self._situation(safety_input(moment, ego, orders[ego], expected[ego], lag)) for ego in moment.scenes]
-        )
+        situations = [
+            self._situation(safety_input(moment, ego, orders[ego], expected[ego], lag)) for ego in moment.scenes
+        ]
+        situations = recall(self.memory, situations)
         decisions = tuple(self.decider.decide(situations))
         counts, lines = self.ledger.close_step(world.time) if self.ledger is not None else ({}, [])
         if self.memory is not None:
@@ -50,16 +51,7 @@ class Pipeline:
                 "recalled": sum(len(s.memories) for s in situations),
                 "reconsidered": sum(bool(d.recalled) for d in decisions),
             }
-        return ReasonedDeliberation(world.time, world.step, situations, decisions, counts, tuple(lines))
-
-    def _remembering(self, situations: Sequence[Situation]) -> tuple[Situation, ...]:
-        """Put what is remembered of like situations beside each (paper Algorithm 1)."""
-        if self.memory is None:
-            return tuple(situations)
-        found = self.memory.recall(situations)
-        return tuple(
-            replace(s, memories=memories) if memories else s for s, memories in zip(situations, found, strict=True)
-        )
+        return ReasonedDeliberation(world.time, world.step, tuple(situations), decisions, counts, tuple(lines))
 
     def _situation(self, given: SafetyInput) -> Situation:
         return Situation(

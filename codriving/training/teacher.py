@@ -14,13 +14,14 @@ from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
+from codriving.methods.language_model.prompted_model import prompted
 from codriving.methods.single_vehicle.method import Driver, SingleVehicle
 from codriving.reasoning.prediction.forecast import HORIZON
 from codriving.reasoning.prediction.rollout import rollout
 from codriving.training.curriculum import Linear
 
 if TYPE_CHECKING:
-    from codriving.methods.language_model.model_decider import ModelDecider
+    from codriving.methods.language_model.model_decider import CheckedDecider
 
 
 class Teacher(Protocol):
@@ -101,12 +102,10 @@ def _weighed(situation: Situation, model: DrivingModel) -> Situation:
     return replace(situation, assessments=tuple(weighed))
 
 
-def _decider(llm: Model) -> "ModelDecider | None":
-    chat = llm.chat()
-    if chat is None:
+def _decider(llm: Model) -> "CheckedDecider | None":
+    model = prompted(llm)
+    if model is None:
         return None
-    from codriving.llm.ledger import Ledger
-    from codriving.llm.prompts.render import load_prompts
-    from codriving.methods.language_model.model_decider import ModelDecider
+    from codriving.methods.language_model.model_decider import CheckedDecider
 
-    return ModelDecider(chat, load_prompts(llm.prompts), Ledger(), llm.ask_plain, sees_conflicts=True)
+    return CheckedDecider(model, llm.ask_plain, sees_conflicts=True)

@@ -21,7 +21,8 @@ from codriving.memory.effect import LESSONS
 from codriving.memory.features import FeatureEmbedder
 from codriving.memory.snapshot import open_snapshot
 from codriving.methods.codriving import CoDriving
-from codriving.methods.language_model.reflection import Reflection
+from codriving.methods.language_model.prompted_model import PromptedModel
+from codriving.methods.language_model.reflection import reflect
 from codriving.reasoning.sharing.cda import CdaLevel
 
 
@@ -40,7 +41,7 @@ LEARNT = [
 
 def test_the_worst_mistakes_are_reflected_on_and_nothing_else() -> None:
     chat, ledger = ScriptedChat(teacher), Ledger()
-    found = Reflection(chat, Prompts(), ledger, 3).reflect(LEARNT)
+    found = reflect(PromptedModel(chat, Prompts(), ledger), LEARNT, 3)
     taught = [e.step for e in found if "Yield earlier." in e.lesson]
     assert taught == [1, 3, 5]
     assert all(e.lesson.startswith(LESSONS[e.verdict]) for e in found)
@@ -51,7 +52,7 @@ def test_the_worst_mistakes_are_reflected_on_and_nothing_else() -> None:
 
 def test_the_model_is_told_what_came_of_it_and_no_names() -> None:
     chat = ScriptedChat(teacher)
-    Reflection(chat, Prompts(), Ledger(), 1).reflect(LEARNT)
+    reflect(PromptedModel(chat, Prompts(), Ledger()), LEARNT, 1)
     text = "\n".join(m.content for m in chat.questions[0].messages)
     assert "1.5 s later it was in a collision" in text
     assert "The CAV chose FASTER." in text
@@ -62,14 +63,14 @@ def test_the_model_is_told_what_came_of_it_and_no_names() -> None:
 @pytest.mark.parametrize("said", ["{}", '{"lesson": " "}', "nothing of the kind"])
 def test_without_a_usable_answer_the_comment_of_the_rules_stays(said: str) -> None:
     ledger = Ledger()
-    assert Reflection(ScriptedChat(lambda _: said), Prompts(), ledger, 9).reflect(LEARNT) == LEARNT
+    assert reflect(PromptedModel(ScriptedChat(lambda _: said), Prompts(), ledger), LEARNT, 9) == LEARNT
     assert ledger.close_step(0.0)[0]["fallbacks"] == 4
 
 
 def test_a_server_that_does_not_answer_ends_the_episode() -> None:
     chat = ScriptedChat(lambda _: ModelUnavailableError("gone"))
     with pytest.raises(ModelUnavailableError):
-        Reflection(chat, Prompts(), Ledger(), 9).reflect(LEARNT)
+        reflect(PromptedModel(chat, Prompts(), Ledger()), LEARNT, 9)
 
 
 def test_a_lesson_of_the_models_is_stored_and_counted(junction: Junction, tmp_path: Path) -> None:

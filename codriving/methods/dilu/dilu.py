@@ -1,31 +1,35 @@
 """DiLu: each CAV on its own describes what it sees, recalls what was like it, reasons, and learns from its mistakes."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from math import ceil
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.experience import Interaction
 from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Account, CaseMemory, Method, Model
 from codriving.datatypes.road import Road
-from codriving.datatypes.situation import Decision
+from codriving.datatypes.situation import Decision, Situation
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
-from codriving.methods.dilu.diary import Diary
-from codriving.methods.dilu.ports import dilu_ports
-from codriving.methods.dilu.thinker import Thought
-from codriving.methods.dilu.told import Told, tell
-from codriving.methods.language_model.ports import check_prompts, prompt_files
+from codriving.methods.dilu.collision_log import CollisionLog, Correction, Mistake
+from codriving.methods.dilu.description import describe_alone
+from codriving.methods.dilu.rule import correct_by_rule, decide_by_rule
+from codriving.methods.experience_log import learn, recall
+from codriving.methods.language_model.prompted_model import check_model, prompt_files, prompted
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
 from codriving.methods.single_vehicle.method import Driver
 from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
+
+if TYPE_CHECKING:
+    from codriving.methods.language_model.model_decider import ModelDecider
 
 
 class DiLu(Method):
@@ -45,13 +49,9 @@ class DiLu(Method):
             raise ConfigError(f"hold must be 0.1 to 10 s, got {hold:g}")
         if not 1 <= shots <= 50:
             raise ConfigError(f"shots must be 1 to 50, got {shots}")
-        check_prompts(llm)
-        if memory is not None and memory.reflections and llm.chat() is None:
-            raise ConfigError(
-                "memory.reflection=llm needs a language model; set llm= to one, or memory.reflection=rules"
-            )
+        check_model(llm, memory)
         self.llm, self.memory, self.hold, self.shots, self.rule = llm, memory, hold, shots, rule
-        # Whatever answers without a model is not DiLu, whatever it is called.
+        # What answers without a model is not DiLu.
         self.name = "dilu-rule" if llm.chat() is None else "dilu"
         self.reasoner = llm.name
         self.remembers = memory.label if memory is not None else ""
@@ -62,70 +62,63 @@ class DiLu(Method):
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode."""
         self._steps = max(1, ceil(self.hold / model.decision_interval - 1e-6))
-        # Whoever decides every second predicts what follows from deciding every second.
+        # A CAV that decides every second predicts what follows from deciding every second.
         held = replace(model, decision_interval=self._steps * model.decision_interval)
         self._perception = single_vehicle_perception(road_map, Forecast(held, CONSTANT))
-        self._thinker, self._reflector, self._ledger = dilu_ports(
-            self.llm.chat(), self.llm.prompts, self.rule, held.decision_interval
-        )
-        self._thoughts: dict[str, Thought] = {}
+        self._model = prompted(self.llm)
+        self._held: dict[str, tuple[Situation, Decision]] = {}
         self._decided = 0
         self._seed = seed
-        self._diary = Diary() if self.memory is not None and self.memory.learns else None
+        self._decider: ModelDecider | None = None
+        correct: Callable[[Sequence[Mistake]], list[Correction]] = correct_by_rule
+        if self._model is None:
+            self.rule.reset()
+        else:
+            # pydantic is needed only if a model is asked.
+            from codriving.methods.dilu.model import SightDecider, correct_by_model
+
+            self._decider = SightDecider(self._model, road_map, held)
+            correct = partial(correct_by_model, self._model, road_map, held)
+        self._log = CollisionLog(correct) if self.memory is not None and self.memory.learns else None
         if self.memory is not None:
             self.memory.begin(seed)
 
     def act(self, world: WorldState) -> ReasonedDeliberation:
         """Decide for every CAV on the road, one by one; between decisions hold what was decided."""
         names = [cav.id for cav in world.cavs]
-        if all(name in self._thoughts for name in names) and world.step < self._decided + self._steps:
-            kept = [self._thoughts[name] for name in names]
-            situations = tuple(thought.situation for thought in kept)
-            return ReasonedDeliberation(world.time, world.step, situations, tuple(_holds(t.decision) for t in kept), {})
+        if all(name in self._held for name in names) and world.step < self._decided + self._steps:
+            based_on = tuple(self._held[name][0] for name in names)
+            held = tuple(_holds(self._held[name][1]) for name in names)
+            return ReasonedDeliberation(world.time, world.step, based_on, held, {})
         moment = self._perception.perceive(world)
-        told = self._recall([tell(moment, ego) for ego in moment.scenes])
-        thoughts = self._thinker.decide(told)
-        self._thoughts = {thought.decision.ego: thought for thought in thoughts}
+        situations = recall(self.memory, [describe_alone(moment, ego) for ego in moment.scenes], self.shots)
+        given, counts = situations, Counter[str]()
+        if self._decider is not None:
+            decisions = self._decider.decide(situations)
+        else:
+            given, decisions, counts = decide_by_rule(self.rule, moment, situations)
+        self._held = {d.ego: (s, d) for s, d in zip(given, decisions, strict=True)}
         self._decided = world.step
-        if self._diary is not None:
-            self._diary.note(world.time, world.step, told, [thought.decision for thought in thoughts])
-        asked, lines = self._ledger.close_step(world.time) if self._ledger is not None else ({}, [])
-        counts = Counter[str]()
-        for thought in thoughts:
-            counts.update(thought.counts)
+        if self._log is not None:
+            self._log.note(world, situations, decisions)
         if self.memory is not None:
-            counts["recalled"] += sum(len(one.situation.memories) for one in told)
-            counts["reconsidered"] += sum(bool(thought.decision.recalled) for thought in thoughts)
+            counts["recalled"] += sum(len(situation.memories) for situation in situations)
+            counts["reconsidered"] += sum(bool(decision.recalled) for decision in decisions)
+        model_counts, lines = self.unfinished_step(world.time)
         return ReasonedDeliberation(
-            world.time,
-            world.step,
-            tuple(thought.situation for thought in thoughts),
-            tuple(thought.decision for thought in thoughts),
-            {**counts, **asked},
-            tuple(lines),
+            world.time, world.step, tuple(given), tuple(decisions), {**counts, **model_counts}, tuple(lines)
         )
 
     def conclude(self, world: WorldState, outcome: Outcome) -> Account:
-        if self._diary is None or self.memory is None:
+        if self._log is None or self.memory is None:
             return {}, []
-        experiences = self._diary.conclude(outcome, self._reflector)
-        scenario = self._perception.road_map.road.name
-        new = self.memory.learn(Interaction(scenario, self._seed, self.name, self.variant, self.reasoner), experiences)
-        asked, lines = self._ledger.close_step(world.time) if self._ledger is not None else ({}, [])
-        return {**asked, "experiences": len(experiences), "experiences_new": new}, lines
+        experiences = self._log.conclude(world, outcome)
+        learnt = learn(self.memory, self, self._perception.road_map.road.name, self._seed, experiences)
+        model_counts, lines = self.unfinished_step(world.time)
+        return {**model_counts, **learnt}, lines
 
     def unfinished_step(self, time: float) -> Account:
-        return self._ledger.close_step(time) if self._ledger is not None else ({}, [])
-
-    def _recall(self, told: list[Told]) -> list[Told]:
-        """Put what is remembered of like situations beside each."""
-        if self.memory is None or not told:
-            return told
-        found = self.memory.recall([one.situation for one in told])
-        return [
-            replace(one, situation=replace(one.situation, memories=memories[: self.shots])) if memories else one
-            for one, memories in zip(told, found, strict=True)
-        ]
+        return self._model.ledger.close_step(time) if self._model is not None else ({}, [])
 
 
 def _holds(decision: Decision) -> Decision:

@@ -3,56 +3,58 @@
 from math import atan2, cos, degrees, hypot, sin
 from typing import Any
 
+from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
+from codriving.datatypes.situation import Situation
+from codriving.geometry.road_map import RoadMap
 from codriving.llm.prompts.free_text import Names, seen_names
 from codriving.llm.prompts.variables import lane_views, side_name
 from codriving.llm.prompts.views import MeaningView, SeenView, WayView
-from codriving.methods.dilu.told import Told
+from codriving.reasoning.prediction.rollout import CHANGE
 
 MOST = 6
 """Vehicles at most of which it is told where they are and which ways they may take."""
 
 DIRECTIONS = (
-    "ahead",
-    "ahead right",
-    "to the right",
-    "behind right",
-    "behind",
-    "behind left",
-    "to the left",
-    "ahead left",
+    *("ahead", "ahead right", "to the right", "behind right"),
+    *("behind", "behind left", "to the left", "ahead left"),
 )
 """Words for eighths of a turn, clockwise from straight ahead."""
 
 
-def seen_view(told: Told, nearest: int | None = None) -> dict[str, Any]:
+def seen_view(
+    situation: Situation, road_map: RoadMap, driving: DrivingModel, nearest: int | None = None
+) -> dict[str, Any]:
     """Return the variables that all of DiLu's prompts have.
 
     Args:
         nearest: Number of vehicles, nearest first, that are mentioned; None for all.
     """
-    scene, names = told.situation.scene, seen_names(told.situation.scene)
+    scene, names = situation.scene, seen_names(situation.scene)
+    start, end, index = scene.ego.lane
+    targets = _targets_after(driving, scene.ego.speed, scene.intent.target_speed)
     mentioned = sorted(scene.neighbours, key=lambda n: (_distance(scene, n), n.id))[:nearest]
     lanes = lane_views(scene, mentioned, names)
     placed = {v.id for lane in lanes for v in (lane.leading, lane.rear) if v is not None}
-    meets = {c.other: k for k, c in reversed(list(enumerate(told.situation.conflicts)))}
+    meets = {c.other: k for k, c in reversed(list(enumerate(situation.conflicts)))}
     # Those whose ways may meet come first, the most urgent of them before the others; the rest by distance.
-    ranked = sorted(mentioned, key=lambda n: (meets.get(n.id, len(meets) + len(told.situation.conflicts)),))
+    ranked = sorted(mentioned, key=lambda n: (meets.get(n.id, len(meets) + len(situation.conflicts)),))
     shown = [n for n in ranked if n.id in meets or names(n.id) not in placed][:MOST]
     return {
         "speed": scene.ego.speed,
         "target_speed": scene.intent.target_speed,
         "route": scene.intent.route,
-        "lane_rank": told.lane[0],
-        "lane_count": told.lane[1],
+        "lane_rank": index + 1,
+        "lane_count": sum((a, b) == (start, end) for a, b, _ in road_map.lanes),
         "between_lanes": bool(scene.covers),
         "must_change": None if scene.must_change is None else side_name(scene, scene.must_change.lane),
         "room": 0.0 if scene.must_change is None else scene.must_change.room,
         "lanes": lanes,
-        "vehicles": [_seen(told, n, names) for n in shown],
-        "actions": [MeaningView(str(a), told.targets.get(a)) for a in told.situation.allowed],
-        "allowed": [str(a) for a in told.situation.allowed],
+        "vehicles": [_seen(situation, n, names) for n in shown],
+        "actions": [MeaningView(str(a), targets.get(a)) for a in situation.allowed],
+        "allowed": [str(a) for a in situation.allowed],
     }
 
 
@@ -60,11 +62,11 @@ def _distance(scene: SceneDescription, n: TrackedVehicle) -> float:
     return hypot(n.x - scene.ego.x, n.y - scene.ego.y)
 
 
-def _seen(told: Told, n: TrackedVehicle, names: Names) -> SeenView:
+def _seen(situation: Situation, n: TrackedVehicle, names: Names) -> SeenView:
     """Describe one vehicle; of each way that it may take, the most urgent place where that meets the CAV's."""
-    scene = told.situation.scene
+    scene = situation.scene
     ways: dict[str, Conflict] = {}
-    for c in told.situation.conflicts:
+    for c in situation.conflicts:
         if c.other == n.id:
             ways.setdefault(c.routes[1], c)
     return SeenView(
@@ -93,3 +95,17 @@ def _direction(scene: SceneDescription, n: TrackedVehicle) -> str:
 
 def _way(c: Conflict) -> WayView:
     return WayView(str(c.relation), c.distances[0], c.distances[1], c.ttcp[0], c.ttcp[1], c.dttcp, str(c.severity))
+
+
+def _targets_after(model: DrivingModel, speed: float, target: float) -> dict[Action, float]:
+    """Return the target speed after each action along the lane [m/s].
+
+    Args:
+        speed: Speed now [m/s].
+        target: Target speed now [m/s].
+    """
+    speeds = model.target_speeds
+    top = len(speeds) - 1
+    nearest = round(min(max((speed - speeds[0]) / (speeds[-1] - speeds[0]) * top, 0), top))
+    stepped = {action: speeds[min(max(nearest + step, 0), top)] for action, step in CHANGE.items()}
+    return {Action.SLOWER: stepped[Action.SLOWER], Action.IDLE: target, Action.FASTER: stepped[Action.FASTER]}

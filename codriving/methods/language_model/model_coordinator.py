@@ -8,21 +8,20 @@ from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.ordering_problem import Pair
 from codriving.datatypes.scene_description import SceneDescription
-from codriving.llm.ledger import Ledger
 from codriving.llm.prompts.free_text import Names
-from codriving.llm.prompts.render import Prompts
 from codriving.llm.prompts.replies import OrderReply, first_of_pairs, order_reply
 from codriving.llm.prompts.variables import negotiation_view
-from codriving.llm.question import Chat, Question
+from codriving.llm.question import Question
+from codriving.methods.language_model.prompted_model import PromptedModel
 from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator
 from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
 from codriving.reasoning.ordering.problem import Problem, pose
 
-Told = dict[Pair, str]
-"""Who goes before whom, and why."""
+AgreedPairs = dict[Pair, str]
+"""Pairs of CAVs, the one that goes first first, and why."""
 
-Asked = Mapping[str, Conflict]
+OpenPairs = Mapping[str, Conflict]
 """The pairs of a question: the most urgent conflict of each, by the name of the pair."""
 
 
@@ -38,10 +37,9 @@ class ModelCoordinator(Coordinator):
     both count as a repaired order. Without an answer, the rules decide everything, and the ledger counts a fallback.
     """
 
-    def __init__(self, chat: Chat, prompts: Prompts, ledger: Ledger, binding: bool) -> None:
-        self.chat, self.prompts, self.ledger = chat, prompts, ledger
-        self.rules = RuleCoordinator(binding)
-        self._agreed: tuple[Premise, Told] | None = None
+    def __init__(self, model: PromptedModel, binding: bool) -> None:
+        self.model, self.rules = model, RuleCoordinator(binding)
+        self._agreed: tuple[Premise, AgreedPairs] | None = None
 
     def negotiate(self, moment: Moment) -> PassingOrder:
         """Return an order without cycles for all conflicts.
@@ -57,50 +55,49 @@ class ModelCoordinator(Coordinator):
             self._agreed = None
             return self.rules.settle(moment, problem, {})
         now = premise(problem.instance, asked)
-        told = self._kept(problem, now)
-        if told is not None:
-            self.ledger.count("kept_orders")
-            return self.rules.settle(moment, problem, told)
-        told = self._ask(moment.scenes, problem, [urgent[pair] for pair in asked])
-        order = self.rules.settle(moment, problem, told or {})
+        agreed = self._kept(problem, now)
+        if agreed is not None:
+            self.model.ledger.count("kept_orders")
+            return self.rules.settle(moment, problem, agreed)
+        agreed = self._ask(moment.scenes, problem, [urgent[pair] for pair in asked])
+        order = self.rules.settle(moment, problem, agreed or {})
         # Without an answer nothing has been agreed on, and the next step asks again.
-        self._agreed = None if told is None else (now, _decided(order, asked))
+        self._agreed = None if agreed is None else (now, _decided(order, asked))
         return order
 
-    def _kept(self, problem: Problem, now: Premise) -> Told | None:
+    def _kept(self, problem: Problem, now: Premise) -> AgreedPairs | None:
         """Return the pairs of the last answer that are still open if the answer can be kept."""
         if self._agreed is None or not self._agreed[0].still_holds(now):
             return None
-        told = self._agreed[1]
-        if find_circle({*told, *problem.instance.before}) is not None:
+        agreed = self._agreed[1]
+        if find_circle({*agreed, *problem.instance.before}) is not None:
             return None
-        return {pair: why for pair, why in told.items() if pair in now.leads or pair[::-1] in now.leads}
+        return {pair: why for pair, why in agreed.items() if pair in now.leads or pair[::-1] in now.leads}
 
     def _ask(
         self, scenes: Mapping[str, SceneDescription], problem: Problem, conflicts: Iterable[Conflict]
-    ) -> Told | None:
+    ) -> AgreedPairs | None:
         """Ask the model, and repair what it says; None if there is no answer."""
         by_urgency = sorted(conflicts, key=lambda c: (c.dttcp + 0.2 * min(c.ttcp), c.ego, c.other))
         pairs = {f"p{k + 1}": c for k, c in enumerate(by_urgency)}
         names = Names(problem.instance.vehicles)
         question = self._question(scenes, problem, pairs, names)
-        [answer] = self.chat.ask([question])
-        self.ledger.note(question, answer)
+        [answer] = self.model.ask([question])
         if answer.value is None:
             return None
         said = first_of_pairs(cast(OrderReply, answer.value), _shown(pairs, names))
-        told: Told = {}
+        agreed: AgreedPairs = {}
         for name, (first, reason) in said.items():
             c = pairs[name]
             pair = (c.ego, c.other) if first == names(c.ego) else (c.other, c.ego)
-            told[pair] = reason or f"{first} was told to go first"
-        acyclic = _without_circles(told, problem, {frozenset((c.ego, c.other)): c.dttcp for c in pairs.values()})
+            agreed[pair] = reason or f"{first} was told to go first"
+        acyclic = _without_circles(agreed, problem, {frozenset((c.ego, c.other)): c.dttcp for c in pairs.values()})
         if len(acyclic) < len(pairs):
-            self.ledger.count("repaired_orders")
+            self.model.ledger.count("repaired_orders")
         return acyclic
 
     def _question(
-        self, scenes: Mapping[str, SceneDescription], problem: Problem, pairs: Asked, names: Names
+        self, scenes: Mapping[str, SceneDescription], problem: Problem, pairs: OpenPairs, names: Names
     ) -> Question:
         shown = _shown(pairs, names)
         values = negotiation_view(
@@ -121,7 +118,7 @@ class ModelCoordinator(Coordinator):
         return Question(
             purpose="negotiate",
             subject="",
-            messages=self.prompts.messages("negotiate", values),
+            messages=self.model.prompts.messages("negotiate", values),
             schema=order_reply(shown),
             check=check,
             shorter=shorter,
@@ -139,13 +136,13 @@ def _most_urgent(problem: Problem, conflicts: Mapping[str, tuple[Conflict, ...]]
     return found
 
 
-def _shown(pairs: Asked, names: Names) -> dict[str, tuple[str, str]]:
+def _shown(pairs: OpenPairs, names: Names) -> dict[str, tuple[str, str]]:
     return {name: (names(c.ego), names(c.other)) for name, c in pairs.items()}
 
 
-def _without_circles(told: Told, problem: Problem, dttcp: Mapping[frozenset[str], float]) -> Told:
+def _without_circles(agreed: AgreedPairs, problem: Problem, dttcp: Mapping[frozenset[str], float]) -> AgreedPairs:
     """Drop the least severe link of every circle, until there is none; what is physically fixed stays."""
-    kept, fixed = dict(told), set(problem.instance.before)
+    kept, fixed = dict(agreed), set(problem.instance.before)
     while (circle := find_circle({*kept, *fixed})) is not None:
         links = list(pairwise(circle))
         ours = [pair for pair in links if pair in kept]
@@ -157,7 +154,7 @@ def _without_circles(told: Told, problem: Problem, dttcp: Mapping[frozenset[str]
     return kept
 
 
-def _decided(order: PassingOrder, asked: Iterable[Pair]) -> Told:
+def _decided(order: PassingOrder, asked: Iterable[Pair]) -> AgreedPairs:
     """Return what has become of the pairs that were asked about."""
     wanted = {frozenset(pair) for pair in asked}
     return {(p.first, p.second): p.reason for p in order.precedences if frozenset((p.first, p.second)) in wanted}

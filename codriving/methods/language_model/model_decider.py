@@ -1,16 +1,16 @@
-"""Decisions by a language model: all CAVs are asked at once, and each may choose what the safety check has left."""
+"""Decisions by a language model: one question a CAV, all asked at once; each may choose what is left to it."""
 
+from abc import abstractmethod
 from collections.abc import Sequence
-from typing import cast
+from typing import Any, ClassVar, cast
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.situation import Decision, Situation
-from codriving.llm.ledger import Ledger
 from codriving.llm.prompts.free_text import names_for
-from codriving.llm.prompts.render import Prompts
 from codriving.llm.prompts.replies import DecisionReply, decision_reply
-from codriving.llm.prompts.variables import decision_view, vehicles_by_distance
-from codriving.llm.question import Answer, Chat, Question
+from codriving.llm.prompts.variables import decision_view
+from codriving.llm.question import Answer, Question
+from codriving.methods.language_model.prompted_model import PromptedModel
 from codriving.reasoning.decision.rules import Decider, decide_one, is_plain
 
 SAFEST = (Action.SLOWER, Action.IDLE, Action.FASTER, Action.LANE_RIGHT, Action.LANE_LEFT)
@@ -18,14 +18,32 @@ SAFEST = (Action.SLOWER, Action.IDLE, Action.FASTER, Action.LANE_RIGHT, Action.L
 
 
 class ModelDecider(Decider):
-    """Asks a model for every CAV, all in one go.
+    """Asks a model for every CAV, all in one go; a method has a template, its variables and a fallback of its own.
 
-    Nobody asks for a CAV whose decision is plain, see ``is_plain``; the rules decide, and the ledger counts it.
+    Attributes:
+        template: Which template is filled in.
     """
 
-    def __init__(self, chat: Chat, prompts: Prompts, ledger: Ledger, ask_plain: bool, sees_conflicts: bool) -> None:
-        self.chat, self.prompts, self.ledger = chat, prompts, ledger
-        self.ask_plain, self.sees_conflicts = ask_plain, sees_conflicts
+    template: ClassVar[str]
+
+    def __init__(self, model: PromptedModel) -> None:
+        self.model = model
+
+    @abstractmethod
+    def variables(self, situation: Situation, nearest: int | None, with_memories: bool) -> dict[str, Any]:
+        """Return the variables of the template.
+
+        Args:
+            nearest: Number of vehicles, nearest first, that are mentioned; None for all.
+        """
+
+    @abstractmethod
+    def objection(self, situation: Situation, action: str) -> str:
+        """Say why an action that is not allowed cannot be chosen."""
+
+    @abstractmethod
+    def substitute(self, situation: Situation) -> Action:
+        """Return the action that stands in for an answer that is missing."""
 
     def decide(self, situations: Sequence[Situation]) -> list[Decision]:
         """Return one decision a situation, in the same order.
@@ -34,64 +52,79 @@ class ModelDecider(Decider):
             ModelUnavailableError: If the model does not answer.
             SpendingLimitError: If the tokens or the money that may be spent are used up.
         """
-        open_ones = [s for s in situations if self.ask_plain or not is_plain(s, self.sees_conflicts)]
-        questions = [self.question(s) for s in open_ones]
-        answers = self.chat.ask(questions) if questions else []
-        for question, answer in zip(questions, answers, strict=True):
-            self.ledger.note(question, answer)
-        found = {s.scene.ego.id: self._decision(s, answer) for s, answer in zip(open_ones, answers, strict=True)}
-        if len(open_ones) < len(situations):
-            self.ledger.count("plain_decisions", len(situations) - len(open_ones))
-        return [found.get(s.scene.ego.id) or decide_one(s) for s in situations]
+        answers = self.model.ask([self.question(situation) for situation in situations])
+        return [self._decision(*pair) for pair in zip(situations, answers, strict=True)]
 
-    def _decision(self, situation: Situation, answer: Answer) -> Decision:
-        if answer.value is None:
-            return fallback(situation, answer.problem)
-        reply = cast(DecisionReply, answer.value)
-        if reply.action not in situation.allowed:
-            # No chat should let this pass; whatever it says, only what is allowed is done.
-            self.ledger.count("fallbacks")
-            return fallback(situation, "the action is not allowed")
-        return Decision(situation.scene.ego.id, Action(reply.action), reply.reason or "no reason was given")
-
-    def question(self, situation: Situation) -> Question:
-        """Return what the model is asked for one CAV."""
-        return self._question(situation, None, True)
-
-    def _question(self, situation: Situation, nearest: int | None, with_memories: bool) -> Question:
+    def question(self, situation: Situation, nearest: int | None = None, with_memories: bool = True) -> Question:
+        """Return what the model is asked for one CAV, see ``variables``."""
         allowed = [str(action) for action in situation.allowed]
-        names = names_for(situation)
-        removed = {str(a.action): a.reasons for a in situation.assessments if not a.safe}
 
         def check(reply: object) -> str:
             action = cast(DecisionReply, reply).action
-            if action in allowed:
-                return ""
-            why = names.sentence("; ".join(removed[action])) if action in removed else "it is no action"
-            return f"{names.sentence(action)} cannot be chosen: {why}; choose one of: {', '.join(allowed)}"
+            return "" if action in allowed else self.objection(situation, action)
 
         def shorter() -> Question | None:
             """Leave out the memories, then again and again the farther half of the vehicles."""
             if situation.memories and with_memories:
-                return self._question(situation, nearest, False)
-            left = (len(vehicles_by_distance(situation)) if nearest is None else nearest) // 2
-            return self._question(situation, left, False) if left else None
+                return self.question(situation, nearest, False)
+            left = (len(situation.scene.neighbours) if nearest is None else nearest) // 2
+            return self.question(situation, left, False) if left else None
 
         return Question(
             purpose="decide",
             subject=situation.scene.ego.id,
-            messages=self.prompts.messages("decide", decision_view(situation, nearest, with_memories)),
+            messages=self.model.prompts.messages(self.template, self.variables(situation, nearest, with_memories)),
             schema=decision_reply(tuple(allowed)),
             check=check,
             shorter=shorter,
         )
 
+    def _decision(self, situation: Situation, answer: Answer) -> Decision:
+        ego, reply = situation.scene.ego.id, cast(DecisionReply | None, answer.value)
+        if reply is not None and reply.action in situation.allowed:
+            return Decision(ego, Action(reply.action), reply.reason or "no reason was given")
+        problem = answer.problem
+        if reply is not None:
+            # No chat should let this pass; only what is allowed is done all the same.
+            self.model.ledger.count("fallbacks")
+            problem = "the action is not allowed"
+        return Decision(ego, self.substitute(situation), f"fallback, no usable answer: {problem}")
 
-def fallback(situation: Situation, problem: str) -> Decision:
-    """Decide without the model: the slowest action that keeps the order, or else the slowest that is allowed.
 
-    The rules would often drive on here. A model that does not answer is not to be driven by them in silence.
+class CheckedDecider(ModelDecider):
+    """CoDrivingLLM's: each CAV may choose what the safety check has left.
+
+    The model is not asked for a CAV whose decision is plain, see ``is_plain``; the rules decide, and the ledger counts
+    it.
     """
-    keeps = {a.action for a in situation.assessments if a.safe and a.progress is not None}
-    choices = [a for a in SAFEST if a in keeps] or [a for a in SAFEST if a in situation.allowed]
-    return Decision(situation.scene.ego.id, choices[0], f"fallback, no usable answer: {problem}")
+
+    template = "decide"
+
+    def __init__(self, model: PromptedModel, ask_plain: bool, sees_conflicts: bool) -> None:
+        super().__init__(model)
+        self.ask_plain, self.sees_conflicts = ask_plain, sees_conflicts
+
+    def decide(self, situations: Sequence[Situation]) -> list[Decision]:
+        unclear = [s for s in situations if self.ask_plain or not is_plain(s, self.sees_conflicts)]
+        found = {decision.ego: decision for decision in super().decide(unclear)}
+        if len(unclear) < len(situations):
+            self.model.ledger.count("plain_decisions", len(situations) - len(unclear))
+        return [found.get(s.scene.ego.id) or decide_one(s) for s in situations]
+
+    def variables(self, situation: Situation, nearest: int | None, with_memories: bool) -> dict[str, Any]:
+        return decision_view(situation, nearest, with_memories)
+
+    def objection(self, situation: Situation, action: str) -> str:
+        names = names_for(situation)
+        removed = {str(a.action): a.reasons for a in situation.assessments if not a.safe}
+        why = names.sentence("; ".join(removed[action])) if action in removed else "it is no action"
+        allowed = ", ".join(str(action) for action in situation.allowed)
+        return f"{names.sentence(action)} cannot be chosen: {why}; choose one of: {allowed}"
+
+    def substitute(self, situation: Situation) -> Action:
+        """Return the slowest action that keeps the order, or else the slowest that is allowed.
+
+        The rules would often drive on here. A model that does not answer is not to be driven by them in silence.
+        """
+        keeps = {a.action for a in situation.assessments if a.safe and a.progress is not None}
+        return next(a for a in SAFEST if a in (keeps or situation.allowed))

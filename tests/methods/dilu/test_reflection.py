@@ -8,13 +8,14 @@ from dilu_driven import NEVER_HELD, Notebook, always, modelled, ruled, text
 from worlds import Junction, car
 
 from codriving.datatypes.action import Action
-from codriving.datatypes.experience import Verdict
+from codriving.datatypes.experience import Experience, Verdict
 from codriving.datatypes.outcome import Collision, Ending, Outcome
-from codriving.datatypes.situation import Decision
-from codriving.methods.dilu.diary import Diary
+from codriving.datatypes.situation import Decision, Situation
+from codriving.datatypes.world import WorldState
+from codriving.methods.dilu.collision_log import CollisionLog
+from codriving.methods.dilu.description import describe_alone
 from codriving.methods.dilu.dilu import DiLu
-from codriving.methods.dilu.reflection import RuleReflector
-from codriving.methods.dilu.told import Told, tell
+from codriving.methods.dilu.rule import correct_by_rule
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
 from codriving.reasoning.perception import single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
@@ -25,65 +26,75 @@ ARRIVED = Outcome(Ending.SUCCESS, 9.0, {"CAV1": 9.0})
 
 
 @pytest.fixture(scope="module")
-def told(junction: Junction) -> Told:
+def told(junction: Junction) -> Situation:
     """What CAV1 is told of HDV1, who comes from the left."""
     perception = single_vehicle_perception(junction.road_map, Forecast(junction.model, CONSTANT))
     world = junction.world(car("CAV1", "south-north", 86, 8, 9), car("HDV1", "west-east", 85, 8))
-    return tell(perception.perceive(world), "CAV1")
+    return describe_alone(perception.perceive(world), "CAV1")
 
 
-def diary(told: Told, actions: Sequence[Action], ego: str = "CAV1") -> Diary:
-    made = Diary()
+def logged(told: Situation, actions: Sequence[Action], ego: str = "CAV1") -> CollisionLog:
+    made = CollisionLog(correct_by_rule)
     for k, action in enumerate(actions):
-        made.note(float(k), 2 * k, [told], [Decision(ego, action, "HDV1 is far")])
+        note(made, k, told, Decision(ego, action, "HDV1 is far"))
     return made
 
 
-def test_mistake_is_the_last_decision_before_the_collision_that_was_not_to_slow_down(told: Told) -> None:
+def note(log: CollisionLog, k: int, told: Situation, decision: Decision) -> None:
+    """Note one decision a second, each two steps after the last."""
+    log.note(WorldState(float(k), 2 * k, (), {}, {}), [told], [decision])
+
+
+def kept(log: CollisionLog, outcome: Outcome) -> list[Experience]:
+    """What is remembered of an episode."""
+    return log.conclude(WorldState(0.0, 0, (), {}, {}), outcome)
+
+
+def test_mistake_is_the_last_decision_before_the_collision_that_was_not_to_slow_down(told: Situation) -> None:
     actions = [Action.FASTER, Action.IDLE, Action.FASTER, Action.SLOWER, Action.FASTER]
-    (mistake,) = diary(told, actions).mistakes(CRASH)
+    (mistake,) = logged(told, actions).mistakes(CRASH)
     assert (mistake.step, mistake.decision.action, mistake.other, mistake.struck) == (4, Action.FASTER, "HDV1", True)
     assert mistake.later == pytest.approx(1.2)
 
 
-def test_whoever_slowed_down_all_along_made_no_mistake(told: Told) -> None:
-    assert diary(told, [Action.SLOWER] * 4).conclude(CRASHED, RuleReflector()) == []
+def test_whoever_slowed_down_all_along_made_no_mistake(told: Situation) -> None:
+    assert kept(logged(told, [Action.SLOWER] * 4), CRASHED) == []
 
 
-def test_both_cavs_of_a_collision_made_one(told: Told) -> None:
-    made = diary(told, [Action.FASTER])
-    made.note(1.0, 2, [told], [Decision("CAV2", Action.LANE_LEFT, "")])
+def test_both_cavs_of_a_collision_made_one(told: Situation) -> None:
+    made = logged(told, [Action.FASTER])
+    note(made, 1, told, Decision("CAV2", Action.LANE_LEFT, ""))
     mistakes = made.mistakes(Collision(2.0, "CAV1", "CAV2", "CAV-CAV"))
     assert [(m.decision.ego, m.other, m.struck) for m in mistakes] == [("CAV1", "CAV2", True), ("CAV2", "CAV1", False)]
-    right = [c.action for c in RuleReflector().correct(mistakes)]
+    right = [c.action for c in correct_by_rule(mistakes)]
     assert right == [Action.SLOWER, Action.IDLE]
 
 
-def test_correction_by_rule_is_remembered(told: Told) -> None:
-    (kept,) = diary(told, [Action.FASTER, Action.IDLE]).conclude(CRASHED, RuleReflector())
-    assert (kept.action, kept.verdict, kept.step, kept.effect.collision) == (
+def test_correction_by_rule_is_remembered(told: Situation) -> None:
+    (learnt,) = kept(logged(told, [Action.FASTER, Action.IDLE]), CRASHED)
+    assert (learnt.action, learnt.verdict, learnt.step, learnt.effect.collision) == (
         Action.IDLE,
         Verdict.INTENSIFIED,
         2,
         pytest.approx(2.2),
     )
-    assert kept.lesson == (
+    assert learnt.lesson == (
         "Mistake: IDLE, and 2.2 s later you ran into another vehicle. "
         "Lesson: Slow down in time in a situation like this. Right: SLOWER."
     )
-    assert kept.description.kinds["driver"] == "unknown"
-    assert kept.description.kinds["order"] == "none"
+    assert learnt.description.kinds["driver"] == "unknown"
+    assert learnt.description.kinds["order"] == "none"
 
 
-def test_of_a_success_every_fifth_decision_is_kept(told: Told) -> None:
-    kept = diary(told, [Action.FASTER] * 12).conclude(ARRIVED, RuleReflector())
-    assert [(e.step, e.verdict) for e in kept] == [(8, Verdict.EASED), (18, Verdict.EASED)]
-    assert kept[0].lesson == "No mistake, the drive ended well. Why: another vehicle is far"
+def test_of_a_success_every_fifth_decision_is_kept(told: Situation) -> None:
+    learnt = kept(logged(told, [Action.FASTER] * 12), ARRIVED)
+    assert [(e.step, e.verdict) for e in learnt] == [(8, Verdict.EASED), (18, Verdict.EASED)]
+    assert learnt[0].lesson == "No mistake, the drive ended well. Why: another vehicle is far"
 
 
 @pytest.mark.parametrize("ending", [Ending.TIMEOUT, Ending.OFF_ROAD])
-def test_of_anything_else_nothing_is_kept(told: Told, ending: Ending) -> None:
-    assert diary(told, [Action.FASTER] * 12).conclude(Outcome(ending, 50.0, {}), RuleReflector()) == []
+def test_of_anything_else_nothing_is_kept(told: Situation, ending: Ending) -> None:
+    assert kept(logged(told, [Action.FASTER] * 12), Outcome(ending, 50.0, {})) == []
 
 
 def crashing(junction: Junction, made: DiLu) -> tuple[dict[str, float], list[dict[str, object]]]:

@@ -16,7 +16,8 @@ from codriving.llm.prompts.render import load_prompts
 from codriving.llm.prompts.replies import decision_reply
 from codriving.llm.question import Answer, Question
 from codriving.llm.scripted import Script, ScriptedChat
-from codriving.methods.language_model.model_decider import ModelDecider, fallback
+from codriving.methods.language_model.model_decider import CheckedDecider
+from codriving.methods.language_model.prompted_model import PromptedModel
 from codriving.reasoning.decision.rules import RuleDecider
 
 CARS = (
@@ -33,9 +34,9 @@ def told(junction: Junction) -> tuple[Situation, ...]:
     return reasoned(junction, sensible).method.act(junction.world(*CARS)).situations
 
 
-def decider(script: Script, ask_plain: bool = False) -> tuple[ModelDecider, ScriptedChat, Ledger]:
+def decider(script: Script, ask_plain: bool = False) -> tuple[CheckedDecider, ScriptedChat, Ledger]:
     chat, ledger = ScriptedChat(script), Ledger()
-    return ModelDecider(chat, load_prompts(None), ledger, ask_plain, True), chat, ledger
+    return CheckedDecider(PromptedModel(chat, load_prompts(None), ledger), ask_plain, True), chat, ledger
 
 
 def says(action: str) -> str:
@@ -110,7 +111,8 @@ def test_fallback_is_the_slowest_that_is_safe_and_keeps_the_order(
         ActionAssessment(a, ok, () if ok else ("no",), (), gain)
         for a, ok, gain in zip(actions, safe, gains, strict=True)
     )
-    assert fallback(replace(told[0], assessments=made), "silence").action is action
+    made_by_hand = replace(told[0], assessments=made)
+    assert decider(sensible)[0].substitute(made_by_hand) is action
 
 
 def test_chat_that_checks_nothing_can_do_nothing_forbidden(told: tuple[Situation, ...]) -> None:
@@ -121,7 +123,7 @@ def test_chat_that_checks_nothing_can_do_nothing_forbidden(told: tuple[Situation
             return [Answer(decision_reply(("FASTER",)).model_validate({"action": "FASTER"}), ()) for _ in questions]
 
     ledger = Ledger()
-    [decision] = ModelDecider(Careless(), load_prompts(None), ledger, False, True).decide(told[2:])
+    [decision] = CheckedDecider(PromptedModel(Careless(), load_prompts(None), ledger), False, True).decide(told[2:])
     assert decision.action is Action.SLOWER
     assert ledger.close_step(0.0)[0]["fallbacks"] == 1
 

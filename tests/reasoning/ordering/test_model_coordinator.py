@@ -14,6 +14,7 @@ from codriving.llm.prompts.render import load_prompts
 from codriving.llm.question import Question
 from codriving.llm.scripted import Script, ScriptedChat
 from codriving.methods.language_model.model_coordinator import ModelCoordinator
+from codriving.methods.language_model.prompted_model import PromptedModel
 from codriving.reasoning.ordering.coordinator import RuleCoordinator
 
 Coordinate = Callable[..., tuple[PassingOrder, ModelCoordinator, ScriptedChat, dict[str, float]]]
@@ -28,7 +29,7 @@ THREE = (
 
 def coordinator(thoughts: Thoughts, script: Script) -> tuple[ModelCoordinator, ScriptedChat, Ledger]:
     chat, ledger = ScriptedChat(script), Ledger()
-    return ModelCoordinator(chat, load_prompts(None), ledger, False), chat, ledger
+    return ModelCoordinator(PromptedModel(chat, load_prompts(None), ledger), False), chat, ledger
 
 
 def again(made: ModelCoordinator, thoughts: Thoughts) -> PassingOrder:
