@@ -16,7 +16,7 @@ MAY_IMPORT = {
     "memory": {"llm"},
     "methods": {"geometry", "reasoning", "memory", "llm"},
     "gym": {"geometry", "environment", "reasoning", "config", "animation"},
-    "training": {"geometry", "reasoning", "methods", "gym", "config", "runs", "llm"},
+    "training": {"geometry", "reasoning", "methods", "gym", "config", "runs"},
     "metrics": {"geometry"},
     "animation": {"geometry"},
     "runs": set(),
