@@ -8,7 +8,7 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from typing import TypeVar
 
-from codriving.llm.faults import CallError, Kind
+from codriving.llm.faults import CallError, FaultKind
 
 
 class ConcurrencyLimit:
@@ -161,7 +161,7 @@ class Retries:
                 return await attempt
         except TimeoutError:
             pass
-        raise CallError(Kind.TIMEOUT, f"{self.deadline:g} s")
+        raise CallError(FaultKind.TIMEOUT, f"{self.deadline:g} s")
 
     def _wait(self, made: int, retry_after: float | None) -> float:
         """Exponential with jitter over its upper half; never sooner than the server asks."""

@@ -12,7 +12,7 @@ from weakref import WeakValueDictionary
 from codriving.llm.attempts import ConcurrencyLimit, Retries, Retry, Sleep
 from codriving.llm.cache import AnswerCache
 from codriving.llm.conversation import converse
-from codriving.llm.faults import CallError, Kind, unavailable, unusable
+from codriving.llm.faults import CallError, FaultKind, unavailable, unusable
 from codriving.llm.loop import loop
 from codriving.llm.question import Answer, Message, Question
 from codriving.llm.request import KNOWN, TOO_LONG, UNREADABLE, ChatRequest, Forms, Reply, schema_of
@@ -25,10 +25,10 @@ _GREETING = (
     Message("user", "Answer with the one word: yes"),
 )
 
-_FINISH_REASONS = {Kind.TOO_LONG: TOO_LONG, Kind.FILTERED: "content_filter", Kind.UNREADABLE: UNREADABLE}
+_FINISH_REASONS = {FaultKind.TOO_LONG: TOO_LONG, FaultKind.FILTERED: "content_filter", FaultKind.UNREADABLE: UNREADABLE}
 """Failures that are replies of a kind, by the finish reason that they are given: the question has to change."""
 
-_FOR_GOOD = (Kind.KEY, Kind.QUOTA, Kind.MODEL, Kind.UNREACHABLE)
+_FOR_GOOD = (FaultKind.KEY, FaultKind.QUOTA, FaultKind.MODEL, FaultKind.UNREACHABLE)
 """Failures that no later episode would escape, if nothing has worked yet."""
 
 
@@ -152,7 +152,7 @@ class ModelChat:
             except CallError as fault:
                 sent += fault.attempts
                 fault.attempts = sent
-                if fault.kind is Kind.FORM and self._forms.step_down(request.model, request.api_base, form):
+                if fault.kind is FaultKind.FORM and self._forms.step_down(request.model, request.api_base, form):
                     continue
                 if fault.kind not in _FINISH_REASONS:
                     raise
@@ -171,7 +171,7 @@ class ModelChat:
             try:
                 reply = await self._retries.within_deadline(sending)
             except CallError as fault:
-                if fault.kind is Kind.RATE:
+                if fault.kind is FaultKind.RATE:
                     self._limit.shrink(ticket)
                 raise
             self._limit.grow()
@@ -179,7 +179,7 @@ class ModelChat:
 
     def _may_pass(self, fault: CallError) -> bool:
         # Before anything has worked, an address at which no server listens is a wrong address.
-        return fault.kind.passes and (self._worked or fault.kind is not Kind.UNREACHABLE)
+        return fault.kind.passes and (self._worked or fault.kind is not FaultKind.UNREACHABLE)
 
     def _request(self, messages: tuple[Message, ...], schema: dict[str, Any] | None) -> ChatRequest:
         s = self.settings

@@ -7,7 +7,7 @@ from typing import Any
 
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError
 from codriving.llm.attempts import Retries, Sleep
-from codriving.llm.faults import CallError, Kind, fault_of
+from codriving.llm.faults import CallError, FaultKind, fault_of
 from codriving.llm.loop import loop
 from codriving.llm.send import NO_KEY, load_litellm, provider_of
 from codriving.llm.settings import check_address, read_key
@@ -55,7 +55,7 @@ class EmbeddingModel:
         except CallError as fault:
             failed = fault
         where = self.api_base or f"the provider of {self.model}"
-        if failed.kind.passes and failed.kind is not Kind.UNREACHABLE:
+        if failed.kind.passes and failed.kind is not FaultKind.UNREACHABLE:
             raise ModelUnavailableError(f"{self.model}: {where} {failed}")
         raise ModelError(f"the embedding model {self.model} cannot be used: {where} {failed}; {_CURE}")
 
@@ -96,10 +96,10 @@ class EmbeddingModel:
             entries = sorted((entry if isinstance(entry, dict) else dict(entry) for entry in response.data), key=_place)
             vectors = [[float(x) for x in entry["embedding"]] for entry in entries]
         except (TypeError, ValueError, KeyError, AttributeError) as error:
-            raise CallError(Kind.UNREADABLE, "no embeddings in the answer") from error
+            raise CallError(FaultKind.UNREADABLE, "no embeddings in the answer") from error
         lengths = {len(vector) for vector in vectors}
         if len(vectors) != wanted or len(lengths) != 1 or not all(isfinite(x) for v in vectors for x in v):
-            raise CallError(Kind.UNREADABLE, f"{wanted} vectors of one length with finite numbers expected")
+            raise CallError(FaultKind.UNREADABLE, f"{wanted} vectors of one length with finite numbers expected")
         return vectors
 
 

@@ -55,7 +55,7 @@ _PREFIX = re.compile(r"^(?:(?:litellm\.)?\w*(?:Error|Exception|Timeout)(?: -|:)\
 _LONGEST = 300
 
 
-class Kind(Enum):
+class FaultKind(Enum):
     """Kinds of faults, each of which is met in its own way."""
 
     TIMEOUT = "did not answer in time"
@@ -75,7 +75,7 @@ class Kind(Enum):
     @property
     def passes(self) -> bool:
         """Whether the same request may work in a moment."""
-        return self in (Kind.TIMEOUT, Kind.DROPPED, Kind.RATE, Kind.SERVER, Kind.UNREACHABLE)
+        return self in (FaultKind.TIMEOUT, FaultKind.DROPPED, FaultKind.RATE, FaultKind.SERVER, FaultKind.UNREACHABLE)
 
 
 class CallError(Exception):
@@ -85,7 +85,7 @@ class CallError(Exception):
         retry_after: How long the server asks to wait [s]; None if it doesn't say.
     """
 
-    def __init__(self, kind: Kind, detail: str = "", retry_after: float | None = None) -> None:
+    def __init__(self, kind: FaultKind, detail: str = "", retry_after: float | None = None) -> None:
         super().__init__(kind, detail, retry_after)
         self.kind, self.detail, self.retry_after, self.attempts = kind, detail, retry_after, 1
 
@@ -106,15 +106,15 @@ def fault_of(error: BaseException, key: str | None) -> CallError:
             kind = _by_status(link.response.status_code, str(error))
             return CallError(kind, f"{link.response.status_code}: {detail}", _retry_after(link.response.headers))
         if isinstance(link, httpx.ConnectError | httpx.ConnectTimeout | httpx.UnsupportedProtocol | httpx.InvalidURL):
-            return CallError(Kind.UNREACHABLE, _words(str(link), key))
+            return CallError(FaultKind.UNREACHABLE, _words(str(link), key))
         if isinstance(link, httpx.TimeoutException | TimeoutError):
-            return CallError(Kind.TIMEOUT)
+            return CallError(FaultKind.TIMEOUT)
         if isinstance(link, httpx.TransportError):
-            return CallError(Kind.DROPPED, _words(str(link), key))
+            return CallError(FaultKind.DROPPED, _words(str(link), key))
     if any(isinstance(link, ValueError) for link in chain) or _UNREADABLE.search(str(error)):
-        return CallError(Kind.UNREADABLE, detail)
+        return CallError(FaultKind.UNREADABLE, detail)
     if _NO_PROVIDER.search(str(error)):
-        return CallError(Kind.MODEL, "LiteLLM knows no provider of that name")
+        return CallError(FaultKind.MODEL, "LiteLLM knows no provider of that name")
     status = getattr(error, "status_code", None)
     return CallError(_by_status(status if isinstance(status, int) else 400, str(error)), detail)
 
@@ -127,26 +127,26 @@ def _chain(error: BaseException | None) -> Iterator[BaseException]:
         error = error.__cause__ or error.__context__
 
 
-def _by_status(status: int, text: str) -> Kind:
+def _by_status(status: int, text: str) -> FaultKind:
     if status in (401, 403):
-        return Kind.KEY
+        return FaultKind.KEY
     if status == 404:
-        return Kind.MODEL
+        return FaultKind.MODEL
     if status in (402, 429) and (status == 402 or _NO_MONEY.search(text)):
-        return Kind.QUOTA
+        return FaultKind.QUOTA
     if status == 429:
-        return Kind.RATE
+        return FaultKind.RATE
     if status == 408:
-        return Kind.TIMEOUT
+        return FaultKind.TIMEOUT
     if status < 400:
-        return Kind.UNREADABLE
+        return FaultKind.UNREADABLE
     if status in (400, 413, 422) and (status == 413 or _TOO_LONG.search(text)):
-        return Kind.TOO_LONG
+        return FaultKind.TOO_LONG
     if status in (400, 422, 501) and _FORM.search(text):
-        return Kind.FORM
+        return FaultKind.FORM
     if status >= 500 or status in (409, 425):
-        return Kind.SERVER
-    return Kind.FILTERED if _FILTERED.search(text) else Kind.REFUSED
+        return FaultKind.SERVER
+    return FaultKind.FILTERED if _FILTERED.search(text) else FaultKind.REFUSED
 
 
 def _words(text: str, key: str | None) -> str:
@@ -173,22 +173,25 @@ def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
     where, said = _server(settings), f" ({fault.detail})" if fault.detail else ""
     variable = settings.api_key_env
     key = variable or "the variable that llm.api_key_env names"
-    if fault.kind is Kind.KEY and variable is None:
+    if fault.kind is FaultKind.KEY and variable is None:
         return ModelError(
             f"{where} refuses requests without a key{said}; set llm.api_key_env to the name of the variable that holds "
             "the key"
         )
-    what = {Kind.KEY: f"refuses the key in {variable}", Kind.MODEL: f"does not know the model {settings.model}"}
+    what = {
+        FaultKind.KEY: f"refuses the key in {variable}",
+        FaultKind.MODEL: f"does not know the model {settings.model}",
+    }
     cure = {
-        Kind.KEY: f"set {key} to a valid key",
-        Kind.MODEL: "set llm.model to one that it has, or check llm.api_base",
-        Kind.UNREACHABLE: "start the server, or set llm.api_base to its address",
-        Kind.QUOTA: f"buy some, or set {key} to another key",
-        Kind.UNREADABLE: "set llm.api_base to the address of its API, which often ends in /v1",
-        Kind.TIMEOUT: "raise llm.deadline, or check llm.api_base",
-        Kind.RATE: "try later, or raise llm.attempts",
-        Kind.SERVER: "try later, or check llm.model and llm.api_base",
-        Kind.DROPPED: "try later, or check llm.api_base",
+        FaultKind.KEY: f"set {key} to a valid key",
+        FaultKind.MODEL: "set llm.model to one that it has, or check llm.api_base",
+        FaultKind.UNREACHABLE: "start the server, or set llm.api_base to its address",
+        FaultKind.QUOTA: f"buy some, or set {key} to another key",
+        FaultKind.UNREADABLE: "set llm.api_base to the address of its API, which often ends in /v1",
+        FaultKind.TIMEOUT: "raise llm.deadline, or check llm.api_base",
+        FaultKind.RATE: "try later, or raise llm.attempts",
+        FaultKind.SERVER: "try later, or check llm.model and llm.api_base",
+        FaultKind.DROPPED: "try later, or check llm.api_base",
     }.get(fault.kind, "change the setting of llm that it complains about")
     return ModelError(f"{where} {what.get(fault.kind, fault.kind.value)}{said}; {cure}")
 

@@ -8,7 +8,7 @@ from fake_sender import GOOD, FakeSender, chat, question, reply
 
 from codriving.errors import ModelError
 from codriving.llm.cache import AnswerCache
-from codriving.llm.faults import CallError, Kind
+from codriving.llm.faults import CallError, FaultKind
 from codriving.llm.question import Answer, Question
 from codriving.llm.request import ChatRequest
 from codriving.llm.spending import Spending
@@ -18,9 +18,9 @@ def troubled(request: ChatRequest, form: str) -> CallError | str:
     """A server with a short context, no JSON schema, and a bad first answer."""
     words = request.messages[1].content
     if form == "json_schema":
-        return CallError(Kind.FORM, "400: response_format")
+        return CallError(FaultKind.FORM, "400: response_format")
     if len(words) > 20:
-        return CallError(Kind.TOO_LONG, "400: context")
+        return CallError(FaultKind.TOO_LONG, "400: context")
     return "nonsense" if words == "bad" and len(request.messages) == 2 else GOOD
 
 
@@ -73,7 +73,7 @@ def test_miss_in_replay_is_refused(tmp_path: Path) -> None:
 
 def test_failure_is_not_kept(tmp_path: Path) -> None:
     cache = AnswerCache(tmp_path / "a", "use")
-    client = chat(FakeSender([CallError(Kind.SERVER)] * 4), cache=cache)
+    client = chat(FakeSender([CallError(FaultKind.SERVER)] * 4), cache=cache)
     with pytest.raises(Exception, match="asked 4 times"):
         client.ask([question()])
     assert client.ask([question()])[0].value is not None

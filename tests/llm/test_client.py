@@ -10,7 +10,7 @@ from fake_sender import GOOD, Choice, FakeSender, Waits, chat, question, reply
 
 from codriving.errors import ModelError, ModelUnavailableError, SpendingLimitError
 from codriving.llm.attempts import Retry
-from codriving.llm.faults import CallError, Kind
+from codriving.llm.faults import CallError, FaultKind
 from codriving.llm.question import Answer, Question
 from codriving.llm.request import ChatRequest
 from codriving.llm.spending import Spending
@@ -23,8 +23,8 @@ BAD = {
     "filtered": reply("", "content_filter"),
     "refusal": reply("", refusal="I cannot help with that."),
     "page": reply("<html><body>Sign in</body></html>"),
-    "unreadable": CallError(Kind.UNREADABLE, "html"),
-    "blocked": CallError(Kind.FILTERED, "400: policy"),
+    "unreadable": CallError(FaultKind.UNREADABLE, "html"),
+    "blocked": CallError(FaultKind.FILTERED, "400: policy"),
     "no JSON": reply("IDLE"),
     "unknown action": reply('{"reason": "x", "action": "FLY"}'),
     "missing field": reply('{"action": "IDLE"}'),
@@ -85,7 +85,7 @@ def test_what_the_asker_finds_wrong_is_told_once() -> None:
 def test_long_question_is_shortened_until_it_fits() -> None:
     def reply_to(request: ChatRequest, form: str) -> CallError | str:
         long = len(request.messages[1].content) > 10
-        return CallError(Kind.TOO_LONG, "400: context") if long else GOOD
+        return CallError(FaultKind.TOO_LONG, "400: context") if long else GOOD
 
     def of(length: int) -> Question:
         return question("x" * length, shorter=lambda: of(length - 10) if length > 10 else None)
@@ -98,7 +98,7 @@ def test_long_question_is_shortened_until_it_fits() -> None:
 
 
 def test_question_that_cannot_be_shortened_has_no_answer() -> None:
-    answer = ask(chat(FakeSender([CallError(Kind.TOO_LONG)])))
+    answer = ask(chat(FakeSender([CallError(FaultKind.TOO_LONG)])))
     assert answer.value is None
     assert "longer than the model's context" in answer.problem
     assert not answer.asked_again
@@ -106,7 +106,7 @@ def test_question_that_cannot_be_shortened_has_no_answer() -> None:
 
 def test_form_is_stepped_down_once_for_all_questions() -> None:
     def reply_to(request: ChatRequest, form: str) -> CallError | str:
-        return GOOD if form == "text" else CallError(Kind.FORM, f"400: response_format {form}")
+        return GOOD if form == "text" else CallError(FaultKind.FORM, f"400: response_format {form}")
 
     sender = FakeSender(reply_to)
     client = chat(sender)
@@ -117,8 +117,8 @@ def test_form_is_stepped_down_once_for_all_questions() -> None:
     assert [form for _, form, _ in sender.sent] == ["json_schema", "json_object", "text", "text", "text", "text"]
 
 
-@pytest.mark.parametrize("kind", [Kind.TIMEOUT, Kind.DROPPED, Kind.RATE, Kind.SERVER])
-def test_what_may_pass_is_tried_again_and_seen(kind: Kind) -> None:
+@pytest.mark.parametrize("kind", [FaultKind.TIMEOUT, FaultKind.DROPPED, FaultKind.RATE, FaultKind.SERVER])
+def test_what_may_pass_is_tried_again_and_seen(kind: FaultKind) -> None:
     waits, seen = Waits(), list[Retry]()
     client = chat(FakeSender([CallError(kind, "500: busy")] * 3), waits)
     client.on_retry = seen.append
@@ -130,8 +130,8 @@ def test_what_may_pass_is_tried_again_and_seen(kind: Kind) -> None:
     assert "attempt 2 of 4" in str(seen[0])
 
 
-@pytest.mark.parametrize("kind", [Kind.TIMEOUT, Kind.DROPPED, Kind.RATE, Kind.SERVER])
-def test_retries_are_bounded_and_end_the_episode(kind: Kind) -> None:
+@pytest.mark.parametrize("kind", [FaultKind.TIMEOUT, FaultKind.DROPPED, FaultKind.RATE, FaultKind.SERVER])
+def test_retries_are_bounded_and_end_the_episode(kind: FaultKind) -> None:
     sender = FakeSender([CallError(kind)] * 99)
     with pytest.raises(ModelUnavailableError, match="asked 4 times"):
         ask(chat(sender))
@@ -140,18 +140,18 @@ def test_retries_are_bounded_and_end_the_episode(kind: Kind) -> None:
 
 def test_wait_that_the_server_asks_for_is_kept() -> None:
     waits = Waits()
-    ask(chat(FakeSender([CallError(Kind.RATE, "429", retry_after=20.0)]), waits))
+    ask(chat(FakeSender([CallError(FaultKind.RATE, "429", retry_after=20.0)]), waits))
     assert 20 <= waits[0] <= 20.2
 
 
 def test_server_that_asks_for_an_hour_is_given_up() -> None:
-    sender = FakeSender([CallError(Kind.RATE, "429", retry_after=3600.0)] * 9)
+    sender = FakeSender([CallError(FaultKind.RATE, "429", retry_after=3600.0)] * 9)
     with pytest.raises(ModelUnavailableError, match="asked once"):
         ask(chat(sender))
 
 
-@pytest.mark.parametrize("kind", [Kind.KEY, Kind.MODEL, Kind.QUOTA, Kind.UNREACHABLE])
-def test_what_the_user_must_mend_is_refused_at_the_first_call_and_ends_an_episode_later(kind: Kind) -> None:
+@pytest.mark.parametrize("kind", [FaultKind.KEY, FaultKind.MODEL, FaultKind.QUOTA, FaultKind.UNREACHABLE])
+def test_what_the_user_must_mend_is_refused_at_the_first_call_and_ends_an_episode_later(kind: FaultKind) -> None:
     with pytest.raises(ModelError, match=r"set |buy"):
         ask(chat(FakeSender([CallError(kind, "no")] * 9)))
     client = chat(FakeSender([GOOD, *[CallError(kind, "no")] * 9]))
@@ -161,7 +161,7 @@ def test_what_the_user_must_mend_is_refused_at_the_first_call_and_ends_an_episod
 
 
 def test_other_refusals_end_the_episode_without_a_retry() -> None:
-    sender = FakeSender([CallError(Kind.REFUSED, "400: no")] * 9)
+    sender = FakeSender([CallError(FaultKind.REFUSED, "400: no")] * 9)
     with pytest.raises(ModelUnavailableError, match="400: no"):
         ask(chat(sender))
     assert len(sender.sent) == 1
@@ -189,7 +189,7 @@ def test_all_questions_of_a_step_are_asked_at_once_and_answered_in_order() -> No
 
 def test_one_that_fails_does_not_stop_the_others_from_being_paid_for() -> None:
     def reply_to(request: ChatRequest, form: str) -> str | CallError:
-        return CallError(Kind.REFUSED, "400") if request.messages[1].content == "0" else GOOD
+        return CallError(FaultKind.REFUSED, "400") if request.messages[1].content == "0" else GOOD
 
     spending = Spending()
     with pytest.raises(ModelUnavailableError):
@@ -215,7 +215,7 @@ def test_nothing_asked_is_nothing_sent() -> None:
 
 
 def test_429_lets_fewer_through() -> None:
-    sender = FakeSender([CallError(Kind.RATE)] * 8)
+    sender = FakeSender([CallError(FaultKind.RATE)] * 8)
     client = chat(sender, max_concurrency=8)
     client.ask([question(str(index)) for index in range(8)])
     sender.most = 0
@@ -248,13 +248,13 @@ def test_key_is_read_when_it_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 PREFLIGHT: list[tuple[CallError, str]] = [
-    (CallError(Kind.KEY, "401"), "set FAKE_KEY to a valid key"),
-    (CallError(Kind.MODEL, "404"), "set llm.model"),
-    (CallError(Kind.UNREACHABLE, "refused"), "set llm.api_base"),
-    (CallError(Kind.UNREADABLE, "html"), "set llm.api_base"),
-    (CallError(Kind.TIMEOUT), "llm.deadline"),
-    (CallError(Kind.QUOTA, "429"), "FAKE_KEY"),
-    (CallError(Kind.REFUSED, "400: temperature"), "400: temperature"),
+    (CallError(FaultKind.KEY, "401"), "set FAKE_KEY to a valid key"),
+    (CallError(FaultKind.MODEL, "404"), "set llm.model"),
+    (CallError(FaultKind.UNREACHABLE, "refused"), "set llm.api_base"),
+    (CallError(FaultKind.UNREADABLE, "html"), "set llm.api_base"),
+    (CallError(FaultKind.TIMEOUT), "llm.deadline"),
+    (CallError(FaultKind.QUOTA, "429"), "FAKE_KEY"),
+    (CallError(FaultKind.REFUSED, "400: temperature"), "400: temperature"),
 ]
 
 
@@ -268,7 +268,7 @@ def test_preflight_refuses_in_one_line_that_says_what_to_set(
         chat(sender, api_key_env="FAKE_KEY").preflight()
     assert "\n" not in str(refusal.value)
     assert refusal.value.__cause__ is refusal.value.__context__ is None
-    if fault.kind is Kind.UNREACHABLE:
+    if fault.kind is FaultKind.UNREACHABLE:
         assert len(sender.sent) == 1
 
 

@@ -6,7 +6,7 @@ from email.utils import format_datetime
 import httpx
 import pytest
 
-from codriving.llm.faults import CallError, Kind, fault_of, redacted
+from codriving.llm.faults import CallError, FaultKind, fault_of, redacted
 
 REQUEST = httpx.Request("POST", "http://server/v1/chat/completions")
 
@@ -36,43 +36,43 @@ def on_the_way(error: Exception) -> CallError:
 @pytest.mark.parametrize(
     ("status", "text", "kind"),
     [
-        (401, "Incorrect API key", Kind.KEY),
-        (403, "forbidden", Kind.KEY),
-        (404, "The model `x` does not exist", Kind.MODEL),
-        (402, "pay", Kind.QUOTA),
-        (429, "Rate limit reached", Kind.RATE),
-        (429, "You exceeded your current quota, insufficient_quota", Kind.QUOTA),
-        (500, "invalid_request_error", Kind.SERVER),
-        (502, "<html>", Kind.SERVER),
-        (529, "overloaded", Kind.SERVER),
-        (408, "slow", Kind.TIMEOUT),
-        (400, "This model's maximum context length is 4096 tokens", Kind.TOO_LONG),
-        (400, "prompt is too long: 210000 tokens > 200000 maximum", Kind.TOO_LONG),
-        (413, "Request Entity Too Large", Kind.TOO_LONG),
-        (400, "Invalid parameter: 'response_format' of type 'json_schema' is not supported", Kind.FORM),
-        (422, "Failed to parse grammar", Kind.FORM),
-        (400, "rejected by our content policy", Kind.FILTERED),
-        (400, "Invalid value for 'temperature'", Kind.REFUSED),
-        (400, "max_tokens is too large: 99999", Kind.REFUSED),
-        (200, "Unable to get json response", Kind.UNREADABLE),
+        (401, "Incorrect API key", FaultKind.KEY),
+        (403, "forbidden", FaultKind.KEY),
+        (404, "The model `x` does not exist", FaultKind.MODEL),
+        (402, "pay", FaultKind.QUOTA),
+        (429, "Rate limit reached", FaultKind.RATE),
+        (429, "You exceeded your current quota, insufficient_quota", FaultKind.QUOTA),
+        (500, "invalid_request_error", FaultKind.SERVER),
+        (502, "<html>", FaultKind.SERVER),
+        (529, "overloaded", FaultKind.SERVER),
+        (408, "slow", FaultKind.TIMEOUT),
+        (400, "This model's maximum context length is 4096 tokens", FaultKind.TOO_LONG),
+        (400, "prompt is too long: 210000 tokens > 200000 maximum", FaultKind.TOO_LONG),
+        (413, "Request Entity Too Large", FaultKind.TOO_LONG),
+        (400, "Invalid parameter: 'response_format' of type 'json_schema' is not supported", FaultKind.FORM),
+        (422, "Failed to parse grammar", FaultKind.FORM),
+        (400, "rejected by our content policy", FaultKind.FILTERED),
+        (400, "Invalid value for 'temperature'", FaultKind.REFUSED),
+        (400, "max_tokens is too large: 99999", FaultKind.REFUSED),
+        (200, "Unable to get json response", FaultKind.UNREADABLE),
     ],
 )
-def test_status_and_text_decide(status: int, text: str, kind: Kind) -> None:
+def test_status_and_text_decide(status: int, text: str, kind: FaultKind) -> None:
     assert from_server(status, text).kind is kind
 
 
 @pytest.mark.parametrize(
     ("error", "kind"),
     [
-        (httpx.ConnectError("refused"), Kind.UNREACHABLE),
-        (httpx.ConnectTimeout("no answer"), Kind.UNREACHABLE),
-        (httpx.ReadTimeout("slow"), Kind.TIMEOUT),
-        (httpx.RemoteProtocolError("disconnected"), Kind.DROPPED),
-        (httpx.ReadError("reset"), Kind.DROPPED),
-        (ValueError("Expecting value"), Kind.UNREADABLE),
+        (httpx.ConnectError("refused"), FaultKind.UNREACHABLE),
+        (httpx.ConnectTimeout("no answer"), FaultKind.UNREACHABLE),
+        (httpx.ReadTimeout("slow"), FaultKind.TIMEOUT),
+        (httpx.RemoteProtocolError("disconnected"), FaultKind.DROPPED),
+        (httpx.ReadError("reset"), FaultKind.DROPPED),
+        (ValueError("Expecting value"), FaultKind.UNREADABLE),
     ],
 )
-def test_connection_decides(error: Exception, kind: Kind) -> None:
+def test_connection_decides(error: Exception, kind: FaultKind) -> None:
     assert on_the_way(error).kind is kind
 
 
