@@ -18,11 +18,8 @@ class FrozenMemory(RetrievalMemory):
     Args:
         snapshot: SHA-256 of its contents, or ``auto`` for what they are when a run begins.
         interactions: How many of its first interactions count; None for all.
-        embedder: ``features``, ``words`` or ``litellm``; has to be the file's.
-        embedding_model: For ``litellm``: model, as LiteLLM calls it.
-        embedding_api_base: For ``litellm``: address of the server; None for the provider's own.
-        embedding_key_env: For ``litellm``: name of the environment variable that holds the key; None sends none.
-        embedding_deadline: For ``litellm``: how long one attempt may take [s].
+        embedder: ``features``, ``words`` or ``litellm``; has to be the file's. The ``embedding_`` settings are for
+            ``litellm``, see ``EmbeddingServer``.
 
     Raises:
         ConfigError: If a setting breaks its rule.

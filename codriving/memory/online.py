@@ -21,11 +21,8 @@ class OnlineMemory(RetrievalMemory):
     Args:
         file: The file that it grows in; None takes one in the run folder.
         reflection: Who writes the lessons: ``rules``, or ``llm`` for those of mistakes.
-        embedder: ``features``, ``words`` or ``litellm``.
-        embedding_model: For ``litellm``: model, as LiteLLM calls it.
-        embedding_api_base: For ``litellm``: address of the server; None for the provider's own.
-        embedding_key_env: For ``litellm``: name of the environment variable that holds the key; None sends none.
-        embedding_deadline: For ``litellm``: how long one attempt may take [s].
+        embedder: ``features``, ``words`` or ``litellm``. The ``embedding_`` settings are for ``litellm``, see
+            ``EmbeddingServer``.
 
     Raises:
         ConfigError: If a setting breaks its rule.
