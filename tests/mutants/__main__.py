@@ -7,6 +7,7 @@ the changed line are run until one fails. A change that no test notices is a *su
 
 import argparse
 import random
+import re
 import sys
 import time
 from collections import Counter
@@ -31,7 +32,7 @@ def main() -> int:
     every = [c for p in files for c in changes(str(p.relative_to(root)), p.read_text(encoding="utf-8"))]
     drawn = random.Random(options.seed).sample(every, min(options.number, len(every)))
     if options.only:
-        drawn = [c for c in every if options.only in f"{c.key} {c.file}:{c.line}"]
+        drawn = [c for c in every if re.search(options.only, f"{c.file}:{c.line} {c.key}")]
     began = time.monotonic()
     print(f"{len(every)} changes are possible in {len(files)} files; {len(drawn)} are tried (seed {options.seed})")
     reached = reach(root, options.rooms, options.tests)
@@ -91,7 +92,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--number", type=int, default=300, help="how many changes are tried")
     parser.add_argument("--seed", type=int, default=1, help="draws them")
     parser.add_argument("--workers", type=int, default=2, help="changes that are tried at a time")
-    parser.add_argument("--only", default="", help="try the changes whose file, line or text contain this")
+    parser.add_argument("--only", default="", help="try the changes in whose file, line or text this pattern is found")
     parser.add_argument("--root", type=Path, default=HERE.parents[1], help="the repository")
     parser.add_argument("--rooms", nargs="+", default=ROOMS, help="what is changed")
     parser.add_argument("--tests", nargs="+", default=TESTS, help="what has to notice it")
