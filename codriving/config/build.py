@@ -5,8 +5,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeVar, get_args
 
 from codriving.config.coerce import MismatchError, coerce
-from codriving.config.schema import unknown
+from codriving.config.schema import check_root, unknown
 from codriving.config.target import find_class
+from codriving.datatypes.parts import CaseMemory, Method, Metric, Model, Scenario, Simulator
 from codriving.errors import ConfigError
 
 T = TypeVar("T")
@@ -162,3 +163,32 @@ def _locate(message: str, key: str, arguments: Mapping[str, object]) -> str:
 
 def _join(key: str, name: str) -> str:
     return f"{key}.{name}" if key else name
+
+
+EXPECTED: dict[str, type] = {
+    "scenario": Scenario,
+    "executor": object,
+    "cda": object,
+    "llm": Model,
+    "memory": CaseMemory,
+    "metrics": Metric,
+    "launcher": object,
+    "environment": Simulator,
+}
+"""What each node has to be; those of a room further up are checked again where a method or a run takes them."""
+
+
+def validate(resolved: Mapping[str, Any]) -> None:
+    """Check keys, types and ranges of every node by building it, and last the method, which refers to others.
+
+    Raises:
+        ConfigError: With the full key, the rule and the value that broke it.
+    """
+    check_root(resolved)
+    plugins = resolved["plugins"]
+    made: dict[str, Any] = {
+        name: build(resolved[name], expected, name, plugins)
+        for name, expected in EXPECTED.items()
+        if resolved[name] is not None
+    }
+    build(resolved["method"], Method, "method", plugins, {Model: made["llm"], CaseMemory: made.get("memory")})

@@ -52,6 +52,7 @@ FIRST = {
 """Choices that come before the others: in the paper's order, or from the least to the most; the rest goes by name."""
 
 _LINE = re.compile(r"^(\w+):\s*([^#\n]*)")
+_PARENT = re.compile(r"\[(_\w+), _self_\]")
 _DEFAULT = re.compile(r"^\s*-\s*(\w+):\s*\"?(\w+)")
 
 
@@ -74,7 +75,7 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
     """
     if group not in LISTED:
         raise ConfigError(f"unknown group {group}; groups: {', '.join(LISTED)}")
-    found = {file.stem: file for folder in _folders(group, config_dir) for file in sorted(folder.glob("*.yaml"))}
+    found = {file.stem: file for folder in _folders(group, config_dir) for file in sorted(folder.glob("[!_]*.yaml"))}
     first = [name for name in FIRST.get(group, ()) if name in found]
     return {name: found[name] for name in dict.fromkeys([*first, *sorted(found)])}
 
@@ -89,9 +90,11 @@ def describe(file: Path) -> str:
 
 
 def values(file: Path) -> dict[str, str]:
-    """Return the keys of the top level of a YAML and the text of their values; without ``_target_``."""
-    lines = (_LINE.match(line) for line in file.read_text(encoding="utf-8").splitlines())
-    return {m[1]: m[2].strip() for m in lines if m and not m[1].startswith("_")}
+    """Return the keys of the top level of a YAML, and of one that it inherits from, with the text of their values."""
+    found = [m for line in file.read_text(encoding="utf-8").splitlines() if (m := _LINE.match(line))]
+    own = {m[1]: m[2].strip() for m in found if not m[1].startswith("_")}
+    parent = _PARENT.match(own.pop("defaults", ""))
+    return {**(values(conf_dir() / file.parent.name / f"{parent[1]}.yaml") if parent else {}), **own}
 
 
 def default_choice(group: str) -> str | None:

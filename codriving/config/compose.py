@@ -1,7 +1,7 @@
 """Overrides to one resolved config, as a plain dict; in the parent process only, since Hydra's state is global."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +9,8 @@ from codriving.config.choices import check_config_dir
 from codriving.config.locate import conf_dir, experiments_root
 from codriving.config.overrides import prepare
 from codriving.config.plugins import find_beside, gathered
-from codriving.config.rules import check_rules
-from codriving.config.schema import GROUPS, check_root
-from codriving.config.texts import texts
+from codriving.config.schema import GROUPS, LARGEST_SEED, check_root
+from codriving.config.secrets import check_secrets, texts
 from codriving.errors import ConfigError
 
 _ENVIRONMENT = re.compile(r"\$\{\s*oc\.env\b")
@@ -71,9 +70,26 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
         raise ConfigError("the config must be a mapping")
     plain = gathered({str(key): value for key, value in resolved.items()})
     check_root(plain)
-    check_rules(plain)
+    _check_together(plain, choices)
     find_beside(plain["plugins"], config_dir)
     return plain, choices
+
+
+def show(resolved: Mapping[str, Any]) -> str:
+    """Write a composed config as YAML, in the order in which it was composed."""
+    from omegaconf import OmegaConf
+
+    return OmegaConf.to_yaml(OmegaConf.create(dict(resolved)))
+
+
+def _check_together(resolved: Mapping[str, Any], choices: Mapping[str, str]) -> None:
+    """Check what concerns more than one key of the root; rules between the keys of a node are its constructor's."""
+    check_secrets(resolved)
+    last = resolved["seed"] + resolved["episodes"] - 1
+    if last > LARGEST_SEED:
+        raise ConfigError(f"seed + episodes - 1 must be at most {LARGEST_SEED}, got {last}; lower seed or episodes")
+    if choices.get("launcher") == "serial" and resolved["workers"] not in ("auto", 1):
+        raise ConfigError(f"workers must be auto or 1 with launcher=serial, got {resolved['workers']}")
 
 
 def _search_path(config_dir: Path | None) -> str:

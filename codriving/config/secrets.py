@@ -1,10 +1,9 @@
 """Keys of language models are given by the name of an environment variable; one that was typed instead is not shown."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from codriving.config.texts import texts
 from codriving.errors import ConfigError
 
 _VARIABLE = re.compile(r"[A-Z_][A-Z0-9_]*")
@@ -47,3 +46,15 @@ def may_be_secret(token: str) -> bool:
         token: ``key=value`` as typed.
     """
     return _SECRET.search(token.partition("=")[0]) is not None
+
+
+def texts(node: object, key: str = "") -> Iterator[tuple[str, str]]:
+    """Yield every text with its dotted key."""
+    if isinstance(node, Mapping):
+        for name, value in node.items():
+            yield from texts(value, f"{key}.{name}" if key else str(name))
+    elif isinstance(node, list):
+        for index, value in enumerate(node):
+            yield from texts(value, f"{key}.{index}")
+    elif isinstance(node, str):
+        yield key, node

@@ -82,23 +82,21 @@ def _teach(config: dict[str, Any], overrides: Sequence[str], config_dir: Path | 
 
 
 def _set(config: dict[str, Any], key: str, value: object) -> None:
-    """Set a key that is there already; whatever its class does not know is refused when it is built."""
+    """Set a key that is there already; ``settings`` and ``reward`` may get others, which their classes check."""
     node: Any = config
+    where = ""
     *path, last = key.split(".")
-    for depth, part in enumerate((*path, last)):
-        if isinstance(node, list) and part.isdigit() and int(part) < len(node):
-            where: Any = int(part)
-        elif isinstance(node, Mapping) and part in node:
-            where = part
-        elif isinstance(node, Mapping) and depth == len(path) and path and path[-1] in ("settings", "reward"):
-            # What these hold is checked by whoever reads it.
-            where = part
-        else:
-            names = [str(k) for k in range(len(node))] if isinstance(node, list) else list(node or ())
-            raise unknown(key, names, ".".join(path[:depth]) or "the training")
-        if depth == len(path):
-            node[where] = value
-        else:
-            node = node[where]
-            if not isinstance(node, list | dict):
-                raise unknown(key, [], ".".join(path[: depth + 1]))
+    for part in path:
+        node, where = _inside(node, part, where, key), f"{where}.{part}" if where else part
+    if not (isinstance(node, Mapping) and path and path[-1] in ("settings", "reward")):
+        _inside(node, last, where, key)
+    node[int(last) if isinstance(node, list) else last] = value
+
+
+def _inside(node: object, part: str, where: str, key: str) -> Any:  # noqa: ANN401 - any plain value
+    """Return what stands in a node under a key, or in a list under a number."""
+    found = dict(enumerate(node)) if isinstance(node, list) else node if isinstance(node, Mapping) else {}
+    names = {str(name): value for name, value in found.items()}
+    if part not in names:
+        raise unknown(key, names, where or "the training")
+    return names[part]

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any
 
 from codriving.config.build import build
-from codriving.config.show import show
+from codriving.config.compose import show
 from codriving.config.sweep import Point
 from codriving.datatypes.parts import Scenario
 from codriving.errors import ConfigError

@@ -5,10 +5,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from codriving.config.build import build
+from codriving.config.build import build, validate
 from codriving.config.choices import choices
 from codriving.config.compose import compose
-from codriving.config.validate import validate
 from codriving.datatypes.parts import Model, RuleModel, Scenario
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError
 from codriving.experiment.asking import REPLAY

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from codriving.config.build import build
+from codriving.config.build import build, validate
 from codriving.config.compose import compose_named
 from codriving.config.schema import ROOT
 from codriving.config.sweep import Point
-from codriving.config.validate import validate
 from codriving.errors import ConfigError
 from codriving.experiment.cells import Cell, make_cell
 from codriving.experiment.launchers import Launcher

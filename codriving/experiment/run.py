@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from codriving.config.show import show
+from codriving.config.compose import show
 from codriving.config.sweep import Point, expand
 from codriving.errors import ConfigError, ModelError
 from codriving.experiment.cells import Cell

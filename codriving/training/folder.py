@@ -10,7 +10,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, Protocol
 
-from codriving.config.show import show
+from codriving.config.compose import show
 from codriving.errors import RunFolderError, TrainingError
 from codriving.runs.atomic import whole_folder, write_text
 from codriving.runs.run_folder import locked

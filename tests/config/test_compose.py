@@ -3,9 +3,10 @@
 from pathlib import Path
 
 import pytest
+import yaml
 
 from codriving.config.choices import choices
-from codriving.config.compose import compose
+from codriving.config.compose import compose, show
 from codriving.errors import ConfigError
 
 
@@ -147,3 +148,8 @@ def test_a_broken_yaml_is_the_users_to_mend(tmp_path: Path) -> None:
     assert "broken.yaml" in refused("scenario=broken", config_dir=folder)
     folder = user_folder(tmp_path, "scenario", "empty", "")
     assert refused("scenario=empty", config_dir=folder).startswith("scenario")
+
+
+def test_shown_config_reads_back_the_same() -> None:
+    resolved = compose(["run=2026_01", "cda=prescriptive"])
+    assert yaml.safe_load(show(resolved)) == resolved
