@@ -1,7 +1,7 @@
 """What an episode is judged by; undefined is not zero."""
 
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from typing import Literal
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,19 +47,16 @@ class NamedNumber:
     shown: bool = False
 
 
-Setting: TypeAlias = str | int | float | bool | None
-
-
 @dataclass(frozen=True, slots=True)
 class Score:
     """The measured quality of one episode.
 
     Attributes:
-        settings: Those of the metric that gave it, by key; filled in by what calls the metric.
+        settings: Those of the metric that gave it, as JSON by key; filled in by what calls the metric.
     """
 
     success: bool
     pets: tuple[Pet, ...] = ()
     travels: tuple[TravelScore, ...] = ()
     numbers: tuple[NamedNumber, ...] = ()
-    settings: dict[str, Setting] = field(default_factory=dict)
+    settings: dict[str, str] = field(default_factory=dict)

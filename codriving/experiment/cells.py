@@ -1,6 +1,6 @@
 """A cell: one row of a table, which is one resolved config on many seeds."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -14,13 +14,21 @@ from codriving.experiment.contents import contents
 from codriving.experiment.episode import Labels
 from codriving.experiment.naming import folder_name, swept_values
 from codriving.experiment.objects import make_objects
+from codriving.experiment.scoring import settings_of_metric
 from codriving.runs.identity import CHOICES, CellEntry, NamedFile, fingerprint, settings_of
 from codriving.runs.redaction import redact
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One row of a table."""
+    """One row of a table.
+
+    Rows that differ in their metrics alone are driven once, and share a folder.
+
+    Attributes:
+        metrics: What the metric calls itself.
+        score: Name of its scores in a record; empty for that of the metric.
+    """
 
     folder: str
     labels: Labels
@@ -29,15 +37,26 @@ class Cell:
     swept: Mapping[str, str] = field(default_factory=dict)
     choices: Mapping[str, str] = field(default_factory=dict)
     files: tuple[NamedFile, ...] = ()
+    score: str = ""
 
     @property
     def config_text(self) -> str:
         """Its config as YAML, without secrets."""
         return show(redact(self.resolved))
 
+    @property
+    def score_name(self) -> str:
+        """Name of its scores in a record."""
+        return self.score or self.metrics
+
+    @property
+    def metric_settings(self) -> dict[str, str]:
+        """Settings of its metric, by dotted key."""
+        return settings_of_metric(self.resolved.get("metrics", {}))
+
     @cached_property
     def fingerprint(self) -> str:
-        """What tells it from all others."""
+        """What tells what is driven from all others; metrics take no part."""
         labels = self.labels
         names = (labels.scenario, labels.method, labels.variant, labels.reasoner)
         return fingerprint(names, self.choices, self.resolved, self.files)
@@ -51,7 +70,7 @@ class Cell:
             variant=self.labels.variant,
             reasoner=self.labels.reasoner,
             fingerprint=self.fingerprint,
-            swept=dict(self.swept),
+            swept={key: value for key, value in self.swept.items() if key.partition(".")[0] != "metrics"},
             settings=settings_of(self.resolved),
             choices={group: name for group, name in self.choices.items() if group in (*CHOICES, "cda")},
             files=self.files,
@@ -71,12 +90,19 @@ def make_cell(
     """
     scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
     objects = make_objects(resolved)
-    method = objects.method
+    method, (scorer,) = objects.method, objects.metrics.values()
     method.check_road(scenario.road, scenario.pace.target_speeds, 1 / scenario.pace.decision_frequency)
-    for key, made in (("scenario", scenario), ("method", method), ("metrics", objects.metrics)):
+    for key, made in (("scenario", scenario), ("method", method), ("metrics", scorer.metric)):
         if not made.name:
             raise ConfigError(f"{key}: {type(made).__name__} needs an attribute 'name' of type str for the tables")
     labels = Labels(scenario.name, method.name, method.variant, method.reasoner, method.remembers)
     swept = swept_values(point.swept, resolved) if point else {}
     files = contents(resolved, method.files(scenario.road))
-    return Cell(folder_name(labels), labels, resolved, objects.metrics.name, swept, choices or {}, files)
+    return Cell(folder_name(labels), labels, resolved, scorer.metric.name, swept, choices or {}, files)
+
+
+def with_metrics(config: Mapping[str, Any], rows: Sequence[Cell]) -> dict[str, Any]:
+    """Put into a resolved config the metrics of all rows that it is driven for, by the name of their scores."""
+    metrics = {row.score_name: row.resolved.get("metrics", {}) for row in rows}
+    plugins = dict.fromkeys(module for row in rows for module in row.resolved.get("plugins", []))
+    return {**config, "metrics": metrics, "plugins": list(plugins)}

@@ -168,7 +168,7 @@ def _results(driven: Driven, without: str = "") -> Iterator[tuple[Cell, CellResu
         dropped.add(METHOD_CHOICE)
     for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True):
         swept = {key: value for key, value in cell.swept.items() if key not in dropped}
-        yield cell, CellResults(records, swept, cpu=cpu_per_decision(timings), metric=cell.metrics)
+        yield cell, CellResults(records, swept, cpu=cpu_per_decision(timings), metric=cell.score_name)
 
 
 def _row(cell: Cell) -> tuple[object, ...]:

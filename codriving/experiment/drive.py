@@ -13,7 +13,7 @@ from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
 from codriving.errors import ModelError, ModelUnavailableError
 from codriving.experiment.asking import Asked
-from codriving.experiment.cells import Cell
+from codriving.experiment.cells import Cell, with_metrics
 from codriving.experiment.film import FilmEpisode
 from codriving.experiment.launchers import Launcher, Serial
 from codriving.experiment.objects import BuildObjects, modules_to_preload
@@ -21,6 +21,7 @@ from codriving.experiment.plan import Plan
 from codriving.experiment.processes import Processes
 from codriving.experiment.progress import show_progress
 from codriving.experiment.remembering import growing, learns
+from codriving.experiment.scoring import scored
 from codriving.experiment.threads import Threads
 from codriving.experiment.worker import Job, Objects, Report, SaveEpisode, Unit
 from codriving.reports.columns import Table, table
@@ -148,9 +149,11 @@ def drive(
         # Before the folder is made: a model that cannot be reached leaves nothing behind.
         Asked(plan.cells).preflight()
     asked = manifest_of(plan)
-    with RunFolder(_path(plan), asked, {cell.folder: cell.config_text for cell in plan.cells}) as folder:
+    with RunFolder(_path(plan), asked, {cell.folder: cell.config_text for cell in plan.driven}) as folder:
         # A cell that is there already keeps its folder, whatever it would be called in this run.
-        cells = [replace(cell, folder=name) for cell, name in zip(plan.cells, folder.manifest.rows, strict=True)]
+        names = dict(zip((cell.folder for cell in plan.driven), folder.manifest.rows, strict=True))
+        cells = [replace(cell, folder=names[cell.folder]) for cell in plan.driven]
+        shown = [replace(cell, folder=names[cell.folder]) for cell in plan.cells]
         records = _records(folder, cells, plan.seeds)
         # One batch of all cells: no core waits for the last episode of a cell.
         units = [Unit(cell.folder, seed) for cell in cells for seed in plan.seeds]
@@ -162,6 +165,9 @@ def drive(
         if not is_new:
             models.preflight()
         resolved = {cell.folder: growing(cell.resolved, folder.path, cell.folder) for cell in cells}
+        resolved = {
+            name: with_metrics(config, [c for c in shown if c.folder == name]) for name, config in resolved.items()
+        }
         save = SaveEpisode(folder.path, variables_in([cell.resolved for cell in cells]))
         job = Job({cell.folder: cell.labels for cell in cells}, (build or BuildObjects)(resolved), save, film)
         preload = [*modules_to_preload(plan.configs.values()), *(["codriving.animation.film"] if film else [])]
@@ -186,8 +192,15 @@ def drive(
         finally:
             folder.clean()
         everything = _records(folder, cells, plan.seeds, records, errors=True)
-        rows = [[everything[Unit(cell.folder, seed)] for seed in plan.seeds] for cell in cells]
-        driven = Driven(cells, rows, _timings(folder, rows, cells), folder.path)
+        by_folder = {
+            cell.folder: scored(
+                [(folder.episode(cell.folder, seed), everything[Unit(cell.folder, seed)]) for seed in plan.seeds],
+                resolved[cell.folder],
+            )
+            for cell in cells
+        }
+        rows = [by_folder[cell.folder] for cell in shown]
+        driven = Driven(shown, rows, _timings(folder, rows, shown), folder.path)
         outputs = make_outputs(driven)
         tables = _write(plan, driven, outputs)
         kept = len(units) - len(missing)
@@ -291,8 +304,8 @@ def manifest_of(plan: Plan) -> Manifest:
         created=datetime.now(UTC).isoformat(timespec="seconds"),
         first_seed=plan.first_seed,
         episodes=plan.episodes,
-        rows=tuple(cell.folder for cell in plan.cells),
-        cells=tuple(cell.entry() for cell in plan.cells),
+        rows=tuple(cell.folder for cell in plan.driven),
+        cells=tuple(cell.entry() for cell in plan.driven),
         versions=versions(),
         commit=commit(),
         machine=machine(),
@@ -328,13 +341,16 @@ def _write(plan: Plan, driven: Driven, outputs: Outputs) -> RunTables:
     """Write the tables of every run, and what the command adds."""
     each = list(zip(driven.cells, driven.records, driven.timings, strict=True))
     results = [
-        CellResults(records, cell.swept, seconds_per_decision(timings), metric=cell.metrics)
+        CellResults(records, cell.swept, seconds_per_decision(timings), metric=cell.score_name)
         for cell, records, timings in each
     ]
     tables = run_tables(results, read_paper(experiments_dir()), driven.metrics, plan.notes)
     timed = [
         TimedEpisode(record, timing, cell.swept)
-        for cell, records, timings in each
+        # What was driven once has cost time once, by however many metrics it was scored.
+        for cell, records, timings in {
+            cell.folder: (cell, records, timings) for cell, records, timings in each
+        }.values()
         for record, timing in zip(records, timings, strict=True)
     ]
     try:

@@ -8,11 +8,12 @@ from time import perf_counter, thread_time
 from typing import Any
 
 from codriving.datatypes.outcome import Ending, Outcome
-from codriving.datatypes.parts import Method, Metric, Simulator
+from codriving.datatypes.parts import Method, Simulator
 from codriving.datatypes.record import EpisodeRecord, Participant
 from codriving.datatypes.score import Score
 from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import ModelError, ModelUnavailableError
+from codriving.experiment.scoring import Scorer
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +76,7 @@ class _Log:
 def run_episode(
     environment: Simulator,
     method: Method,
-    metrics: Metric,
+    metrics: Mapping[str, Scorer],
     seed: int,
     labels: Labels,
     go_on: Callable[[], None] = lambda: None,
@@ -86,6 +87,7 @@ def run_episode(
     language model that must not be used any more: neither is this episode's fault.
 
     Args:
+        metrics: By the name of their scores.
         go_on: Called before each decision; raises what is no ``Exception`` to give the episode up.
 
     Raises:
@@ -113,7 +115,7 @@ def run_episode(
         log.add(*method.conclude(world, outcome))
         trajectory = environment.trajectory()
         if outcome.ending is not Ending.ERROR:
-            scores = {metrics.name: metrics.score(trajectory, outcome, environment.road_map)}
+            scores = {n: scorer.score(trajectory, outcome, environment.road_map) for n, scorer in metrics.items()}
     except ModelError:
         raise
     except Exception as error:

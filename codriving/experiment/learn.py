@@ -131,7 +131,9 @@ def learned(driven: Driven, settings: int) -> Outputs:
     cells = [
         LearningRow(
             CellResults(
-                records, {k: v for k, v in cell.swept.items() if k not in (KEY, "scenario", "cda")}, metric=cell.metrics
+                records,
+                {k: v for k, v in cell.swept.items() if k not in (KEY, "scenario", "cda")},
+                metric=cell.score_name,
             ),
             interactions=int(cell.resolved["memory"]["interactions"]),
             setting=index // each,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from codriving.config.choices import LISTED
 from codriving.experiment.episode import Labels
+from codriving.experiment.scoring import names_of_scores
 from codriving.runs.redaction import redact
 
 if TYPE_CHECKING:
@@ -39,13 +40,31 @@ def _value(text: str) -> str:
 
 
 def distinct(cells: Sequence["Cell"]) -> tuple["Cell", ...]:
-    """Drop cells that are the same config again, and tell the others apart."""
-    once: dict[str, Cell] = {}
+    """Drop cells that are the same config again, and tell the others apart; those that drive alike share a folder."""
+    once: dict[tuple[str, str], Cell] = {}
     for cell in cells:
-        once.setdefault(cell.fingerprint, cell)
+        once.setdefault(_same(cell), cell)
     shown = shown_apart([(cell.labels, cell.swept) for cell in once.values()])
     told = [replace(cell, swept=swept) for cell, swept in zip(once.values(), shown, strict=True)]
-    return tuple(replace(cell, folder=name) for cell, name in zip(told, _folders(told), strict=True))
+    alike: dict[str, list[int]] = {}
+    for index, cell in enumerate(told):
+        alike.setdefault(cell.fingerprint, []).append(index)
+    driven = [
+        replace(
+            told[group[0]], swept={k: v for k, v in told[group[0]].swept.items() if k.partition(".")[0] != "metrics"}
+        )
+        for group in alike.values()
+    ]
+    for group, folder in zip(alike.values(), _folders(driven), strict=True):
+        names = names_of_scores([(told[index].metrics, told[index].metric_settings) for index in group])
+        for index, name in zip(group, names, strict=True):
+            told[index] = replace(told[index], folder=folder, score=name)
+    return tuple(told)
+
+
+def _same(cell: "Cell") -> tuple[str, str]:
+    """What tells a row from all others: what is driven, and how it is scored."""
+    return cell.fingerprint, json.dumps([cell.metrics, cell.metric_settings])
 
 
 def _folders(cells: Sequence["Cell"]) -> list[str]:
@@ -70,10 +89,10 @@ def _apart(names: Sequence[str], longer: Sequence[str]) -> list[str]:
 
 def repeated(cells: Sequence["Cell"]) -> tuple[str, ...]:
     """Say which values of a sweep come to the same config as others, whose rows would be looked for in vain."""
-    first: dict[str, Cell] = {}
+    first: dict[tuple[str, str], Cell] = {}
     notes: dict[str, None] = {}
     for cell in cells:
-        known = first.setdefault(cell.fingerprint, cell)
+        known = first.setdefault(_same(cell), cell)
         ours, theirs = (
             " ".join(f"{key}={one.swept[key]}" for key in cell.swept if cell.swept[key] != known.swept.get(key))
             for one in (cell, known)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from codriving.config.build import asks_for, build, targets
-from codriving.datatypes.parts import CaseMemory, Method, Metric, Model, Simulator
+from codriving.datatypes.parts import CaseMemory, Method, Model, Simulator
+from codriving.experiment.scoring import scorers_of
 from codriving.experiment.worker import Objects
 
 
@@ -45,7 +46,7 @@ def make_objects(config: Mapping[str, Any], llm: Model | None = None) -> Objects
     return Objects(
         environment=build(config["environment"], Simulator, "environment", plugins),
         method=build(config["method"], Method, "method", plugins, {Model: llm, CaseMemory: memory}),
-        metrics=build(config["metrics"], Metric, "metrics", plugins),
+        metrics=scorers_of(config),
         llm=llm,
         memory=memory,
     )

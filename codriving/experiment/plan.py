@@ -51,6 +51,11 @@ class Plan:
         return range(self.first_seed, self.first_seed + self.episodes)
 
     @property
+    def driven(self) -> tuple[Cell, ...]:
+        """The cells whose episodes are driven; those that differ in their metrics alone stand here once."""
+        return tuple({cell.folder: cell for cell in reversed(self.cells)}.values())[::-1]
+
+    @property
     def configs(self) -> Mapping[str, Mapping[str, Any]]:
         """Resolved config of each cell, by the name of its folder."""
         return {cell.folder: cell.resolved for cell in self.cells}

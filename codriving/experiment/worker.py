@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from codriving.datatypes.outcome import Ending
-from codriving.datatypes.parts import CaseMemory, Method, Metric, Model, Simulator
+from codriving.datatypes.parts import CaseMemory, Method, Model, Simulator
 from codriving.errors import UserError
 from codriving.experiment.episode import EpisodeResult, Labels, failed_result, run_episode
+from codriving.experiment.scoring import Scorer
 from codriving.runs.episode_folder import episode_folder, timing_of, write_episode
 from codriving.runs.redaction import secrets_of
 
@@ -31,7 +32,7 @@ class Objects(NamedTuple):
 
     environment: Simulator
     method: Method
-    metrics: Metric
+    metrics: Mapping[str, Scorer]
     llm: Model | None = None
     memory: CaseMemory | None = None
 

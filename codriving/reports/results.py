@@ -11,7 +11,6 @@ from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.score import NamedNumber, Score
 from codriving.metrics.intervals import wilson_interval
 from codriving.reports.columns import Value, mean, share
-from codriving.runs.episode_folder import UNNAMED
 
 COST = "cost_usd"
 
@@ -69,10 +68,7 @@ class CellResults:
     @cached_property
     def episodes(self) -> "list[ScoredEpisode]":
         """Each episode with its score."""
-        return [
-            ScoredEpisode(record, record.scores.get(self.metric) or record.scores.get(UNNAMED), self.swept)
-            for record in self.records
-        ]
+        return [ScoredEpisode(record, record.scores.get(self.metric), self.swept) for record in self.records]
 
     @cached_property
     def completed(self) -> "list[ScoredEpisode]":

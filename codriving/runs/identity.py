@@ -18,8 +18,8 @@ BEHAVIOUR = 1
 A run folder of another number is replayed, scored and reported, but not extended. Release 0.1 drives behaviour 1.
 """
 
-WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render", "prompts", "plugins")
-"""Keys that do not change what is driven; templates and plug-ins are told by their content."""
+WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render", "prompts", "plugins", "metrics")
+"""Keys that do not change what is driven; templates and plug-ins are told by their content, metrics by their scores."""
 
 HOW_A_MODEL_IS_ASKED = (
     "api_key_env",
@@ -34,7 +34,7 @@ HOW_A_MODEL_IS_ASKED = (
 )
 """Keys of ``llm`` likewise: with them a run goes on after a limit has been raised, or is replayed under its name."""
 
-CHOICES = ("scenario", "method", "executor", "llm", "memory", "metrics")
+CHOICES = ("scenario", "method", "executor", "llm", "memory")
 """Groups whose choice stands for a class; all choices of ``cda`` are one class, so that their values tell them."""
 
 MEMORY = "memory"

@@ -6,10 +6,13 @@ from toy_drive import LABELS, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMet
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.world import WorldState
 from codriving.experiment.episode import EpisodeResult, run_episode
+from codriving.experiment.scoring import Scorer
 
 
 def drive(seed: int, method: ToyMethod | None = None, environment: ToyEnvironment | None = None) -> EpisodeResult:
-    return run_episode(environment or ToyEnvironment(), method or ToyMethod(), ToyMetrics(), seed, LABELS)
+    return run_episode(
+        environment or ToyEnvironment(), method or ToyMethod(), {"toy": Scorer(ToyMetrics(), {})}, seed, LABELS
+    )
 
 
 def test_a_success_is_recorded_with_all_that_tables_need() -> None:

@@ -15,6 +15,7 @@ from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError, SpendingLimitError
 from codriving.experiment.episode import EpisodeResult, run_episode
 from codriving.experiment.launchers import Serial
+from codriving.experiment.scoring import Scorer
 from codriving.experiment.threads import Threads
 from codriving.experiment.worker import AfterEpisode, Job, Objects, Unit
 
@@ -53,7 +54,7 @@ def job(
         method = Acting(does=does)
         if made is not None:
             made.append(method)
-        return Objects(ToyEnvironment(), method, ToyMetrics())
+        return Objects(ToyEnvironment(), method, {"toy": Scorer(ToyMetrics(), {})})
 
     return Job({"cell": LABELS}, build, kept, after)  # type: ignore[arg-type]
 
@@ -146,7 +147,7 @@ def test_an_episode_alone_lets_such_an_error_pass() -> None:
         raise SpendingLimitError("used up")
 
     with pytest.raises(SpendingLimitError):
-        run_episode(ToyEnvironment(), Acting(does=limit), ToyMetrics(), 1, LABELS)
+        run_episode(ToyEnvironment(), Acting(does=limit), {"toy": Scorer(ToyMetrics(), {})}, 1, LABELS)
 
 
 def test_of_a_servers_failure_no_more_is_kept_than_its_message() -> None:
@@ -156,7 +157,7 @@ def test_of_a_servers_failure_no_more_is_kept_than_its_message() -> None:
         except RuntimeError as cause:
             raise ModelUnavailableError("the server refuses") from cause
 
-    result = run_episode(ToyEnvironment(), Acting(does=fail), ToyMetrics(), 1, LABELS)
+    result = run_episode(ToyEnvironment(), Acting(does=fail), {"toy": Scorer(ToyMetrics(), {})}, 1, LABELS)
     assert result.traceback == "ModelUnavailableError: the server refuses\n"
 
 

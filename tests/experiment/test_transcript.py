@@ -9,6 +9,7 @@ from toy_drive import LABELS, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMet
 
 from codriving.datatypes.world import WorldState
 from codriving.experiment.episode import EpisodeResult, run_episode
+from codriving.experiment.scoring import Scorer
 from codriving.experiment.worker import SaveEpisode, Unit
 from codriving.runs.episode_folder import TRANSCRIPT, read_record, read_transcript
 
@@ -40,7 +41,7 @@ class Asking(ToyMethod):
 
 
 def drive(method: ToyMethod) -> EpisodeResult:
-    return run_episode(ToyEnvironment(), method, ToyMetrics(), 3, LABELS)
+    return run_episode(ToyEnvironment(), method, {"toy": Scorer(ToyMetrics(), {})}, 3, LABELS)
 
 
 def test_a_transcript_is_the_lines_of_all_steps() -> None:

@@ -21,6 +21,7 @@ from codriving.datatypes.vehicle import Intent, Kind, VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.experiment.episode import Labels
 from codriving.experiment.launchers import Launcher
+from codriving.experiment.scoring import Scorer, settings_of_metric
 from codriving.experiment.worker import Job, Objects, Report, Unit
 
 LABELS = Labels("toy", "steady", "full", "rules")
@@ -174,6 +175,12 @@ def run_batch(units: Sequence[Unit], job: Job, launcher: Launcher, workers: int)
     return Batch(len(reports), [report for report in reports if report.ending is Ending.ERROR])
 
 
+def toy_scorers(config: Mapping[str, Any], nan: tuple[int, ...] = ()) -> dict[str, Scorer]:
+    """The toy metric under the names and settings of those of a config."""
+    named = config.get("metrics", {"toy": {}})
+    return {name: Scorer(ToyMetrics(nan), settings_of_metric(node)) for name, node in named.items()}
+
+
 @dataclass(frozen=True)
 class BuildToy:
     """Builds the toy; picklable, with the settings of a test."""
@@ -183,8 +190,9 @@ class BuildToy:
     gate: Path | None = None
     waits_from: int = 0
     nan: tuple[int, ...] = ()
+    configs: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     def __call__(self, cell: str) -> Objects:
         """Build them, whatever the cell."""
         method = ToyMethod(self.raises, self.dies, self.gate, self.waits_from)
-        return Objects(ToyEnvironment(), method, ToyMetrics(self.nan))
+        return Objects(ToyEnvironment(), method, toy_scorers(self.configs.get(cell, {}), self.nan))

@@ -10,7 +10,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parent / "episodes"))
 
-from toy_drive import ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics
+from toy_drive import ToyDeliberation, ToyEnvironment, ToyMethod, toy_scorers
 
 from codriving.config.build import build
 from codriving.datatypes.parts import Method, Model
@@ -132,7 +132,7 @@ class BuildAsking:
         config = self.configs[cell]
         llm = model_of(config)
         method = build(config["method"], Method, "method", [PLUGIN], {Model: llm})
-        return Objects(ToyEnvironment(), method, ToyMetrics(), llm)
+        return Objects(ToyEnvironment(), method, toy_scorers(config), llm)
 
 
 def asking_cell(name: str = "gpt", asks: bool = True, **settings: object) -> Cell:

@@ -19,8 +19,8 @@ EPISODES = 10
 
 
 def toy(**settings: Any) -> Callable[[Mapping[str, Mapping[str, Any]]], BuildToy]:
-    """What builds the toy, whatever the configs."""
-    return lambda configs: BuildToy(**settings)
+    """What builds the toy."""
+    return lambda configs: BuildToy(**settings, configs=configs)
 
 
 def toy_cell(swept: Mapping[str, str] | None = None, **settings: object) -> Cell:

@@ -1,0 +1,104 @@
+"""Scores of driven episodes: by several metrics at once, and later by another one without driving again."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from codriving.config.build import TARGET, build
+from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.parts import Metric, Scenario
+from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.score import Score
+from codriving.datatypes.trajectory import Trajectory
+from codriving.errors import RunFolderError
+from codriving.geometry.road_map import RoadMap, road_map
+from codriving.runs.atomic import write_text
+from codriving.runs.episode_folder import RECORD, UNNAMED
+from codriving.runs.json_files import encode
+from codriving.runs.redaction import flat
+from codriving.runs.trajectory_file import read_trajectory
+
+
+class Scorer(NamedTuple):
+    """A metric and the settings that it was built with."""
+
+    metric: Metric
+    settings: dict[str, str]
+
+    def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
+        """Return the score of an episode, and with what settings it was measured."""
+        return replace(self.metric.score(trajectory, outcome, road), settings=self.settings)
+
+
+def scorers_of(config: Mapping[str, Any]) -> dict[str, Scorer]:
+    """Build the metrics of a cell, by the name of their scores.
+
+    Args:
+        config: Its resolved config; ``metrics`` is one metric, or several by name.
+
+    Raises:
+        ConfigError: If one cannot be built.
+    """
+    node, plugins = config["metrics"], config["plugins"]
+    nodes = {"": node} if TARGET in node else node
+    made = {
+        name: Scorer(build(each, Metric, "metrics", plugins), settings_of_metric(each)) for name, each in nodes.items()
+    }
+    return {name or scorer.metric.name: scorer for name, scorer in made.items()}
+
+
+def settings_of_metric(node: Mapping[str, Any]) -> dict[str, str]:
+    """Give the settings of a metric, as JSON by dotted key."""
+    return flat({key: value for key, value in node.items() if key != TARGET})
+
+
+def scored(episodes: Iterable[tuple[Path, EpisodeRecord]], config: Mapping[str, Any]) -> list[EpisodeRecord]:
+    """Score what has been driven by the metrics that it has no score of.
+
+    The record is written again, whole or not at all; that of an episode of release 0.1 stays as it is.
+
+    Args:
+        episodes: Folder and record of each episode of one cell.
+        config: Its resolved config; ``metrics`` holds metrics by the name of their scores.
+
+    Raises:
+        RunFolderError: If a trajectory is damaged, cannot be scored, or a record cannot be written.
+    """
+    found, roads, scorers = [], None, None
+    for folder, record in episodes:
+        lacking = [name for name, node in config["metrics"].items() if lacks(record, name, settings_of_metric(node))]
+        if lacking:
+            scorers = scorers or scorers_of(config)
+            roads = roads or road_map(build(config["scenario"], Scenario, "scenario", config["plugins"]).road)
+            trajectory = read_trajectory(folder, record)
+            if trajectory is None:
+                raise RunFolderError(f"{folder} has no trajectory to score; delete it and run again")
+            try:
+                new = {name: scorers[name].score(trajectory, record.outcome, roads) for name in lacking}
+                record = replace(record, scores={**record.scores, **new})
+                if UNNAMED not in record.scores:
+                    write_text(folder / RECORD, encode(record))
+            except OSError as error:
+                raise RunFolderError(f"cannot write {folder / RECORD}: {error.strerror or error}") from error
+            except Exception as error:
+                raise RunFolderError(f"cannot score {folder} by {', '.join(lacking)}: {error}") from error
+        found.append(record)
+    return found
+
+
+def lacks(record: EpisodeRecord, name: str, settings: Mapping[str, str]) -> bool:
+    """Tell whether a driven episode has no score of a metric with these settings."""
+    if record.outcome.ending is Ending.ERROR:
+        return False
+    score = record.scores.get(name)
+    return score is None or score.settings != settings
+
+
+def names_of_scores(metrics: Sequence[tuple[str, Mapping[str, str]]]) -> list[str]:
+    """Name the scores of one episode: by their metrics, and by the settings where two have one name."""
+    names = [name for name, _ in metrics]
+    return [
+        name if names.count(name) == 1 else " ".join([name, *(f"{key}={value}" for key, value in settings.items())])
+        for name, settings in metrics
+    ]
