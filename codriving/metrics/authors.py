@@ -36,7 +36,7 @@ class Log:
 
 
 @dataclass(frozen=True, slots=True)
-class Encounter:
+class LoggedEncounter:
     """Two vehicles at nearly the same place."""
 
     one: str
@@ -45,7 +45,7 @@ class Encounter:
     other_row: int
 
 
-def encounters(logs: Sequence[Log], box: float, distance: float) -> tuple[Encounter, ...]:
+def encounters(logs: Sequence[Log], box: float, distance: float) -> tuple[LoggedEncounter, ...]:
     """Return the first encounter of every pair of vehicles that entered from different arms.
 
     The first is that of the earliest row of the one vehicle, and among these of the earliest row of the other.
@@ -67,7 +67,7 @@ def encounters(logs: Sequence[Log], box: float, distance: float) -> tuple[Encoun
         if len(meetings):
             k, m = meetings[0].tolist()
             found.append(
-                Encounter(one.id, other.id, one.first_row + int(rows[k]), other.first_row + int(other_rows[m]))
+                LoggedEncounter(one.id, other.id, one.first_row + int(rows[k]), other.first_row + int(other_rows[m]))
             )
     return tuple(found)
 

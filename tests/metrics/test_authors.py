@@ -11,7 +11,7 @@ from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Kind
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
-from codriving.metrics.authors import AuthorsMetrics, Encounter, Log, encounters, entry_arm
+from codriving.metrics.authors import AuthorsMetrics, Log, LoggedEncounter, encounters, entry_arm
 
 Drive = Callable[..., Track]
 
@@ -93,8 +93,8 @@ def test_the_first_encounter_is_the_lexicographic_one() -> None:
     # a is near c's first place in row 3 and near c's last place in row 1: row 1 of a comes first.
     a = _log("a", [(-20, 0), (0, 0), (3, 0), (6, 0)])
     c = _log("c", [(6, 20), (6, 0.5), (0, 0.5), (0.5, 0)])
-    assert encounters([a, c], box=10, distance=1) == (Encounter("a", "c", 1, 2),)
-    assert encounters([c, a], box=10, distance=1) == (Encounter("c", "a", 1, 3),)
+    assert encounters([a, c], box=10, distance=1) == (LoggedEncounter("a", "c", 1, 2),)
+    assert encounters([c, a], box=10, distance=1) == (LoggedEncounter("c", "a", 1, 3),)
 
 
 def test_only_the_middle_counts_and_only_less_than_the_distance() -> None:
@@ -111,4 +111,4 @@ def test_vehicles_of_one_arm_never_meet() -> None:
 
 def test_rows_are_those_of_the_whole_recording() -> None:
     a, b = _log("a", [(-20, 0), (0, 0)], first_row=5), _log("b", [(0, 30), (0, 0)])
-    assert encounters([a, b], box=10, distance=1) == (Encounter("a", "b", 6, 1),)
+    assert encounters([a, b], box=10, distance=1) == (LoggedEncounter("a", "b", 6, 1),)
