@@ -13,7 +13,7 @@ from codriving.datatypes.record import EpisodeRecord, Participant
 from codriving.datatypes.score import Score
 from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import ModelError, ModelUnavailableError
-from codriving.experiment.scoring import Scorer
+from codriving.metrics.scorer import Scorer
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,32 +3,19 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from codriving.config.build import TARGET, build
-from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.outcome import Ending
 from codriving.datatypes.parts import Metric, Scenario
 from codriving.datatypes.record import EpisodeRecord
-from codriving.datatypes.score import Score
-from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import RunFolderError
-from codriving.geometry.road_map import RoadMap, road_map
+from codriving.metrics.scorer import Scorer
 from codriving.runs.atomic import write_text
 from codriving.runs.episode_folder import RECORD, UNNAMED
 from codriving.runs.json_files import encode
 from codriving.runs.redaction import flat
 from codriving.runs.trajectory_file import read_trajectory
-
-
-class Scorer(NamedTuple):
-    """A metric and the settings that it was built with."""
-
-    metric: Metric
-    settings: dict[str, str]
-
-    def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
-        """Return the score of an episode, and with what settings it was measured."""
-        return replace(self.metric.score(trajectory, outcome, road), settings=self.settings)
 
 
 def scorers_of(config: Mapping[str, Any]) -> dict[str, Scorer]:
@@ -65,17 +52,17 @@ def scored(episodes: Iterable[tuple[Path, EpisodeRecord]], config: Mapping[str, 
     Raises:
         RunFolderError: If a trajectory is damaged, cannot be scored, or a record cannot be written.
     """
-    found, roads, scorers = [], None, None
+    found, road, scorers = [], None, None
     for folder, record in episodes:
         lacking = [name for name, node in config["metrics"].items() if lacks(record, name, settings_of_metric(node))]
         if lacking:
             scorers = scorers or scorers_of(config)
-            roads = roads or road_map(build(config["scenario"], Scenario, "scenario", config["plugins"]).road)
+            road = road or build(config["scenario"], Scenario, "scenario", config["plugins"]).road
             trajectory = read_trajectory(folder, record)
             if trajectory is None:
                 raise RunFolderError(f"{folder} has no trajectory to score; delete it and run again")
             try:
-                new = {name: scorers[name].score(trajectory, record.outcome, roads) for name in lacking}
+                new = {name: scorers[name].score_stored(trajectory, record.outcome, road) for name in lacking}
                 record = replace(record, scores={**record.scores, **new})
                 if UNNAMED not in record.scores:
                     write_text(folder / RECORD, encode(record))

@@ -11,7 +11,7 @@ from codriving.datatypes.outcome import Ending
 from codriving.datatypes.parts import CaseMemory, Method, Model, Simulator
 from codriving.errors import UserError
 from codriving.experiment.episode import EpisodeResult, Labels, failed_result, run_episode
-from codriving.experiment.scoring import Scorer
+from codriving.metrics.scorer import Scorer
 from codriving.runs.episode_folder import episode_folder, timing_of, write_episode
 from codriving.runs.redaction import secrets_of
 

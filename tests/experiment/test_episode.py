@@ -6,7 +6,7 @@ from toy_drive import LABELS, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMet
 from codriving.datatypes.outcome import Ending
 from codriving.datatypes.world import WorldState
 from codriving.experiment.episode import EpisodeResult, run_episode
-from codriving.experiment.scoring import Scorer
+from codriving.metrics.scorer import Scorer
 
 
 def drive(seed: int, method: ToyMethod | None = None, environment: ToyEnvironment | None = None) -> EpisodeResult:

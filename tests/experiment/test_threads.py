@@ -15,9 +15,9 @@ from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError, SpendingLimitError
 from codriving.experiment.episode import EpisodeResult, run_episode
 from codriving.experiment.launchers import Serial
-from codriving.experiment.scoring import Scorer
 from codriving.experiment.threads import Threads
 from codriving.experiment.worker import AfterEpisode, Job, Objects, Unit
+from codriving.metrics.scorer import Scorer
 
 UNITS = [Unit("cell", seed) for seed in range(9)]
 PATIENCE = 20.0

@@ -9,8 +9,8 @@ from toy_drive import LABELS, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMet
 
 from codriving.datatypes.world import WorldState
 from codriving.experiment.episode import EpisodeResult, run_episode
-from codriving.experiment.scoring import Scorer
 from codriving.experiment.worker import SaveEpisode, Unit
+from codriving.metrics.scorer import Scorer
 from codriving.runs.episode_folder import TRANSCRIPT, read_record, read_transcript
 
 

@@ -21,8 +21,9 @@ from codriving.datatypes.vehicle import Intent, Kind, VehicleState
 from codriving.datatypes.world import WorldState
 from codriving.experiment.episode import Labels
 from codriving.experiment.launchers import Launcher
-from codriving.experiment.scoring import Scorer, settings_of_metric
+from codriving.experiment.scoring import settings_of_metric
 from codriving.experiment.worker import Job, Objects, Report, Unit
+from codriving.metrics.scorer import Scorer
 
 LABELS = Labels("toy", "steady", "full", "rules")
 LANE = ("a", "b", 0)
