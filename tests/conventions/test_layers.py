@@ -22,7 +22,7 @@ MAY_IMPORT = {
     "runs": set(),
     "reports": {"metrics", "runs", "memory"},
     "config": set(),
-    "experiment": {"config", "runs", "reports", "memory", "animation"},
+    "experiment": {"config", "runs", "reports", "metrics", "memory", "animation"},
     "cli": {"config", "experiment", "training", "__init__"},
     "scenarios": {"environment", "geometry"},
     "ordering": {"reasoning"},
