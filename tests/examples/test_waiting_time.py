@@ -11,6 +11,7 @@ import pytest
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.parts import Metric
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Kind
 
@@ -22,7 +23,7 @@ GUIDE = Path(__file__).resolve().parents[2] / "CONTRIBUTING.md"
 def metric(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     monkeypatch.syspath_prepend(str(FOLDER))
     config = compose(["metrics=waiting_time"], FOLDER / "conf")
-    yield build(config["metrics"], config["plugins"], "metrics")
+    yield build(config["metrics"], Metric, "metrics", config["plugins"])
     sys.modules.pop("waiting_time", None)
 
 
