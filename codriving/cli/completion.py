@@ -45,11 +45,11 @@ def complete_in_line(ctx: typer.Context, incomplete: str) -> list[tuple[str, str
     """Offer overrides that begin with what has been typed, by what stands before it in the line."""
     # Bash splits words at ``=``, also those before the cursor.
     line = " ".join(ctx.params.get("overrides") or ()).replace(" = ", "=")
-    return complete_override(incomplete, Line(ctx.params.get("config_dir"), tuple(line.split())))
+    return complete_override(incomplete, TypedLine(ctx.params.get("config_dir"), tuple(line.split())))
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class TypedLine:
     """What has been typed before the word under the cursor.
 
     Attributes:
@@ -69,7 +69,7 @@ class Line:
         return typed[-1].split(",")[0] if typed else default_choice(group)
 
 
-def complete_override(incomplete: str, line: Line = Line()) -> list[tuple[str, str]]:
+def complete_override(incomplete: str, line: TypedLine = TypedLine()) -> list[tuple[str, str]]:
     """Offer overrides that begin with what has been typed."""
     before, typed = _whole_word(incomplete)
     try:
@@ -95,7 +95,7 @@ def _whole_word(incomplete: str) -> tuple[str, str]:
     return "", incomplete
 
 
-def _offers(typed: str, line: Line) -> Iterator[tuple[str, str]]:
+def _offers(typed: str, line: TypedLine) -> Iterator[tuple[str, str]]:
     left, _, value = typed.partition("=")
     head = left.partition(".")[0]
     if "," in value and "[" not in value:
@@ -114,7 +114,7 @@ def _offers(typed: str, line: Line) -> Iterator[tuple[str, str]]:
         yield f"{name}={defaults.get(name, '')}", key.meaning
 
 
-def _further(key: str, value: str, line: Line) -> Iterator[tuple[str, str]]:
+def _further(key: str, value: str, line: TypedLine) -> Iterator[tuple[str, str]]:
     """Offer, after a comma, the choices that have not been named yet."""
     before, _, _ = value.rpartition(",")
     named = before.split(",")
@@ -127,7 +127,7 @@ def _further(key: str, value: str, line: Line) -> Iterator[tuple[str, str]]:
                 yield f"{key}={before},{option}", text
 
 
-def _keys(group: str, line: Line) -> Iterator[tuple[str, str]]:
+def _keys(group: str, line: TypedLine) -> Iterator[tuple[str, str]]:
     """Offer the keys of what a group is set to, with the values they have."""
     chosen, files = line.chosen(group), line.choices(group)
     if chosen in files:

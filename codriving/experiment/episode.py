@@ -55,7 +55,7 @@ class EpisodeResult:
 
 
 @dataclass(slots=True)
-class _Log:
+class _EpisodeLog:
     """What has been noted so far; it outlives an exception in the loop."""
 
     begun: bool = False
@@ -93,7 +93,7 @@ def run_episode(
     Raises:
         ModelError: If the language model must not be used any more.
     """
-    log = _Log()
+    log = _EpisodeLog()
     started = perf_counter()
     trajectory: Trajectory | None = None
     scores: dict[str, Score] = {}
@@ -179,7 +179,7 @@ def _failure(error: BaseException, time: float) -> Outcome:
     return Outcome(ending=Ending.ERROR, time=time, arrivals={}, message=message)
 
 
-def _note_unfinished(method: Method, log: _Log) -> None:
+def _note_unfinished(method: Method, log: _EpisodeLog) -> None:
     """Note what was asked in the step that broke off: it has been paid for."""
     if log.begun:
         with suppress(Exception):

@@ -36,7 +36,7 @@ class Linear:
 
 
 @dataclass(frozen=True)
-class Traffic:
+class CooperativeTraffic:
     """One kind of traffic; each number of CAVs is an environment of its own.
 
     Raises:
@@ -71,7 +71,7 @@ class Traffic:
         return tuple(ParallelDriving(self.scenario, rows=1, reward=reward, cavs=n, **settings) for n in numbers)
 
 
-def shares(kinds: tuple[Traffic, ...], progress: float) -> list[float]:
+def shares(kinds: tuple[CooperativeTraffic, ...], progress: float) -> list[float]:
     """Return how often each kind of traffic is driven at a moment of the training; the sum is 1."""
     weights = [kind.weight if progress >= kind.since else 0.0 for kind in kinds]
     return [weight / sum(weights) for weight in weights]

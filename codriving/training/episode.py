@@ -23,7 +23,7 @@ Policy = Callable[[FloatArray, Masks], list[int]]
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class AgentStep:
     """One decision step of all agents on the road, and what it brought them; a row an agent.
 
     Attributes:
@@ -44,7 +44,7 @@ class Moment:
     allowed: dict[str, Masks] = field(repr=False)
 
 
-def drive(env: "ParallelDriving", seed: int, features: Features, family: str, policy: Policy) -> Iterator[Moment]:
+def drive(env: "ParallelDriving", seed: int, features: Features, family: str, policy: Policy) -> Iterator[AgentStep]:
     """Drive one episode."""
     numbers = [NUMBERS.index(action) for action in ACTIONS[family]]
     env.reset(seed=seed)
@@ -63,7 +63,7 @@ def drive(env: "ParallelDriving", seed: int, features: Features, family: str, po
         if outcome is not None:
             crash = outcome.collision
             failed = frozenset(outcome.off_road if crash is None else (crash.striker, crash.struck))
-        yield Moment(
+        yield AgentStep(
             agents,
             observations,
             rows,

@@ -8,7 +8,7 @@ from codriving.errors import ConfigError
 from codriving.gym.reward import RewardWeights, reward_weights
 from codriving.methods.learned.layout import FAMILIES
 from codriving.methods.learned.network import FORMS, PERCEPTRON
-from codriving.training.curriculum import Linear, SingleTraffic, Traffic
+from codriving.training.curriculum import CooperativeTraffic, Linear, SingleTraffic
 from codriving.training.teacher import Guidance
 from codriving.training.validation import Exam
 
@@ -138,7 +138,7 @@ class MadqnSettings(Settings):
     average: float
     exploration: Linear
     faster: float
-    traffic: tuple[Traffic, ...]
+    traffic: tuple[CooperativeTraffic, ...]
 
     least: ClassVar[Mapping[str, int]] = {"steps": 1, "capacity": 1, "warm_up": 1, "batch": 1, "every": 1}
     learner, form, teacher = "madqn", PERCEPTRON, ""

@@ -15,7 +15,7 @@ from codriving.methods.learned.layout import ACTIONS, feature_count
 from codriving.methods.learned.network import FloatArray, Network, greedy
 from codriving.training.curriculum import shares
 from codriving.training.double_dqn import DoubleDqn, as_numpy
-from codriving.training.episode import Masks, Moment, drive
+from codriving.training.episode import AgentStep, Masks, drive
 from codriving.training.nstep import Trail, Transition
 from codriving.training.replay import Replay
 from codriving.training.settings import MadqnSettings
@@ -144,7 +144,7 @@ class Trainer:
         self.rng.bit_generator.state = state["rng"]
 
 
-def remember(moment: Moment, trails: dict[str, Trail], steps: int, discount: float) -> Iterator[Transition]:
+def remember(moment: AgentStep, trails: dict[str, Trail], steps: int, discount: float) -> Iterator[Transition]:
     """Turn one step of all agents into transitions.
 
     A CAV that has arrived or crashed has nothing to come. At the time limit the others would have gone on. When others

@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from codriving.cli.app import app
-from codriving.cli.completion import Line, complete_override
+from codriving.cli.completion import TypedLine, complete_override
 from codriving.errors import ModelError
 from codriving.experiment.check import report
 
@@ -93,7 +93,7 @@ def test_the_name_of_a_variable_is_shown() -> None:
 
 
 def test_settings_of_a_model_are_completed() -> None:
-    offered = [word for word, _ in complete_override("llm.max_c", Line(overrides=("llm=openai",)))]
+    offered = [word for word, _ in complete_override("llm.max_c", TypedLine(overrides=("llm=openai",)))]
     assert [word.partition("=")[0] for word in offered] == ["llm.max_concurrency", "llm.max_cost"]
 
 

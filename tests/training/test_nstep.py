@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from codriving.datatypes.outcome import Ending
-from codriving.training.episode import Moment
+from codriving.training.episode import AgentStep
 from codriving.training.nstep import Trail, Transition
 
 GAMMA = 0.5
@@ -56,7 +56,7 @@ def test_the_last_step_of_a_bystander_is_dropped() -> None:
     assert made.dropped() == []
 
 
-def remembered(step: Moment, trails: dict[str, Trail], steps: int, discount: float) -> Iterator[Transition]:
+def remembered(step: AgentStep, trails: dict[str, Trail], steps: int, discount: float) -> Iterator[Transition]:
     """What the trainer makes of a step."""
     pytest.importorskip("torch")
     from codriving.training.trainer import remember
@@ -66,10 +66,10 @@ def remembered(step: Moment, trails: dict[str, Trail], steps: int, discount: flo
 
 def moment(
     ending: Ending | None, arrived: str = "", failed: str = "", rewards: tuple[float, ...] = (0.0,) * 3
-) -> Moment:
+) -> AgentStep:
     names = ["A", "B", "C"]
     later = {name: seen(k + 100) for k, name in enumerate(names) if name not in arrived}
-    return Moment(
+    return AgentStep(
         names,
         np.stack([seen(k) for k in range(3)]),
         np.stack([MASK] * 3),
