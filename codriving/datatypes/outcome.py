@@ -35,3 +35,8 @@ class Outcome:
     bystander_collisions: tuple[Collision, ...] = ()
     off_road: tuple[str, ...] = ()
     message: str = ""  # What went wrong, for ``error``
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """The vehicles of the collision, or those that left the road."""
+        return self.off_road if self.collision is None else (self.collision.striker, self.collision.struck)

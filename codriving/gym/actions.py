@@ -19,16 +19,21 @@ def draw_seed(rng: np.random.Generator) -> int:
     return int(rng.integers(FIRST_DRAWN, LARGEST_SEED, endpoint=True))
 
 
+def _whole(number: object) -> int:
+    """Return a whole number as it is, and -1 for all else."""
+    try:
+        return index(number)  # type: ignore[arg-type]
+    except TypeError:
+        return -1
+
+
 def check_seed(seed: object) -> int:
     """Return a seed that was given as a plain number.
 
     Raises:
         EpisodeError: If it is not a whole number of at least 0.
     """
-    try:
-        number = index(seed)  # type: ignore[arg-type]
-    except TypeError:
-        number = -1
+    number = _whole(seed)
     if number < 0:
         raise EpisodeError(f"seed must be a whole number of at least 0, or None to draw one, got {seed!r}")
     return number
@@ -53,10 +58,7 @@ def action_of(agent: str, number: object) -> Action:
     Raises:
         EpisodeError: If it is not the number of an action.
     """
-    try:
-        found = index(number)  # type: ignore[arg-type]
-    except TypeError:
-        found = -1
+    found = _whole(number)
     if not 0 <= found < len(ACTIONS):
         names = ", ".join(f"{i} {action}" for i, action in enumerate(ACTIONS))
         raise EpisodeError(f"the action of {agent} must be one of {names}; got {number!r}")

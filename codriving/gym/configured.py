@@ -1,5 +1,6 @@
 """Overrides and settings by keyword to an environment and a CDA level, by the same configs as `codriving run`."""
 
+import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -40,8 +41,8 @@ def configured(
             raise ConfigError(f"unknown {group} {choice!r}; choices: {', '.join(known)}")
     for token in overrides:
         _check_read(token)
-    tokens = [f"{key}={_written(f'scenario.{key}', value)}" for key, value in settings.items()]
-    config = compose([f"scenario={name}", f"cda={cda}", *overrides, *(f"scenario.{token}" for token in tokens)], folder)
+    tokens = [f"scenario.{key}={_written(f'scenario.{key}', value)}" for key, value in settings.items()]
+    config = compose([f"scenario={name}", f"cda={cda}", *overrides, *tokens], folder)
     plugins = config["plugins"]
     environment = build(config["environment"], Environment, "environment", plugins)
     return environment, build(config["cda"], CdaLevel, "cda", plugins)
@@ -63,15 +64,12 @@ def _written(key: str, value: object) -> str:
     """Write a value in the grammar of overrides."""
     if isinstance(value, np.generic):
         value = value.item()
-    if value is None:
-        return "null"
-    if isinstance(value, bool):
-        return str(value).lower()
+    if value is None or isinstance(value, bool):
+        return json.dumps(value)
     if isinstance(value, int | float):
         return repr(value)
     if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace("'", "\\'")
-        return f"'{escaped}'"
+        return "'" + value.replace("\\", "\\\\").replace("'", "\\'") + "'"
     if isinstance(value, list | tuple):
         return "[" + ",".join(_written(key, inner) for inner in value) + "]"
     raise ConfigError(f"{key} must be a number, a text, a list, True, False or None, got {value!r}")

@@ -1,8 +1,7 @@
 """Episodes as CAVs that learn go through them: observations, actions, rewards and endings."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Ending
@@ -15,8 +14,7 @@ from codriving.gym.observation import FloatArray, Observer
 from codriving.gym.reward import CavStep, RewardWeights, rewards
 
 
-@dataclass(frozen=True, slots=True)
-class StepResult:
+class StepResult(NamedTuple):
     """What one decision step brought each CAV that was on the road, by id."""
 
     rewards: dict[str, float]
@@ -87,8 +85,8 @@ class AgentEpisode:
         Returns:
             A matrix (rows, 6) of its own each, by id.
         """
-        views, nothing = self._views, self.observer.nothing
-        return {name: views[name].copy() if name in views else nothing() for name in names}
+        views = self._views
+        return {name: views[name].copy() if name in views else self.observer.nothing() for name in names}
 
     def info(self, name: str) -> dict[str, Any]:
         """Return what is to be said of a CAV besides."""
@@ -119,11 +117,8 @@ class AgentEpisode:
     def _rewards(self, before: WorldState, after: WorldState) -> list[float]:
         """Return the reward of each CAV that decided, in the same order."""
         outcome = self.environment.outcome
-        failed: tuple[str, ...] = ()
-        if outcome is not None:
-            crash = outcome.collision
-            failed = outcome.off_road if crash is None else (crash.striker, crash.struck)
+        failed = () if outcome is None else outcome.failed
         then, now = ({v.id: v for v in world.cavs} for world in (before, after))
         driven = [CavStep(then[name], now.get(name), done, name in failed) for name, done in self.actions.items()]
-        top = self.environment.driving_model.target_speeds[-1]
-        return rewards(self.weights, driven, after.time - before.time, top)
+        top_speed = self.environment.driving_model.target_speeds[-1]
+        return rewards(self.weights, driven, after.time - before.time, top_speed)

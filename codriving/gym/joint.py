@@ -29,8 +29,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
 
     def __init__(self, name: str, overrides: Sequence[str] = (), **settings: Any) -> None:  # noqa: ANN401
         self.parallel = ParallelDriving(name, *overrides, **settings)
-        self.render_mode = self.parallel.render_mode
-        self.metadata = self.parallel.metadata
+        self.render_mode, self.metadata = self.parallel.render_mode, self.parallel.metadata
         self.observation_space = self.parallel.state_space
         self.action_space = MultiDiscrete([len(ACTIONS)] * len(self.parallel.possible_agents))
 
@@ -73,10 +72,9 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
             raise EpisodeError(f"one action for each of {', '.join(agents)} is needed, got {action!r}")
         _, rewards, _, truncated, _ = self.parallel.step(dict(zip(agents, numbers, strict=True)))
         late = any(truncated.values())
-        terminated = not late and not self.parallel.agents
         # A CAV that has arrived is rewarded no more, so that the return is the mean of the returns of the CAVs.
         reward = sum(rewards.values()) / len(agents)
-        return self.parallel.state(), reward, terminated, late, self._info()
+        return self.parallel.state(), reward, not late and not self.parallel.agents, late, self._info()
 
     def render(self) -> NDArray[np.uint8] | None:
         """Draw the world as it is now.

@@ -4,7 +4,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from functools import reduce
 from itertools import pairwise
 from math import cos, hypot, sin
 
@@ -13,7 +12,7 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
 from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.road import LaneId, Route, Turn, beside
+from codriving.datatypes.road import LaneId, Route, beside
 from codriving.datatypes.scene_description import TrackedVehicle
 from codriving.datatypes.vehicle import Intent, VehicleState
 from codriving.datatypes.world import WorldState
@@ -22,14 +21,7 @@ from codriving.errors import ConfigError
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.sharing.cda import CdaLevel
-from codriving.reasoning.sharing.sharing import (
-    HIDDEN_INTENTS,
-    SHARED_INTENTS,
-    IntentSharing,
-    SensedStates,
-    SharedStates,
-    StateSharing,
-)
+from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, SensedStates, SharedStates
 
 
 class Intention(IntEnum):
@@ -39,9 +31,6 @@ class Intention(IntEnum):
     LEFT = 1
     STRAIGHT = 2
     RIGHT = 3
-
-
-_OF_TURN = {Turn.LEFT: Intention.LEFT, Turn.STRAIGHT: Intention.STRAIGHT, Turn.RIGHT: Intention.RIGHT}
 
 
 def intention(intent: Intent | None, lane: LaneId | None, routes: Mapping[str, Route]) -> Intention:
@@ -58,7 +47,7 @@ def intention(intent: Intent | None, lane: LaneId | None, routes: Mapping[str, R
     for place, (one, other) in enumerate(pairwise(route.lanes)):
         if beside(one, other) and (lane is None or lane in route.lanes[: place + 1]):
             return _side(one, other)
-    return _OF_TURN[route.turn]
+    return Intention[route.turn.name]
 
 
 def _side(lane: LaneId, other: LaneId) -> Intention:
@@ -107,9 +96,8 @@ class Layout:
 
     def bounds(self, road_map: RoadMap) -> tuple[FloatArray, FloatArray]:
         """Return the smallest and largest values on a road (rows, 6) each, in SI units; 0 is always within."""
-        paths = [lane_path(lane).points for lane in road_map.road.lanes]
-        least = reduce(np.minimum, [points.min(axis=0) for points in paths]) - MARGIN
-        most = reduce(np.maximum, [points.max(axis=0) for points in paths]) + MARGIN
+        points = np.concatenate([lane_path(lane).points for lane in road_map.road.lanes])
+        least, most = points.min(axis=0) - MARGIN, points.max(axis=0) + MARGIN
         low, high = np.zeros(self.shape, np.float32), np.zeros(self.shape, np.float32)
         low[:, :2], high[:, :2] = np.minimum(least, 0.0), np.maximum(most, 0.0)
         if self.coordinates == "relative":
@@ -117,9 +105,6 @@ class Layout:
         low[:, 2:4], high[:, 2:4] = -TOP_SPEED, TOP_SPEED
         high[:, 4], high[:, 5] = len(road_map.road.lanes), max(Intention)
         return low, high
-
-
-Row = tuple[float, float, float, float, float, float]
 
 
 class Observer(ABC):
@@ -140,8 +125,8 @@ class CdaObserver(Observer):
     def __init__(self, road_map: RoadMap, model: DrivingModel, cda: CdaLevel, layout: Layout) -> None:
         self._road_map, self._model, self._layout = road_map, model, layout
         # The same objects as in the reasoning, so that the same things are hidden.
-        self._states: StateSharing = SharedStates() if cda.state_sharing else SensedStates()
-        self._intents: IntentSharing = SHARED_INTENTS if cda.intent_sharing else HIDDEN_INTENTS
+        self._states = SharedStates() if cda.state_sharing else SensedStates()
+        self._intents = SHARED_INTENTS if cda.intent_sharing else HIDDEN_INTENTS
         self.lanes: Mapping[LaneId, int] = {lane.id: i for i, lane in enumerate(road_map.road.lanes, start=1)}
         low, high = layout.bounds(road_map)
         self._scale = np.maximum(-low, high) if layout.normalise else np.ones_like(low)
@@ -178,7 +163,7 @@ class CdaObserver(Observer):
         # Only a vehicle that a fault of the simulator carries off the map is farther out than the bounds.
         return np.clip(matrix, self._low, self._high, out=matrix)
 
-    def _row(self, seen: VehicleState | TrackedVehicle, intent: Intent | None, x: float, y: float) -> Row:
+    def _row(self, seen: VehicleState | TrackedVehicle, intent: Intent | None, x: float, y: float) -> tuple[float, ...]:
         # A speed without a direction stands in vx; the unknown lane beside it says that it is one.
         vx, vy = seen.speed, 0.0
         if seen.heading is not None:

@@ -62,8 +62,7 @@ class ParallelDriving(ParallelEnv):
         observer = CdaObserver(self.environment.road_map, model, level, layout)
         self._drive = AgentEpisode(self.environment, observer, weights)
         self.name, self.render_mode, self.lanes = name, render_mode, observer.lanes
-        about = {"name": f"codriving_{name}_v0", "render_fps": 1 / model.decision_interval}
-        self.metadata = {**METADATA, **about}
+        self.metadata = {**METADATA, "name": f"codriving_{name}_v0", "render_fps": 1 / model.decision_interval}
         self.possible_agents = list(self._drive.cavs)
         self.observation_spaces = {agent: observer.space() for agent in self.possible_agents}
         self.action_spaces = {agent: Discrete(len(ACTIONS)) for agent in self.possible_agents}
@@ -134,9 +133,8 @@ class ParallelDriving(ParallelEnv):
             EpisodeError: If no episode is going on, or an action is missing, unknown, or of no CAV.
         """
         driving = self.agents
-        turn = self._drive.step(actions)
-        observations = self._drive.observations(driving)
-        return observations, turn.rewards, turn.terminated, turn.truncated, self.infos(driving)
+        result = self._drive.step(actions)
+        return self._drive.observations(driving), *result, self.infos(driving)
 
     def state(self) -> FloatArray:
         """Return the observations of all CAVs in the order of ``possible_agents``; zeros for those that have left.
