@@ -54,9 +54,8 @@ def run_training(
     run = own.get("run", f"{name}_smoke" if smoke else name)
     path = Path(own.get("output", "outputs"), "train", run)
     words = ["codriving", "train", learner, "--family", family, *(["--smoke"] if smoke else []), *others]
-    command = shlex.join(words)
     again = shlex.join([*words, *(f"{key}={value}" for key, value in own.items())])
-    with open_folder(path, name, command, config) as folder:
+    with open_folder(path, name, shlex.join(words), config) as folder:
         if folder.best.exists():
             print(f"Nothing to do: this training is finished, its weights are {folder.best}")
             return 0

@@ -13,6 +13,17 @@ if TYPE_CHECKING:
     from codriving.gym.single import ObserverFactory, SingleDriving
 
 
+def at_least(part: object, **least: int) -> None:
+    """Refuse settings, by name, that are smaller than the numbers here.
+
+    Raises:
+        ConfigError: If one is.
+    """
+    for name, smallest in least.items():
+        if getattr(part, name) < smallest:
+            raise ConfigError(f"{name} must be {smallest} or more, got {getattr(part, name)}")
+
+
 @dataclass(frozen=True, slots=True)
 class Linear:
     """A number that goes from one value to another in a straight line, and then stays.
@@ -26,13 +37,11 @@ class Linear:
     over: int
 
     def __post_init__(self) -> None:
-        if self.over < 1:
-            raise ConfigError(f"over must be 1 or more, got {self.over}")
+        at_least(self, over=1)
 
     def at(self, decisions: int) -> float:
         """Return the value after some decisions."""
-        share = min(max(decisions, 0) / self.over, 1.0)
-        return self.start + share * (self.end - self.start)
+        return self.start + min(max(decisions, 0) / self.over, 1.0) * (self.end - self.start)
 
 
 @dataclass(frozen=True)
@@ -92,8 +101,7 @@ class SingleTraffic:
     settings: Mapping[str, Any]
 
     def __post_init__(self) -> None:
-        if self.copies < 1:
-            raise ConfigError(f"copies must be 1 or more, got {self.copies}")
+        at_least(self, copies=1)
 
     def environment(self, observer: "ObserverFactory", family: str, reward: RewardWeights) -> "SingleDriving":
         """Return an environment of this kind.

@@ -16,8 +16,7 @@ def curve_csv(rows: Sequence[Row]) -> str:
     text = io.StringIO()
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()
-    for row in rows:
-        writer.writerow({name: "" if value is None else value for name, value in row.items()})
+    writer.writerows(rows)
     return text.getvalue()
 
 
@@ -35,9 +34,8 @@ def curve_png(rows: Sequence[Row], title: str) -> bytes:
         for name, mark in zip(names, "osD^vP*X" * len(names), strict=False):
             axes.plot(decisions, _column(rows, name), marker=mark, markersize=4, label=name.partition(".")[0])
         if "train_success" in rows[0]:
-            axes.plot(
-                decisions, _column(rows, "train_success"), color="#888888", linestyle=":", label="training, exploring"
-            )
+            explored = _column(rows, "train_success")
+            axes.plot(decisions, explored, color="#888888", linestyle=":", label="training, exploring")
         axes.set(xlabel="decisions of single CAVs", ylabel="successful episodes", ylim=(-0.02, 1.02), title=title)
         axes.grid(color="#dddddd", linewidth=0.6)
         axes.legend(loc="lower right", frameon=False)

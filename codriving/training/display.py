@@ -20,7 +20,7 @@ class Display:
 
     def __init__(self, name: str, total: int, stream: TextIO | None = None) -> None:
         self._console = Console(file=stream or sys.stderr, highlight=False, soft_wrap=True)
-        self._total, self._done = total, 0
+        self._total = total
         columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
         self._bar = Progress(*columns, TextColumn("{task.fields[note]}"), console=self._console)
         self._task = self._bar.add_task(name, total=total, note="")
@@ -35,7 +35,6 @@ class Display:
 
     def advance(self, decisions: int) -> None:
         """Tell how many decisions have been driven."""
-        self._done = decisions
         self._bar.update(self._task, completed=min(decisions, self._total))
 
     def note(self, text: str) -> None:

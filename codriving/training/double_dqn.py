@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
-import numpy as np
 import torch
 from torch import nn
 
@@ -28,13 +27,11 @@ class DoubleDqn:
         torch.set_num_threads(1)
         torch.use_deterministic_algorithms(True)
         torch.manual_seed(seed)
-        layers: list[nn.Module] = []
-        for inputs, outputs in pairwise(sizes):
-            layers += [nn.Linear(inputs, outputs), nn.ReLU()]
-        self.online = nn.Sequential(*layers[:-1])
+        self.online = perceptron(sizes)
         self.target = copy.deepcopy(self.online)
         self._average, self._clip = average, clip
         self._optimizer = torch.optim.Adam(self.online.parameters(), lr=1e-3)
+        self._parts: dict[str, Any] = {"online": self.online, "target": self.target, "optimizer": self._optimizer}
 
     def update(self, batch: Batch, rate: float) -> float:
         """Learn from a batch.
@@ -61,17 +58,12 @@ class DoubleDqn:
 
     def state(self) -> dict[str, Any]:
         """Return everything that learning goes on from."""
-        return {
-            "online": self.online.state_dict(),
-            "target": self.target.state_dict(),
-            "optimizer": self._optimizer.state_dict(),
-        }
+        return {name: part.state_dict() for name, part in self._parts.items()}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go on with the state of another one."""
-        self.online.load_state_dict(state["online"])
-        self.target.load_state_dict(state["target"])
-        self._optimizer.load_state_dict(state["optimizer"])
+        for name, part in self._parts.items():
+            part.load_state_dict(state[name])
 
 
 def as_numpy(module: nn.Sequential, live: bool) -> Network:
@@ -80,6 +72,5 @@ def as_numpy(module: nn.Sequential, live: bool) -> Network:
     weights = [layer.weight.detach().numpy().T for layer in layers]
     biases = [layer.bias.detach().numpy() for layer in layers]
     if not live:
-        weights, biases = [np.ascontiguousarray(w) for w in weights], [b.copy() for b in biases]
-        weights = [w.copy() for w in weights]
+        weights, biases = [w.copy() for w in weights], [b.copy() for b in biases]
     return Network(weights, biases)

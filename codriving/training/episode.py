@@ -55,26 +55,14 @@ def drive(env: "ParallelDriving", seed: int, features: Features, family: str, po
         observations = np.stack([seen[name] for name in agents])
         rows = np.stack([masks[name] for name in agents])
         actions = policy(observations, rows)
-        chosen = {name: numbers[k] for name, k in zip(agents, actions, strict=True)}
-        _, rewards, *_ = env.step(chosen)
+        _, rewards, *_ = env.step({name: numbers[k] for name, k in zip(agents, actions, strict=True)})
         outcome = env.environment.outcome
         seen, masks = _look(env.world, features, family)
-        failed: frozenset[str] = frozenset()
-        if outcome is not None:
-            crash = outcome.collision
-            failed = frozenset(outcome.off_road if crash is None else (crash.striker, crash.struck))
-        yield AgentStep(
-            agents,
-            observations,
-            rows,
-            actions,
-            [rewards[name] for name in agents],
-            frozenset(name for name in agents if name not in seen),
-            failed,
-            None if outcome is None else outcome.ending,
-            seen,
-            masks,
-        )
+        failed = frozenset(outcome.failed if outcome else ())
+        ending = outcome.ending if outcome else None
+        arrived = frozenset(agents).difference(seen)
+        gains = [rewards[name] for name in agents]
+        yield AgentStep(agents, observations, rows, actions, gains, arrived, failed, ending, seen, masks)
 
 
 def _look(world: WorldState, features: Features, family: str) -> tuple[dict[str, FloatArray], dict[str, Masks]]:

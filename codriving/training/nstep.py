@@ -1,6 +1,5 @@
 """Transitions over several steps, one agent at a time; an agent that has arrived has none after its arrival."""
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -20,8 +19,7 @@ class Transition(NamedTuple):
     mask: NDArray[np.bool_]
 
 
-@dataclass(slots=True)
-class _Step:
+class _Step(NamedTuple):
     observation: Observation
     mask: NDArray[np.bool_]
     action: int

@@ -9,13 +9,13 @@ from codriving.methods.learned.layout import ACTIONS, FAR, NEAR, VERSION
 from codriving.methods.learned.network import AnyNetwork
 from codriving.methods.learned.weights import Purpose, Trained, load, save
 from codriving.runs.atomic import whole_file, write_text
-from codriving.training.curve import COLLISION, DURATION, SUCCESS, Row, curve_csv, curve_png
+from codriving.training.curve import COLLISION, DURATION, SUCCESS, curve_csv, curve_png
 from codriving.training.display import Display
 from codriving.training.folder import Stop, TrainingFolder, recall, store
 from codriving.training.settings import MadqnSettings, SingleSettings
 from codriving.training.single_trainer import SingleTrainer
 from codriving.training.trainer import Trainer
-from codriving.training.validation import Grade, examine, overall
+from codriving.training.validation import Grade, examine
 
 AnySettings: TypeAlias = MadqnSettings | SingleSettings
 Learner: TypeAlias = Trainer | SingleTrainer
@@ -39,15 +39,15 @@ def train(settings: AnySettings, folder: TrainingFolder, display: Display, stop:
     if folder.checkpoint.exists():
         rows = recall(folder.checkpoint, trainer)["rows"]
         display.note(f"going on after {trainer.decisions} decisions")
-    target = len(rows) + 1
     while trainer.decisions < settings.decisions:
         trainer.advance()
         display.advance(trainer.decisions)
-        if trainer.decisions >= min(target * settings.exam_every, settings.decisions):
+        if trainer.decisions >= min((len(rows) + 1) * settings.exam_every, settings.decisions):
             rows.append(_validate(settings, trainer, folder))
-            target = len(rows) + 1
             store(folder.checkpoint, trainer, {"rows": rows})
-            _write_curve(rows, settings, folder)
+            write_text(folder.path / "curve.csv", curve_csv(rows))
+            with whole_file(folder.path / "curve.png") as file:
+                file.write_bytes(curve_png(rows, f"{settings.learner}, {settings.family}, seed {settings.seed}"))
             display.validated(rows[-1])
         if stop.wanted:
             store(folder.checkpoint, trainer, {"rows": rows})
@@ -73,7 +73,8 @@ def _exams(settings: AnySettings, network: AnyNetwork, first: int, episodes: int
 
 
 def _columns(grades: Mapping[str, Grade]) -> dict[str, float | None]:
-    found: dict[str, float | None] = {"score": round(overall(list(grades.values())), 4)}
+    success = sum(grade.success for grade in grades.values()) / len(grades)
+    found: dict[str, float | None] = {"score": round(success, 4)}
     for name, grade in grades.items():
         found[f"{name}.{SUCCESS}"] = round(grade.success, 4)
         found[f"{name}.{COLLISION}"] = round(grade.collision, 4)
@@ -87,23 +88,17 @@ def _choose(
     """Validate the best states once more on further seeds, and keep the best of them."""
     best = sorted(rows, key=lambda row: (-row["score"], row["decisions"]))[: settings.finalists]
     finals: list[dict[str, Any]] = []
+    first = settings.exam_seed + FINAL_SEEDS
     for row in sorted(best, key=lambda row: int(row["decisions"])):
         network = load(folder.state(row["decisions"])).network
-        first = settings.exam_seed + FINAL_SEEDS
         grades = _exams(settings, network, first, settings.final_episodes)
         finals.append({"decisions": row["decisions"], **_columns(grades)})
         display.final(finals[-1])
     write_text(folder.path / "finalists.csv", curve_csv(finals))
     winner = max(finals, key=lambda row: (row["score"], -row["decisions"]))
-    said = {
-        "decisions": winner["decisions"],
-        "validation": {
-            "first_seed": settings.exam_seed + FINAL_SEEDS,
-            "episodes_per_exam": settings.final_episodes,
-            **{name: value for name, value in winner.items() if name != "decisions"},
-        },
-    }
     network = load(folder.state(winner["decisions"])).network
+    said = {"decisions": winner.pop("decisions")}
+    said["validation"] = {"first_seed": first, "episodes_per_exam": settings.final_episodes, **winner}
     save(folder.best, Trained(network, _purpose(settings, folder, said)))
     return folder.best
 
@@ -113,6 +108,7 @@ def _purpose(settings: AnySettings, folder: TrainingFolder, said: Mapping[str, A
     intervals = {model.decision_interval for model in models}
     if len(intervals) > 1:
         raise TrainingError(f"all exams must decide alike often, got intervals of {sorted(intervals)} s")
+    taught = {"teacher": settings.teacher} if settings.teacher else {}
     return Purpose(
         method=settings.learner,
         family=settings.family,
@@ -123,22 +119,6 @@ def _purpose(settings: AnySettings, folder: TrainingFolder, said: Mapping[str, A
         target_speeds=tuple(sorted({model.target_speeds for model in models})),
         actions=tuple(map(str, ACTIONS[settings.family])),
         hidden=settings.hidden,
-        training={
-            "command": folder.command,
-            "config": folder.fingerprint,
-            "seed": settings.seed,
-            **_taught(settings),
-            **said,
-        },
+        training={"command": folder.command, "config": folder.fingerprint, "seed": settings.seed, **taught, **said},
         form=settings.form,
     )
-
-
-def _write_curve(rows: list[Row] | list[dict[str, Any]], settings: AnySettings, folder: TrainingFolder) -> None:
-    write_text(folder.path / "curve.csv", curve_csv(rows))
-    with whole_file(folder.path / "curve.png") as file:
-        file.write_bytes(curve_png(rows, f"{settings.learner}, {settings.family}, seed {settings.seed}"))
-
-
-def _taught(settings: AnySettings) -> dict[str, str]:
-    return {"teacher": settings.teacher} if settings.teacher else {}

@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from codriving.errors import ConfigError
 from codriving.gym.reward import RewardWeights, reward_weights
 from codriving.methods.learned.layout import FAMILIES
 from codriving.methods.learned.network import FORMS, PERCEPTRON
-from codriving.training.curriculum import CooperativeTraffic, Linear, SingleTraffic
+from codriving.training.curriculum import CooperativeTraffic, Linear, SingleTraffic, at_least
 from codriving.training.teacher import Guidance
 from codriving.training.validation import Exam
 
@@ -47,21 +47,9 @@ class Settings:
     finalists: int
     final_episodes: int
 
-    least: ClassVar[Mapping[str, int]] = {
-        "seed": 0,
-        "decisions": 1,
-        "exam_every": 1,
-        "exam_seed": LEAST_SEED,
-        "finalists": 1,
-        "final_episodes": 1,
-    }
-    """The smallest value of each whole number."""
-
     def __post_init__(self) -> None:
         self._one_of("family", FAMILIES)
-        for name, least in {**Settings.least, **self.least}.items():
-            if getattr(self, name) < least:
-                raise ConfigError(f"{name} must be {least} or more, got {getattr(self, name)}")
+        at_least(self, seed=0, decisions=1, exam_every=1, exam_seed=LEAST_SEED, finalists=1, final_episodes=1)
         if not self.hidden or min(self.hidden) < 1:
             raise ConfigError(f"hidden must name the units of at least one layer, got {list(self.hidden)}")
         self._below_one("discount")
@@ -100,7 +88,6 @@ class SingleSettings(Settings):
     guidance: Guidance | None
     traffic: tuple[SingleTraffic, ...]
 
-    least: ClassVar[Mapping[str, int]] = {"rollout": 2, "batch": 2, "epochs": 1}
     shared = False
     """A vehicle on its own is told nothing by others."""
 
@@ -108,6 +95,7 @@ class SingleSettings(Settings):
         self._one_of("learner", ("ppo", "tell"))
         self._one_of("form", FORMS)
         super().__post_init__()
+        at_least(self, rollout=2, batch=2, epochs=1)
         self._below_one("trace")
         self._below_one("clip")
         if self.entropy <= 0:
@@ -140,13 +128,13 @@ class MadqnSettings(Settings):
     faster: float
     traffic: tuple[CooperativeTraffic, ...]
 
-    least: ClassVar[Mapping[str, int]] = {"steps": 1, "capacity": 1, "warm_up": 1, "batch": 1, "every": 1}
     learner, form, teacher = "madqn", PERCEPTRON, ""
     shared = True
     """CAVs share states and intents."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        at_least(self, steps=1, capacity=1, warm_up=1, batch=1, every=1)
         if not 0 < self.average <= 1:
             raise ConfigError(f"average must be above 0 and at most 1, got {self.average:g}")
         if self.clip <= 0 or self.faster <= 0:

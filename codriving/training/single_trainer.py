@@ -12,7 +12,6 @@ from stable_baselines3.common.vec_env import DummyVecEnv
 
 from codriving.datatypes.outcome import Ending
 from codriving.gym.actions import draw_seed
-from codriving.gym.single import SingleDriving
 from codriving.methods.learned.layout import feature_count
 from codriving.methods.learned.network import ATTENTION, AnyNetwork
 from codriving.training.advised_observer import AdvisedObserver
@@ -37,8 +36,8 @@ class SingleTrainer:
         kinds = [kind for kind in settings.traffic for _ in range(kind.copies)]
         environments = [kind.environment(self._observer, settings.family, settings.weights) for kind in kinds]
         self._count = len(environments)
-        # Each is handed over at once; a lambda in a loop would hand over the last one.
-        self._roads = DummyVecEnv([_handing(environment) for environment in environments])
+        # A default is bound at once; the variable of the loop would be the last environment for all.
+        self._roads = DummyVecEnv([lambda made=environment: made for environment in environments])
         self._endings = _Endings()
         set_random_seed(settings.seed)
         self._ppo = PPO(
@@ -59,15 +58,13 @@ class SingleTrainer:
             },
             device="cpu",
         )
-        policy = self._ppo.policy
-        assert isinstance(policy, DriverPolicy)
-        self._policy = policy
+        self._policy: DriverPolicy = self._ppo.policy
 
     def _observer(self, environment: Any) -> AdvisedObserver:  # noqa: ANN401 - the environment's room is not for this one
         road, guidance = (environment.road_map, environment.driving_model), self.settings.guidance
         if guidance is None:
             return AdvisedObserver(*road, self.settings.family, None)
-        self._advisors.append(guidance.teacher(*road))
+        self._advisors.append(Advisor(guidance, *road))
         return AdvisedObserver(*road, self.settings.family, self._advisors[-1])
 
     @property
@@ -110,9 +107,8 @@ class SingleTrainer:
 
     def write(self, folder: Path) -> dict[str, Any]:
         """Write the networks, and return what else the training goes on from."""
-        torch.save(
-            {"policy": self._policy.state_dict(), "optimizer": self._policy.optimizer.state_dict()}, folder / NETWORK
-        )
+        parts = {"policy": self._policy.state_dict(), "optimizer": self._policy.optimizer.state_dict()}
+        torch.save(parts, folder / NETWORK)
         return {"decisions": self.decisions, "rollouts": self.rollouts, "endings": list(map(str, self._endings.found))}
 
     def read(self, folder: Path, state: dict[str, Any]) -> None:
@@ -137,7 +133,3 @@ class _Endings(BaseCallback):
                 # A CAV that arrives ends its episode, whether the others go on or not.
                 self.found.append(Ending.SUCCESS if info["arrived"] else Ending(info["outcome"]))
         return True
-
-
-def _handing(environment: SingleDriving) -> Any:  # noqa: ANN401 - what makes an environment
-    return lambda: environment

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,18 +18,10 @@ from codriving.methods.language_model.prompted_model import prompted
 from codriving.methods.single_vehicle.method import Driver, SingleVehicle
 from codriving.reasoning.prediction.forecast import HORIZON
 from codriving.reasoning.prediction.rollout import rollout
-from codriving.training.curriculum import Linear
+from codriving.training.curriculum import Linear, at_least
 
 if TYPE_CHECKING:
     from codriving.methods.language_model.model_decider import CheckedDecider
-
-
-class Teacher(Protocol):
-    """Says what it would do."""
-
-    def advise(self, world: WorldState) -> Mapping[str, Action]:
-        """Return what CAVs should do, by id; nothing where it is not asked."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -49,14 +41,9 @@ class Guidance:
     pull: Linear
 
     def __post_init__(self) -> None:
-        if self.every < 1:
-            raise ConfigError(f"every must be 1 or more, got {self.every}")
+        at_least(self, every=1)
         if min(self.pull.start, self.pull.end) < 0:
             raise ConfigError(f"pull must be 0 or more, got {self.pull.start:g} to {self.pull.end:g}")
-
-    def teacher(self, road_map: RoadMap, model: DrivingModel) -> "Advisor":
-        """Return a teacher for one of the environments."""
-        return Advisor(self, road_map, model)
 
 
 class Advisor:

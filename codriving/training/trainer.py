@@ -1,7 +1,7 @@
 """The training of MADQN: drive, remember, learn, and validate now and then."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -37,10 +37,6 @@ class Counts:
     driven: int = 0
     arrived: int = 0
 
-    def begin_section(self) -> None:
-        """Forget what is counted since the last validation."""
-        self.losses, self.learned, self.driven, self.arrived = 0.0, 0, 0, 0
-
 
 class Trainer:
     """Trains a network; all that it draws comes from one seeded generator."""
@@ -50,9 +46,8 @@ class Trainer:
         self._actions = ACTIONS[settings.family]
         inputs = feature_count(settings.family)
         self.rng = np.random.default_rng(settings.seed)
-        self.learner = DoubleDqn(
-            (inputs, *settings.hidden, len(self._actions)), settings.average, settings.clip, settings.seed
-        )
+        sizes = (inputs, *settings.hidden, len(self._actions))
+        self.learner = DoubleDqn(sizes, settings.average, settings.clip, settings.seed)
         self.replay = Replay(settings.capacity, inputs, len(self._actions))
         self._pull = np.array([settings.faster if a is Action.FASTER else 1.0 for a in self._actions])
         self._roads = [
@@ -76,11 +71,10 @@ class Trainer:
         share = shares(settings.traffic, counts.decisions / settings.decisions)
         kind = self._roads[int(self.rng.choice(len(share), p=share))]
         env, features = kind[int(self.rng.integers(len(kind)))]
-        seed = draw_seed(self.rng)
         trails: dict[str, Trail] = {}
-        live = as_numpy(self.learner.online, live=True)
+        policy = self._explore(as_numpy(self.learner.online, live=True))
         ending: Ending | None = None
-        for moment in drive(env, seed, features, settings.family, self._explore(live)):
+        for moment in drive(env, draw_seed(self.rng), features, settings.family, policy):
             for transition in remember(moment, trails, settings.steps, settings.discount):
                 self.replay.add(transition)
                 counts.waiting += 1
@@ -125,15 +119,14 @@ class Trainer:
             "loss": round(counts.losses / counts.learned, 5) if counts.learned else None,
             "train_success": round(counts.arrived / counts.driven, 4) if counts.driven else None,
         }
-        counts.begin_section()
+        counts.losses, counts.learned, counts.driven, counts.arrived = 0.0, 0, 0, 0
         return row
 
     def write(self, folder: Path) -> dict[str, Any]:
         """Write the network and the replay, and return what else the training goes on from."""
         torch.save(self.learner.state(), folder / NETWORK)
         np.savez(folder / REPLAY, **self.replay.state())  # type: ignore[arg-type]
-        counts = {name: getattr(self.counts, name) for name in self.counts.__slots__}
-        return {"counts": counts, "rng": self.rng.bit_generator.state}
+        return {"counts": asdict(self.counts), "rng": self.rng.bit_generator.state}
 
     def read(self, folder: Path, state: dict[str, Any]) -> None:
         """Go on from what another one has written."""

@@ -1,14 +1,14 @@
 """How well a network drives without exploring, on seeds that it was not trained on."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from codriving.datatypes.outcome import Ending
-from codriving.errors import ConfigError
 from codriving.methods.learned.features import Features
 from codriving.methods.learned.network import AnyNetwork, greedy
+from codriving.training.curriculum import at_least
 from codriving.training.episode import drive
 
 if TYPE_CHECKING:
@@ -31,8 +31,7 @@ class Exam:
     settings: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if self.episodes < 1:
-            raise ConfigError(f"episodes must be 1 or more, got {self.episodes}")
+        at_least(self, episodes=1)
 
     @cached_property
     def environment(self) -> "ParallelDriving":
@@ -82,8 +81,3 @@ def examine(exam: Exam, network: AnyNetwork, family: str, shared: bool, first_se
 def features_of(env: "ParallelDriving", family: str, shared: bool) -> Features:
     """Return what agents observe of an environment."""
     return Features(env.environment.road_map, env.environment.driving_model, family, shared)
-
-
-def overall(grades: Sequence[Grade]) -> float:
-    """Return the mean success of all exams, each counting the same."""
-    return sum(grade.success for grade in grades) / len(grades)

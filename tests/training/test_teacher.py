@@ -52,7 +52,7 @@ def guidance(llm: object, every: int = 1) -> Guidance:
 
 
 def advisor(junction: Junction, llm: object, every: int = 1) -> Advisor:
-    return guidance(llm, every).teacher(junction.road_map, junction.model)
+    return Advisor(guidance(llm, every), junction.road_map, junction.model)
 
 
 def says(action: str) -> Callable[[Question], str]:
@@ -118,7 +118,7 @@ def test_sight_puts_features_mask_and_advice_into_a_row(junction: Junction) -> N
 
 def test_drivers_of_two_environments_do_not_share_a_memory(junction: Junction) -> None:
     one = guidance(Rules())
-    teachers = [one.teacher(junction.road_map, junction.model) for _ in range(2)]
+    teachers = [Advisor(one, junction.road_map, junction.model) for _ in range(2)]
     assert teachers[0]._alone.driver is not teachers[1]._alone.driver
 
 
