@@ -26,5 +26,4 @@ class Tell(Learned):
         super().__init__(weights)
         file = shipped(self.name, JUNCTION) if weights is None else weights
         teacher = str(load(file).purpose.training.get("teacher", "")) or "nobody"
-        taught = f"taught by {teacher}"
-        self.variant = f"{self.variant}, {taught}" if self.variant else taught
+        self.variant = ", ".join(filter(None, [self.variant, f"taught by {teacher}"]))

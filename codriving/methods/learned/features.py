@@ -1,5 +1,6 @@
 """What a learned driver observes: the road and the others in conflict coordinates, the same wherever it comes from."""
 
+from itertools import combinations
 from typing import TypeAlias
 
 import numpy as np
@@ -34,7 +35,8 @@ class Features:
         self._road_map, self._top, self._family = road_map, model.target_speeds[-1], family
         self._range, self._shared = model.detection_range, shared
         # Where no two routes have a zone in which the order is open, no route matters.
-        self._meets = family == JUNCTION or _any_open(road_map)
+        pairs = combinations(sorted(road_map.routes), 2)
+        self._meets = family == JUNCTION or any(z.relation in OPEN for pair in pairs for z in road_map.zones(*pair))
         self._beside = Beside(road_map, self._top) if family == LANES else None
         self.reset()
 
@@ -59,12 +61,11 @@ class Features:
         route = self._road_map.routes[intent.route]
         far = FAR * top
         numbers = [ego.speed / top, intent.target_speed / top, (route.entry - place) / far, (route.goal - place) / far]
-        numbers += [float(route.turn is turn) for turn in TURNS]
-        numbers.append(1.0)
+        numbers += [*(float(route.turn is turn) for turn in TURNS), 1.0]
         slots: list[Slot] = []
         if self._meets:
-            rank = self._knowledge.priority(ego)
-            slots += conflict_slots(ego, route.id, place, others, self._road_map, top, rank)
+            priority = self._knowledge.priority(ego)
+            slots += conflict_slots(ego, route.id, place, others, self._road_map, top, priority)
         beside: list[float] = []
         if self._beside is None:
             ahead = leader_ahead(ego, route.id, place, others, self._road_map)
@@ -74,9 +75,3 @@ class Features:
             slots.append(leader_slot(*ahead, top))
         numbers += filled(slots)
         return np.clip(np.array(numbers + beside, dtype=np.float32), -1.0, 1.0)
-
-
-def _any_open(road_map: RoadMap) -> bool:
-    names = sorted(road_map.routes)
-    pairs = ((one, other) for k, one in enumerate(names) for other in names[k + 1 :])
-    return any(zone.relation in OPEN for pair in pairs for zone in road_map.zones(*pair))

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.road import Road
-from codriving.geometry.road_map import RoadMap
 
 VERSION = 1
 """Version of the features; weights that were trained on another one are refused."""
@@ -69,20 +68,12 @@ def feature_count(family: str) -> int:
     return len(feature_names(family))
 
 
-def family_of(road_map: RoadMap) -> str:
-    """Return the family that a road belongs to: ``lanes`` as soon as two lanes run side by side."""
-    return family_of_road(road_map.road)
-
-
-def family_of_road(road: Road) -> str:
+def family_of(road: Road) -> str:
     """Return the family of a road that has not been precomputed."""
     return LANES if any(lane.id[2] > 0 for lane in road.lanes) else JUNCTION
 
 
-ACTIONS: dict[str, tuple[Action, ...]] = {
-    JUNCTION: (Action.SLOWER, Action.IDLE, Action.FASTER),
-    LANES: tuple(Action),
-}
+ACTIONS: dict[str, tuple[Action, ...]] = {JUNCTION: (Action.SLOWER, Action.IDLE, Action.FASTER), LANES: tuple(Action)}
 """The action of each output, by family."""
 
 

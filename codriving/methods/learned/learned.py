@@ -1,6 +1,6 @@
 """Methods that have learned: every CAV asks the same trained network, and acts on what it observes."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -16,11 +16,13 @@ from codriving.datatypes.world import WorldState
 from codriving.errors import WeightsError
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.learned.features import Features, Observation
-from codriving.methods.learned.layout import ACTIONS, allowed, family_of, family_of_road, feature_names
+from codriving.methods.learned.layout import ACTIONS, allowed, family_of, feature_names
 from codriving.methods.learned.network import FloatArray, greedy, shares
 from codriving.methods.learned.weights import Trained, load, shipped, sidecar
 
 VALUES, PROBABILITIES = "values", "probabilities"
+
+REASONS = {VALUES: ("the network expects the most of", ".2f"), PROBABILITIES: ("the policy prefers", ".0%")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,38 +49,24 @@ class Judged(Deliberation):
         return dict(self.chosen)
 
     def as_dict(self) -> dict[str, Any]:
-        return {
-            "time": self.time,
-            "step": self.step,
-            "cavs": [self._entry(name, action) for name, action in self.chosen.items()],
-        }
+        cavs = [self._entry(name, action) for name, action in self.chosen.items()]
+        return {"time": self.time, "step": self.step, "cavs": cavs}
 
     def _entry(self, name: str, action: Action) -> dict[str, Any]:
         values = self.values[name]
+        words, form = REASONS[self.meaning]
+        others = [f"{other} {value:{form}}" for other, value in values.items() if other is not action]
         numbers = zip(feature_names(self.family), self.observations[name].tolist(), strict=True)
         # Empty slots are all zeros; what is not named is zero.
         observed = {feature: round(value, 6) for feature, value in numbers if value}
         return {
             "id": name,
             "action": str(action),
-            "reason": REASONS[self.meaning](action, values),
+            "reason": f"{words} {action}: {values[action]:{form}}, against {', '.join(others)}",
             "scene": {"intent": {"route": self.routes[name]}},
             "observed": observed,
             self.meaning: {str(a): round(value, 6) for a, value in values.items()},
         }
-
-
-def _expects(action: Action, values: Mapping[Action, float]) -> str:
-    others = [f"{other} {value:.2f}" for other, value in values.items() if other is not action]
-    return f"the network expects the most of {action}: {values[action]:.2f}, against {', '.join(others)}"
-
-
-def _prefers(action: Action, shares: Mapping[Action, float]) -> str:
-    others = [f"{other} {share:.0%}" for other, share in shares.items() if other is not action]
-    return f"the policy prefers {action}: {shares[action]:.0%}, against {', '.join(others)}"
-
-
-REASONS: dict[str, Callable[[Action, Mapping[Action, float]], str]] = {VALUES: _expects, PROBABILITIES: _prefers}
 
 
 class Learned(Method):
@@ -110,11 +98,11 @@ class Learned(Method):
             self._trained[self._own] = trained
 
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
-        family = family_of_road(road)
+        family = family_of(road)
         self._weights(family).purpose.check(family, target_speeds, decision_interval)
 
     def files(self, road: Road) -> Mapping[str, Path]:
-        file = shipped(self.name, family_of_road(road)) if self._file is None else self._file
+        file = shipped(self.name, family_of(road)) if self._file is None else self._file
         return {"weights": file, "weights, purpose": sidecar(file)}
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
@@ -123,10 +111,9 @@ class Learned(Method):
         Raises:
             WeightsError: If no weights are for this road.
         """
-        self._family = family_of(road_map)
-        trained = self._weights(self._family)
-        trained.purpose.check(self._family, model.target_speeds, model.decision_interval)
-        self._network = trained.network
+        self.check_road(road_map.road, model.target_speeds, model.decision_interval)
+        self._family = family_of(road_map.road)
+        self._network = self._weights(self._family).network
         self._features = Features(road_map, model, self._family, self.shared)
 
     def act(self, world: WorldState) -> Judged:

@@ -24,7 +24,7 @@ LEANS = 0.6
 STANDSTILL, HEADWAY = 3.0, 0.5
 """A gap beside is free if it is longer than this [m], and this much longer for each m/s of closing speed [s]."""
 
-Ahead = tuple[Other, float] | None
+Ahead = tuple[float, Other] | None
 
 
 class Beside:
@@ -69,12 +69,10 @@ class Beside:
         allowed = [Action.LANE_LEFT in available, Action.LANE_RIGHT in available]
         free = [a and _free(ego, found, k) for k, a in zip((-1, 1), allowed, strict=True)]
         numbers += [float(value) for value in (*allowed, *free)]
-        numbers += self._must(intent, place, lane)
-        numbers.append(offset / width)
         behind = found.get((0, False))
-        numbers.append(1.0 if behind is None else behind[0] / (NEAR * self._top))
-        leader = found.get((0, True))
-        return (None if leader is None else (leader[1], leader[0])), numbers
+        rear = 1.0 if behind is None else behind[0] / (NEAR * self._top)
+        numbers += [*self._must(intent, place, lane), offset / width, rear]
+        return found.get((0, True)), numbers
 
     def _along(self, lane: LaneId, places: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
         """Return arc length and lateral offset of places on a lane, which goes straight on beyond its ends [m]."""
@@ -126,16 +124,14 @@ Slot = tuple[float, tuple[float, ...]]
 """Urgency, the smaller the more urgent, and the numbers."""
 
 
-def leader_ahead(
-    ego: VehicleState, route: str, place: float, others: Iterable[Other], road_map: RoadMap
-) -> tuple[Other, float] | None:
+def leader_ahead(ego: VehicleState, route: str, place: float, others: Iterable[Other], road_map: RoadMap) -> Ahead:
     """Return who drives next ahead on the own route, and the gap from bumper to bumper [m].
 
     Args:
         place: Its arc length there [m].
     """
     path = road_map.paths[route]
-    nearest: tuple[float, Other] | None = None
+    nearest: Ahead = None
     for other in others:
         s, side = road_map.project(route, other.x, other.y)
         if s <= place or abs(side) > SAME_LANE or cos(other.heading - path.place(s)[2]) <= ALIGNED:
@@ -143,10 +139,10 @@ def leader_ahead(
         gap = s - place - (other.length + ego.length) / 2
         if nearest is None or gap < nearest[0]:
             nearest = gap, other
-    return None if nearest is None else (nearest[1], nearest[0])
+    return nearest
 
 
-def leader_slot(other: Other, gap: float, top: float) -> Slot:
+def leader_slot(gap: float, other: Other, top: float) -> Slot:
     """Return a leader as a slot.
 
     Args:

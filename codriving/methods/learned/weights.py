@@ -76,10 +76,6 @@ class Purpose:
             raise WeightsError(f"{where} has other actions than the family {made.family}: {', '.join(made.actions)}")
         return made
 
-    def written(self) -> str:
-        """Return the text of a sidecar."""
-        return json.dumps(asdict(self), indent=2) + "\n"
-
     def check(self, family: str, target_speeds: Sequence[float], decision_interval: float) -> None:
         """Refuse a road for which the weights were not trained.
 
@@ -100,10 +96,9 @@ class Purpose:
                 f"{self.method} was trained on decisions every {self.decision_interval:g} s, but the scenario decides "
                 f"every {decision_interval:g} s; set scenario.decision_frequency={1 / self.decision_interval:g}"
             )
-        tops = [grid[-1] for grid in self.target_speeds]
-        steps = [grid[1] - grid[0] for grid in self.target_speeds]
-        top, step = target_speeds[-1], target_speeds[1] - target_speeds[0]
-        for name, value, known in (("highest target speed", top, tops), ("step of target speeds", step, steps)):
+        grids = [target_speeds, *self.target_speeds]
+        tops, steps = [grid[-1] for grid in grids], [grid[1] - grid[0] for grid in grids]
+        for name, (value, *known) in (("highest target speed", tops), ("step of target speeds", steps)):
             if not min(known) - CLOSE <= value <= max(known) + CLOSE:
                 span = f"{min(known):g}" if min(known) == max(known) else f"{min(known):g} to {max(known):g}"
                 raise WeightsError(
@@ -135,7 +130,8 @@ def save(file: Path, trained: Trained) -> None:
     arrays = {name: np.ascontiguousarray(tensor) for name, tensor in tensors(trained.network).items()}
     # Not by the library's own file, which only its owner may read.
     file.write_bytes(packed(arrays))
-    sidecar(file).write_text(trained.purpose.written(), encoding="utf-8", newline="\n")
+    text = json.dumps(asdict(trained.purpose), indent=2) + "\n"
+    sidecar(file).write_text(text, encoding="utf-8", newline="\n")
 
 
 def load(file: Path) -> Trained:

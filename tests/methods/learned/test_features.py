@@ -25,7 +25,7 @@ FAMILY = {"intersection": JUNCTION, "roundabout": JUNCTION, "highway": LANES, "m
 
 
 def features(junction: Junction, shared: bool = True) -> Features:
-    return Features(junction.road_map, junction.model, family_of(junction.road_map), shared)
+    return Features(junction.road_map, junction.model, family_of(junction.road_map.road), shared)
 
 
 def seen(junction: Junction, *cars: Car, shared: bool = True) -> dict[str, Observation]:
@@ -174,7 +174,7 @@ def test_every_number_is_finite_and_within_bounds_all_along(
 ) -> None:
     name = "junction" if scenario == "intersection" else scenario
     road: Junction = request.getfixturevalue(name)
-    assert family_of(road.road_map) == FAMILY[scenario]
+    assert family_of(road.road_map.road) == FAMILY[scenario]
     made, environment = features(road, shared), road.environment
     world = environment.reset(10_001)
     for _ in range(12):
