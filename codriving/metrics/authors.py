@@ -59,16 +59,12 @@ def encounters(logs: Sequence[Log], box: float, distance: float) -> tuple[Logged
         if entry_arm(one) == entry_arm(other):
             continue
         rows, other_rows = _rows_inside(one, box), _rows_inside(other, box)
-        apart = np.hypot(
-            one.x[rows][:, None] - other.x[other_rows],
-            one.y[rows][:, None] - other.y[other_rows],
-        )
+        apart = np.hypot(one.x[rows][:, None] - other.x[other_rows], one.y[rows][:, None] - other.y[other_rows])
         meetings = np.argwhere(apart < distance)
         if len(meetings):
             k, m = meetings[0].tolist()
-            found.append(
-                LoggedEncounter(one.id, other.id, one.first_row + int(rows[k]), other.first_row + int(other_rows[m]))
-            )
+            row, other_row = one.first_row + int(rows[k]), other.first_row + int(other_rows[m])
+            found.append(LoggedEncounter(one.id, other.id, row, other_row))
     return tuple(found)
 
 
@@ -107,10 +103,7 @@ class AuthorsMetrics(Metric):
         for key, value in {"row_interval": row_interval, "box": box, "distance": distance, "rows": rows}.items():
             if value is not None and not value > 0:
                 raise ConfigError(f"metrics.{key} must be > 0, got {value:g}")
-        self.row_interval = row_interval
-        self.box = box
-        self.distance = distance
-        self.rows = rows
+        self.row_interval, self.box, self.distance, self.rows = row_interval, box, distance, rows
 
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
         """Return the score of an episode."""

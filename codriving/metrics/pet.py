@@ -38,7 +38,7 @@ def post_encroachment_times(trajectory: Trajectory, road: RoadMap) -> tuple[Pet,
     Counted are pairs with at least one CAV whose routes cross or merge; each conflict area of a pair, first pass only.
     A pair of which one did not pass the area is absent. The value is negative if both were in the area at once.
     """
-    places = {track.id: _progress(track, road) for track in trajectory.tracks}
+    places = {t.id: progress(road.paths[t.route], t.x, t.y, t.heading) for t in trajectory.tracks}
     pets = []
     for one, other in combinations(trajectory.tracks, 2):
         if Kind.CAV not in (one.kind, other.kind):
@@ -56,10 +56,6 @@ def post_encroachment_times(trajectory: Trajectory, road: RoadMap) -> tuple[Pet,
                 first, second = complete
                 pets.append(Pet(first.id, second.id, str(zone.relation), second.entry - first.exit))
     return tuple(pets)
-
-
-def _progress(track: Track, road: RoadMap) -> FloatArray:
-    return progress(road.paths[track.route], track.x, track.y, track.heading)
 
 
 def _areas(
