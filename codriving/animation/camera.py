@@ -1,5 +1,7 @@
 """Where to look: on a compact road ever closer to where the CAVs are; a long one lies there as a whole, in rows."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -41,17 +43,14 @@ class Camera:
         tracks = [t for t in trajectory.tracks if t.kind is Kind.CAV] or list(trajectory.tracks)
         driven = np.concatenate([np.column_stack((t.x, t.y)) for t in tracks])
         self.still = overview(driven, road_map, view)
-        self._zooms: NDArray[np.float64] | None = None
-        if len(self.still) == 1:
-            self._zooms = _zooms(tracks, trajectory.step, self.still[0])
+        self._zooms = _zooms(tracks, trajectory.step, self.still[0]) if len(self.still) == 1 else None
 
     def at(self, time: float) -> tuple[Window, ...]:
         """Return what is seen at a moment."""
         if self._zooms is None:
             return self.still
-        window = self.still[0]
         zoom = float(np.interp(time / _EVERY, np.arange(len(self._zooms)), self._zooms))
-        return (Window(window.area, window.x, window.y, zoom),)
+        return (replace(self.still[0], zoom=zoom),)
 
 
 def overview(points: NDArray[np.float64], road_map: RoadMap, view: Area) -> tuple[Window, ...]:

@@ -1,16 +1,18 @@
 """A sheet to draw on: smooth shapes by Matplotlib's Agg, letters by Pillow, and no display."""
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 from matplotlib.backends import backend_agg
+from matplotlib.colors import to_rgba
 from matplotlib.path import Path as Outline
 from matplotlib.transforms import Affine2D, Bbox
 from numpy.typing import ArrayLike, NDArray
 
-from codriving.animation.lettering import rgba, stamp, text_width
+from codriving.animation.lettering import stamp, text_width
 
 
 class Shape:
@@ -21,18 +23,10 @@ class Shape:
     """
 
     def __init__(self, parts: Iterable[ArrayLike], closed: bool = False) -> None:
-        points, codes = [], []
-        for part in parts:
-            corners = np.asarray(part, dtype=float)
-            points.append(np.vstack((corners, corners[:1])) if closed else corners)
-            kinds = np.full(len(points[-1]), Outline.LINETO, dtype=Outline.code_type)
-            kinds[0] = Outline.MOVETO
-            if closed:
-                kinds[-1] = Outline.CLOSEPOLY
-            codes.append(kinds)
-        self.outline = Outline(
-            np.concatenate(points) if points else np.empty((0, 2)), np.concatenate(codes) if codes else None
-        )
+        points = [np.asarray(part, dtype=float) for part in parts]
+        if closed:
+            points = [np.vstack((corners, corners[:1])) for corners in points]
+        self.outline = Outline.make_compound_path(*(Outline(part, closed=closed) for part in points))
         # Whether points are left out is a setting of the user's otherwise.
         self.outline.should_simplify = False
 
@@ -70,7 +64,7 @@ class Canvas:
 
     def fill(self, colour: str) -> None:
         """Paint the whole sheet."""
-        self._words[:] = np.array([round(part * 255) for part in rgba(colour)], dtype=np.uint8).view(np.uint32)
+        self._words[:] = np.array([round(part * 255) for part in to_rgba(colour)], dtype=np.uint8).view(np.uint32)
 
     def polygon(
         self, points: ArrayLike, fill: str | None = None, stroke: str | None = None, width: float = 1.0
@@ -117,11 +111,11 @@ class Canvas:
         pen.set_clip_rectangle(self._clip)
         pen.set_linewidth(width * self.scale if stroke else 0.0)
         if stroke:
-            pen.set_foreground(rgba(stroke), isRGBA=True)
+            pen.set_foreground(to_rgba(stroke), isRGBA=True)
             pen.set_capstyle("butt" if dash else "round")
             pen.set_dashes(0, [length * self.scale for length in dash] if dash else None)
         place = self._place if matrix is None else Affine2D(self._matrix @ matrix)
-        self._agg.draw_path(pen, shape.outline, place, rgba(fill) if fill else None)
+        self._agg.draw_path(pen, shape.outline, place, to_rgba(fill) if fill else None)
 
     def text(
         self,
@@ -152,15 +146,8 @@ class Canvas:
         """Return the width of a line of text [px]."""
         return text_width(" ".join(words.split()), size * self.scale, bold) / self.scale
 
-    def copy(self, left: float, top: float, width: float, height: float) -> Pixels:
-        """Return what has been drawn in a rectangle, to be put back later."""
-        return self._part(left, top, width, height).copy()
-
-    def paste(self, left: float, top: float, width: float, height: float, part: Pixels) -> None:
-        """Put back what was copied from the same rectangle."""
-        np.copyto(self._part(left, top, width, height), part)
-
-    def _part(self, left: float, top: float, width: float, height: float) -> Pixels:
+    def part(self, left: float, top: float, width: float, height: float) -> Pixels:
+        """Return the pixels of a part of the canvas, to be copied or written over."""
         s = self.scale
         return self.pixels[round(top * s) : round((top + height) * s), round(left * s) : round((left + width) * s)]
 
@@ -187,14 +174,9 @@ def shortened(canvas: Canvas, words: str, size: float, room: float, bold: bool =
     words = " ".join(words.split())
     if canvas.width_of(words, size, bold) <= room:
         return words
-    low, high = 0, len(words)
-    while low < high:
-        middle = (low + high + 1) // 2
-        if canvas.width_of(words[:middle].rstrip() + "…", size, bold) <= room:
-            low = middle
-        else:
-            high = middle - 1
-    return words[:low].rstrip() + "…"
+    cut = [words[:k].rstrip() + "…" for k in range(len(words) + 1)]
+    fit = bisect_right(cut, room, lo=1, key=lambda text: canvas.width_of(text, size, bold))
+    return cut[fit - 1]
 
 
 def wrapped(canvas: Canvas, words: str, size: float, room: float, lines: int) -> list[str]:

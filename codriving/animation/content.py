@@ -1,7 +1,7 @@
 """What a frame shows, as plain data, and how it is read from a stored episode at any time."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -77,41 +77,22 @@ class FrameContent:
     """
 
     time: float
-    bodies: tuple[DrawnVehicle, ...]
+    bodies: tuple[DrawnVehicle, ...] = ()
     thoughts: Mapping[str, DrawnDecision] = field(default_factory=dict)
     meetings: tuple[DrawnConflict, ...] = ()
     order: tuple[str, ...] | None = None
     order_title: str = ""
     arrived: Mapping[str, float | None] = field(default_factory=dict)
     outcome: Outcome | None = None
-
-
-_ORDERS = {True: "Passing order, binding", False: "Passing order"}
-
-
-@dataclass(frozen=True, slots=True)
-class Deliberated:
-    """What was decided in one step.
-
-    Attributes:
-        time: When [s].
-        order: The passing order that all share, or None.
-    """
-
-    time: float
-    thoughts: Mapping[str, DrawnDecision] = field(default_factory=dict)
     routes: Mapping[str, str] = field(default_factory=dict)
-    meetings: tuple[DrawnConflict, ...] = ()
-    order: tuple[str, ...] | None = None
-    order_title: str = ""
 
 
-def deliberated(line: Mapping[str, Any], road_map: RoadMap) -> Deliberated:
+def deliberated(line: Mapping[str, Any], road_map: RoadMap) -> FrameContent:
     """Read a line."""
     cavs = {name: entry for entry in _maps(line, "cavs") if (name := _text(entry, "id"))}
     order, title = _order([_map(entry, "order") for entry in cavs.values()])
     routes = {name: _text(_map(_map(entry, "scene"), "intent"), "route") for name, entry in cavs.items()}
-    return Deliberated(
+    return FrameContent(
         time=_number(line, "time") or 0.0,
         thoughts={name: _thought(name, entry) for name, entry in cavs.items()},
         routes={name: route for name, route in routes.items() if route},
@@ -171,13 +152,11 @@ def _order(orders: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, ...] | None,
 
 def _meetings(entries: Iterable[Mapping[str, Any]], road_map: RoadMap) -> tuple[DrawnConflict, ...]:
     worst: dict[frozenset[str], DrawnConflict] = {}
-    for conflict in (c for entry in entries for c in _maps(entry, "conflicts")):
-        meeting = _meeting(conflict, road_map)
-        if meeting is None:
-            continue
-        pair = frozenset((meeting.one, meeting.other))
-        if pair not in worst or meeting.dttcp < worst[pair].dttcp:
-            worst[pair] = meeting
+    for meeting in (_meeting(conflict, road_map) for entry in entries for conflict in _maps(entry, "conflicts")):
+        if meeting is not None:
+            pair = frozenset((meeting.one, meeting.other))
+            if pair not in worst or meeting.dttcp < worst[pair].dttcp:
+                worst[pair] = meeting
     return tuple(worst.values())
 
 
@@ -196,9 +175,7 @@ def _ways(conflict: Mapping[str, Any], road_map: RoadMap) -> tuple[tuple[str, fl
     if conflict.get("relation") == Relation.FOLLOWING or len(routes) != 2 or not isinstance(index, int):
         return None
     one, other = routes
-    if not {one, other} <= set(road_map.routes):
-        return None
-    zones = road_map.zones(one, other)
+    zones = road_map.zones(one, other) if {one, other} <= set(road_map.routes) else ()
     if not 0 <= index < len(zones):
         return None
     zone = zones[index]
@@ -234,49 +211,30 @@ class StoredFrames:
         """
         time = min(max(time, 0.0), self.duration)
         decided = self._decision(time)
-        routes = decided.routes
-        bodies = []
-        thoughts = dict(decided.thoughts)
+        bodies, thoughts = [], dict(decided.thoughts)
         for track in self._trajectory.tracks:
             row = time / self._trajectory.step - track.first_step
             if not -1e-6 <= row <= len(track.x) - 1 + 1e-6:
                 continue
-            bodies.append(self._body(track, row, routes))
+            bodies.append(self._body(track, row, decided.routes))
             if track.kind is Kind.CAV and track.id not in thoughts:
                 action = action_named(track.action[min(int(row + 1), len(track.x) - 1)])
                 thoughts[track.id] = DrawnDecision(action)
-        over = time >= self.duration - 1e-6
-        return FrameContent(
-            time=time,
-            bodies=tuple(bodies),
-            thoughts=thoughts,
-            meetings=decided.meetings,
-            order=decided.order,
-            order_title=decided.order_title,
-            arrived={name: at for name, at in self._outcome.arrivals.items() if at <= time + 1e-6},
-            outcome=self._outcome if over else None,
-        )
+        arrived = {name: at for name, at in self._outcome.arrivals.items() if at <= time + 1e-6}
+        outcome = self._outcome if time >= self.duration - 1e-6 else None
+        return replace(decided, time=time, bodies=tuple(bodies), thoughts=thoughts, arrived=arrived, outcome=outcome)
 
-    def _decision(self, time: float) -> Deliberated:
+    def _decision(self, time: float) -> FrameContent:
         k = int(np.searchsorted(self._times, time + 1e-6, side="right")) - 1
-        return self._decided[k] if k >= 0 else Deliberated(time)
+        return self._decided[k] if k >= 0 else FrameContent(time)
 
     def _body(self, track: Track, row: float, routes: Mapping[str, str]) -> DrawnVehicle:
         k = min(max(int(row), 0), max(len(track.x) - 2, 0))
         share, after = min(max(row - k, 0.0), 1.0), min(k + 1, len(track.x) - 1)
 
-        def between(values: np.ndarray) -> float:
-            return float(values[k] + share * (values[after] - values[k]))
-
-        route = routes.get(track.id, track.route) if track.kind is Kind.CAV else None
-        return DrawnVehicle(
-            track.id,
-            track.kind,
-            between(track.x),
-            between(track.y),
-            between(self._headings[track.id]),
-            between(track.speed),
-            route,
-            track.length,
-            track.width,
+        x, y, heading, speed = (
+            float(values[k] + share * (values[after] - values[k]))
+            for values in (track.x, track.y, self._headings[track.id], track.speed)
         )
+        route = routes.get(track.id, track.route) if track.kind is Kind.CAV else None
+        return DrawnVehicle(track.id, track.kind, x, y, heading, speed, route, track.length, track.width)

@@ -69,12 +69,9 @@ def write_film(path: Path, reel: Reel, frames: Iterator[Frame], samples: Sequenc
             # Its colours are kept for two pixels by two, so both sides must be even.
             even = "pad=ceil(iw/2)*2:ceil(ih/2)*2," if reel.rows % 2 or reel.columns % 2 else ""
             options = ("-vf", f"{even}{_COLOURS},{_SAID}", *_VIDEO)
-        return _encode([*_raw(reel), *options, *_SAME_BYTES, "-y", str(path)], frames)
-
-
-def _raw(reel: Reel) -> tuple[str, ...]:
-    size = f"{reel.columns}x{reel.rows}"
-    return ("-f", "rawvideo", "-pixel_format", "rgba", "-video_size", size, "-framerate", str(reel.rate), "-i", "-")
+        size = f"{reel.columns}x{reel.rows}"
+        raw = ("-f", "rawvideo", "-pixel_format", "rgba", "-video_size", size, "-framerate", str(reel.rate), "-i", "-")
+        return _encode([*raw, *options, *_SAME_BYTES, "-y", str(path)], frames)
 
 
 def _encode(arguments: Sequence[str], frames: Iterator[Frame]) -> int:
@@ -185,9 +182,7 @@ class EpisodeFilm:
         hold = ceil(_HOLD * rate)
         for k in range(last - hold):
             yield self.frame(min(k * speed / float(rate), self.duration))
-        end = self.frame(self.duration)
-        for _ in range(hold + 1):
-            yield end
+        yield from [self.frame(self.duration)] * (hold + 1)
 
     def frame_count(self, rate: Fraction, speed: float) -> int:
         """Return how many frames a film has."""

@@ -6,17 +6,9 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.colors import to_rgba
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
-
-
-@lru_cache(maxsize=256)
-def rgba(colour: str) -> tuple[float, float, float, float]:
-    """Return red, green, blue and opacity, each 0 to 1."""
-    digits = colour.removeprefix("#").ljust(8, "f")
-    red, green, blue, alpha = (int(digits[k : k + 2], 16) / 255 for k in (0, 2, 4, 6))
-    return red, green, blue, alpha
-
 
 _CAPITAL = 0.73
 """Height of a capital of DejaVu Sans, as a part of the size."""
@@ -71,7 +63,7 @@ def stamp(words: str, size: float, bold: bool, colour: str, halo: str | None, ri
             continue
         sheet = Image.new("L", shape)
         ImageDraw.Draw(sheet).text((-x, -y), words, font=font, fill=255, stroke_width=width, anchor="ls")
-        *pigment, alpha = rgba(paint)
+        *pigment, alpha = to_rgba(paint)
         cover = np.asarray(sheet, dtype=np.float32)[..., None] * np.float32(alpha / 255)
         ink = ink * (1 - cover) + np.array(pigment, dtype=np.float32) * 255 * cover
         keep = keep * (1 - cover)

@@ -1,12 +1,13 @@
 """A picture of a world while it is driven, as the ``render()`` of an environment wants it."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.animation.content import DrawnDecision, DrawnVehicle, FrameContent
+from codriving.animation.content import DrawnDecision, DrawnVehicle, FrameContent, deliberated
 from codriving.animation.style import check_size
 from codriving.datatypes.action import Action
 from codriving.datatypes.outcome import Outcome
@@ -108,24 +109,17 @@ class LivePicture:
         outcome: Outcome | None,
         arrivals: Mapping[str, float] | None,
     ) -> FrameContent:
-        from codriving.animation.content import Deliberated, deliberated
-
-        decided = deliberated(deliberation, self._road_map) if deliberation else Deliberated(world.time)
+        decided = deliberated(deliberation, self._road_map) if deliberation else FrameContent(world.time)
         told = {name: DrawnDecision(Action(action)) for name, action in actions.items()}
         bodies = []
         for v in world.vehicles:
             intent = world.intents.get(v.id) if v.kind is Kind.CAV else None
             route = intent.route if intent else None
             bodies.append(DrawnVehicle(v.id, v.kind, v.x, v.y, v.heading, v.speed, route, v.length, v.width))
-        return FrameContent(
-            time=world.time,
-            bodies=tuple(bodies),
-            thoughts={**told, **decided.thoughts},
-            meetings=decided.meetings,
-            order=decided.order,
-            order_title=decided.order_title,
-            arrived=arrivals if arrivals is not None else self._arrived(world, outcome),
-            outcome=outcome,
+        thoughts = {**told, **decided.thoughts}
+        arrived = arrivals if arrivals is not None else self._arrived(world, outcome)
+        return replace(
+            decided, time=world.time, bodies=tuple(bodies), thoughts=thoughts, arrived=arrived, outcome=outcome
         )
 
     def _arrived(self, world: WorldState, outcome: Outcome | None) -> Mapping[str, float | None]:

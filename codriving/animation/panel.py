@@ -108,7 +108,7 @@ _ROW = 21.0
 
 def draw_legend(canvas: Canvas, area: Area) -> None:
     """Draw the legend."""
-    canvas.line([(area.left, area.top), (area.left + area.width, area.top)], HAIR, 1.0)
+    _rule(canvas, area, area.top)
     left, y = area.left, area.top + 20
     for kind, words in ((Kind.CAV, "CAV"), (Kind.HDV, "human driver")):
         draw_vehicles(canvas, _window(left, y, 4.6), [DrawnVehicle("", kind, 0.0, 0.0, 0.0, 0.0)])
@@ -155,9 +155,9 @@ class SidePanel:
         key = (here, moment.thoughts, moment.meetings, moment.order, moment.order_title, moment.arrived)
         if self._kept is None or self._kept[0] != key:
             cards = self._still(canvas, moment)
-            self._kept = (key, canvas.copy(a.left, a.top, a.width, a.height), cards)
+            self._kept = (key, canvas.part(a.left, a.top, a.width, a.height).copy(), cards)
         else:
-            canvas.paste(a.left, a.top, a.width, a.height, self._kept[1])
+            np.copyto(canvas.part(a.left, a.top, a.width, a.height), self._kept[1])
         right = self._inner.left + self._inner.width
         canvas.text(right, a.top + 25, f"{moment.time:.1f} s", 24, INK, bold=True, anchor=1.0)
         self._kept[2].speeds(canvas, moment)

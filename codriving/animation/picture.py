@@ -1,7 +1,5 @@
 """One frame put together: road, plans, conflicts, vehicles, names, panel, and how it ended."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -44,8 +42,7 @@ def draw_banner(canvas: Canvas, area: Area, outcome: Outcome, cavs: int) -> None
     left, top = area.centre[0] - width / 2, area.top + area.height - 70
     canvas.box(left, top, width, 44, PAPER + "f0", colour)
     canvas.box(left, top, 8, 44, colour)
-    sign = tick if good else cross
-    sign(canvas, left + 30, top + 22, 18, colour)
+    (tick if good else cross)(canvas, left + 30, top + 22, 18, colour)
     canvas.text(left + 52, top + 22, words, 17, INK, bold=True)
 
 
@@ -135,9 +132,7 @@ class Picture:
         if moment.outcome is None or moment.outcome.collision is None:
             return
         collision = moment.outcome.collision
-        hit: Sequence[tuple[float, float]] = [
-            (body.x, body.y) for body in moment.bodies if body.id in (collision.striker, collision.struck)
-        ]
+        hit = [(body.x, body.y) for body in moment.bodies if body.id in (collision.striker, collision.struck)]
         if hit:
             x, y = window.place(np.mean(hit, axis=0))
             target(self._canvas, float(x), float(y), max(4.5 * window.zoom, 20.0))

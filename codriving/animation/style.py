@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 from codriving.datatypes.action import Action
 from codriving.datatypes.conflict import Severity
-from codriving.datatypes.outcome import Ending
 from codriving.datatypes.vehicle import Kind
 from codriving.errors import ConfigError
 
@@ -33,9 +32,6 @@ ACTIONS = {
     Action.LANE_RIGHT: BLUE,
 }
 """Each has a glyph of its own shape and its name in words, too."""
-
-ENDINGS = {Ending.SUCCESS: GREEN}
-"""What is not here ended badly."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -199,10 +199,7 @@ def overlap(a: Area, b: Area) -> float:
 def beside(own: Area, width: float, height: float) -> list[Area]:
     """Return the places around something, first those where people look first."""
     (x, y), right, bottom = own.centre, own.left + own.width, own.top + own.height
-    over = [
-        Area(x - width / 2, own.top - height - 1, width, height),
-        Area(x - width / 2, bottom + 1, width, height),
-    ]
+    over = [Area(x - width / 2, own.top - height - 1, width, height), Area(x - width / 2, bottom + 1, width, height)]
     sides = [Area(right + 3, y - height / 2, width, height), Area(own.left - width - 3, y - height / 2, width, height)]
     further = [
         Area(left, top, width, height)

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from matplotlib.colors import to_rgba
 from numpy.typing import NDArray
 
-from codriving.animation.lettering import rgba
 from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.road import Block, Lane, Line, Road, Route, Straight, Turn
 from codriving.datatypes.trajectory import Track, Trajectory
@@ -110,7 +110,7 @@ def is_colour(frame: Frame, x: float, y: float, name: str, tolerance: int = 6) -
 
 def bytes_of(name: str) -> tuple[int, ...]:
     """Red, green and blue of a colour."""
-    return tuple(round(part * 255) for part in rgba(name)[:3])
+    return tuple(round(part * 255) for part in to_rgba(name)[:3])
 
 
 def share(frame: Frame, name: str, tolerance: int = 12) -> float:

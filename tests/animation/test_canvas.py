@@ -90,9 +90,9 @@ def test_letters_off_the_sheet_do_no_harm(canvas: Canvas) -> None:
 def test_a_part_is_put_back_as_it_was(canvas: Canvas) -> None:
     canvas.polygon(SQUARE, "#d55e00")
     before = canvas.pixels.copy()
-    kept = canvas.copy(10, 10, 60, 60)
+    kept = canvas.part(10, 10, 60, 60).copy()
     canvas.fill("#000000")
-    canvas.paste(10, 10, 60, 60, kept)
+    canvas.part(10, 10, 60, 60)[:] = kept
     assert (canvas.pixels[10:70, 10:70] == before[10:70, 10:70]).all()
     assert (canvas.pixels[:10] != before[:10]).any()
 
