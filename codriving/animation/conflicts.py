@@ -71,13 +71,11 @@ class ConflictLayer:
     def label(self, canvas: Canvas, window: Window, space: FreeSpace) -> None:
         """Write at the marks of those that press how severe they are."""
         for meeting in self._pressing:
-            place = self._shapes[id(meeting)][0]
-            if not window.owns(place):
-                continue
-            stroke = SEVERITIES[meeting.severity]
-            words = f"{stroke.word} {meeting.dttcp:.1f} s"
-            spot = space.find(beside(self._box(window, meeting), canvas.width_of(words, 11, bold=True) + 4, 15.0))
-            canvas.text(spot.left + 2, spot.centre[1], words, 11, stroke.colour, bold=True, halo=HALO)
+            if window.owns(self._shapes[id(meeting)][0]):
+                stroke = SEVERITIES[meeting.severity]
+                words = f"{stroke.word} {meeting.dttcp:.1f} s"
+                spot = space.find(beside(self._box(window, meeting), canvas.width_of(words, 11, bold=True) + 4, 15.0))
+                canvas.text(spot.left + 2, spot.centre[1], words, 11, stroke.colour, bold=True, halo=HALO)
 
 
 def conflict_lines(

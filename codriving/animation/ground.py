@@ -84,9 +84,8 @@ def side(way: Path, offset: float) -> Points:
 
 def _way(lane: Lane) -> Path:
     """The centre line, with no more points than it takes."""
-    shape = lane.shape
-    if isinstance(shape, Straight):
-        return lane_path(lane, spacing=float(np.hypot(*np.subtract(shape.end, shape.start))))
+    if isinstance(lane.shape, Straight):
+        return lane_path(lane, spacing=float(np.hypot(*np.subtract(lane.shape.end, lane.shape.start))))
     return lane_path(lane, spacing=1.0)
 
 

@@ -33,8 +33,7 @@ class Stamp:
 
 @lru_cache(maxsize=64)
 def _font(size: float, bold: bool) -> ImageFont.FreeTypeFont:
-    name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"
-    file = Path(mpl.get_data_path(), "fonts", "ttf", name)
+    file = Path(mpl.get_data_path(), "fonts", "ttf", "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf")
     # Another layout engine may be on the machine or not, and gives other pixels.
     return ImageFont.truetype(str(file), size, layout_engine=ImageFont.Layout.BASIC)
 
@@ -59,12 +58,11 @@ def stamp(words: str, size: float, bold: bool, colour: str, halo: str | None, ri
     shape = max(int(np.ceil(right)) - x, 1), max(int(np.ceil(bottom)) - y, 1)
     ink, keep = np.zeros((shape[1], shape[0], 3), np.float32), np.ones((shape[1], shape[0], 1), np.float32)
     for paint, width in ((halo, rim), (colour, 0)):
-        if paint is None:
-            continue
-        sheet = Image.new("L", shape)
-        ImageDraw.Draw(sheet).text((-x, -y), words, font=font, fill=255, stroke_width=width, anchor="ls")
-        *pigment, alpha = to_rgba(paint)
-        cover = np.asarray(sheet, dtype=np.float32)[..., None] * np.float32(alpha / 255)
-        ink = ink * (1 - cover) + np.array(pigment, dtype=np.float32) * 255 * cover
-        keep = keep * (1 - cover)
+        if paint is not None:
+            sheet = Image.new("L", shape)
+            ImageDraw.Draw(sheet).text((-x, -y), words, font=font, fill=255, stroke_width=width, anchor="ls")
+            *pigment, alpha = to_rgba(paint)
+            cover = np.asarray(sheet, dtype=np.float32)[..., None] * np.float32(alpha / 255)
+            ink = ink * (1 - cover) + np.array(pigment, dtype=np.float32) * 255 * cover
+            keep = keep * (1 - cover)
     return Stamp(ink, keep, x, y + round(_CAPITAL * size / 2))

@@ -83,7 +83,19 @@ class LivePicture:
             self._begin(world)
         self._time = world.time
         assert self._picture is not None
-        return self._picture.rgb(self._moment(world, actions or {}, deliberation, outcome, arrivals), self._windows)
+        decided = deliberated(deliberation, self._road_map) if deliberation else FrameContent(world.time)
+        told = {name: DrawnDecision(Action(action)) for name, action in (actions or {}).items()}
+        bodies = []
+        for v in world.vehicles:
+            intent = world.intents.get(v.id) if v.kind is Kind.CAV else None
+            route = intent.route if intent else None
+            bodies.append(DrawnVehicle(v.id, v.kind, v.x, v.y, v.heading, v.speed, route, v.length, v.width))
+        thoughts = {**told, **decided.thoughts}
+        arrived = arrivals if arrivals is not None else self._arrived(world, outcome)
+        moment = replace(
+            decided, time=world.time, bodies=tuple(bodies), thoughts=thoughts, arrived=arrived, outcome=outcome
+        )
+        return self._picture.rgb(moment, self._windows)
 
     def _begin(self, world: WorldState) -> None:
         """Choose a view from which the vehicles that are there and the places that they go to are seen."""
@@ -100,27 +112,6 @@ class LivePicture:
             x, y = self._road_map.paths[route].position(self._road_map.routes[route].goal)
             places.append((float(x), float(y)))
         self._windows = overview(np.array(places), self._road_map, self._picture.view)
-
-    def _moment(
-        self,
-        world: WorldState,
-        actions: Mapping[str, Action],
-        deliberation: Mapping[str, Any] | None,
-        outcome: Outcome | None,
-        arrivals: Mapping[str, float] | None,
-    ) -> FrameContent:
-        decided = deliberated(deliberation, self._road_map) if deliberation else FrameContent(world.time)
-        told = {name: DrawnDecision(Action(action)) for name, action in actions.items()}
-        bodies = []
-        for v in world.vehicles:
-            intent = world.intents.get(v.id) if v.kind is Kind.CAV else None
-            route = intent.route if intent else None
-            bodies.append(DrawnVehicle(v.id, v.kind, v.x, v.y, v.heading, v.speed, route, v.length, v.width))
-        thoughts = {**told, **decided.thoughts}
-        arrived = arrivals if arrivals is not None else self._arrived(world, outcome)
-        return replace(
-            decided, time=world.time, bodies=tuple(bodies), thoughts=thoughts, arrived=arrived, outcome=outcome
-        )
 
     def _arrived(self, world: WorldState, outcome: Outcome | None) -> Mapping[str, float | None]:
         """CAVs leave the road by arriving; a collision ends the episode with everybody in place."""

@@ -58,7 +58,6 @@ def draw_names(canvas: Canvas, window: Window, space: FreeSpace, moment: FrameCo
     for body, box in zip(shown, boxes, strict=True):
         thought = moment.thoughts.get(body.id)
         action = thought.action if thought else None
-        speed = f"{body.speed:.1f}"
         name = canvas.width_of(body.id, _LETTERS, bold=True)
         sign = 17.0 if action else 5.0
         # As wide as with the widest digits, so that it does not hop about with the speed.
@@ -68,7 +67,7 @@ def draw_names(canvas: Canvas, window: Window, space: FreeSpace, moment: FrameCo
         canvas.text(x, y, body.id, _LETTERS, INK, bold=True, halo=HALO)
         if action:
             action_glyph(canvas, action, x + name + 8.5, y, 9.0)
-        canvas.text(x + name + sign, y, speed, _LETTERS - 1, INK, halo=HALO)
+        canvas.text(x + name + sign, y, f"{body.speed:.1f}", _LETTERS - 1, INK, halo=HALO)
 
 
 _AHEAD = 70.0

@@ -13,6 +13,8 @@ from codriving.gym.actions import action_mask, action_of
 from codriving.gym.observation import FloatArray, Observer
 from codriving.gym.reward import CavStep, RewardWeights, rewards
 
+Info = dict[str, Any]
+
 
 class StepResult(NamedTuple):
     """What one decision step brought each CAV that was on the road, by id."""
@@ -88,7 +90,7 @@ class AgentEpisode:
         views = self._views
         return {name: views[name].copy() if name in views else self.observer.nothing() for name in names}
 
-    def info(self, name: str) -> dict[str, Any]:
+    def info(self, name: str) -> Info:
         """Return what is to be said of a CAV besides."""
         assert self.world is not None
         outcome = self.environment.outcome

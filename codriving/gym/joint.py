@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from codriving.errors import EpisodeError
 from codriving.gym.actions import ACTIONS, check_seed, draw_seed
+from codriving.gym.episode import Info
 from codriving.gym.observation import FloatArray
 from codriving.gym.parallel import METADATA, ParallelDriving
 
@@ -33,9 +34,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         self.observation_space = self.parallel.state_space
         self.action_space = MultiDiscrete([len(ACTIONS)] * len(self.parallel.possible_agents))
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[FloatArray, dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[FloatArray, Info]:
         """Begin an episode.
 
         Args:
@@ -54,7 +53,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         self.parallel.reset(draw_seed(self.np_random) if given is None else given)
         return self.parallel.state(), self._info()
 
-    def step(self, action: NDArray[np.int64]) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
+    def step(self, action: NDArray[np.int64]) -> tuple[FloatArray, float, bool, bool, Info]:
         """Carry out one decision of every CAV.
 
         Args:
@@ -95,7 +94,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         """Return the masks of all CAVs one after another (5 x cavs,), as MaskablePPO of sb3-contrib wants them."""
         return np.concatenate([info["action_mask"] for info in self._infos()]).astype(np.bool_)
 
-    def _info(self) -> dict[str, Any]:
+    def _info(self) -> Info:
         infos = self._infos()
         return {
             "action_mask": np.stack([info["action_mask"] for info in infos]),
@@ -105,5 +104,5 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
             "seed": infos[0]["seed"],
         }
 
-    def _infos(self) -> list[dict[str, Any]]:
+    def _infos(self) -> list[Info]:
         return list(self.parallel.infos(self.parallel.possible_agents).values())

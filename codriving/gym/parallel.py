@@ -14,14 +14,15 @@ from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError, EpisodeError
 from codriving.gym.actions import ACTIONS, check_seed, draw_seed
 from codriving.gym.configured import configured
-from codriving.gym.episode import AgentEpisode
+from codriving.gym.episode import AgentEpisode, Info
 from codriving.gym.observation import CdaObserver, FloatArray, Layout
 from codriving.gym.reward import RewardWeights, reward_weights
 
 RENDER_MODES = ("rgb_array",)
 METADATA: dict[str, Any] = {"render_modes": list(RENDER_MODES), "is_parallelizable": True}
 
-Infos = dict[str, dict[str, Any]]
+Infos = dict[str, Info]
+Observations = dict[str, FloatArray]
 
 
 class ParallelDriving(ParallelEnv):
@@ -95,9 +96,7 @@ class ParallelDriving(ParallelEnv):
         """Return the space of an agent's actions."""
         return self.action_spaces[agent]
 
-    def reset(
-        self, seed: int | None = None, options: Mapping[str, Any] | None = None
-    ) -> tuple[dict[str, FloatArray], Infos]:
+    def reset(self, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Observations, Infos]:
         """Begin an episode.
 
         Args:
@@ -119,7 +118,7 @@ class ParallelDriving(ParallelEnv):
 
     def step(
         self, actions: Mapping[str, Any]
-    ) -> tuple[dict[str, FloatArray], dict[str, float], dict[str, bool], dict[str, bool], Infos]:
+    ) -> tuple[Observations, dict[str, float], dict[str, bool], dict[str, bool], Infos]:
         """Carry out one decision of every CAV on the road.
 
         Args:

@@ -16,7 +16,7 @@ from codriving.datatypes.vehicle import Kind
 from codriving.environment.environment import Environment
 from codriving.gym.actions import ACTIONS, check_seed, draw_seed
 from codriving.gym.configured import configured
-from codriving.gym.episode import AgentEpisode
+from codriving.gym.episode import AgentEpisode, Info
 from codriving.gym.observation import FloatArray, Observer
 from codriving.gym.reward import RewardWeights, reward_weights
 
@@ -84,9 +84,7 @@ class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
         self.action_space = Discrete(len(actions))
         self.observation_space = Box(-1.0, 1.0, observing.nothing().shape, np.float32)
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[FloatArray, dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[FloatArray, Info]:
         """Begin an episode.
 
         Args:
@@ -105,7 +103,7 @@ class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
         self._drive.begin(draw_seed(self.np_random) if given is None else given)
         return self._observation(), self._drive.info(self._cav)
 
-    def step(self, action: np.int64) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
+    def step(self, action: np.int64) -> tuple[FloatArray, float, bool, bool, Info]:
         """Carry out one decision; what the road does not allow is carried out as IDLE and counted.
 
         Returns:

@@ -1,7 +1,7 @@
 """An actor that attends to others one by one: a token a slot, and the ego vehicle asks (TeLL, Xu et al., 2025)."""
 
 import torch
-from torch import nn
+from torch import Tensor, nn
 
 from codriving.methods.learned.layout import EGO, SLOT, SLOTS
 from codriving.methods.learned.network import HEADS, WIDTH, Attention, FloatArray
@@ -18,7 +18,7 @@ class AttentionActor(nn.Module):
         self.query, self.key, self.value = (nn.Linear(WIDTH, WIDTH) for _ in range(3))
         self.judge = perceptron((2 * WIDTH, *hidden, outputs))
 
-    def forward(self, observations: torch.Tensor) -> torch.Tensor:
+    def forward(self, observations: Tensor) -> Tensor:
         """Return one number an action (n, actions).
 
         Args:
@@ -37,7 +37,7 @@ class AttentionActor(nn.Module):
         scores = (query * key).sum(3) / (WIDTH // HEADS) ** 0.5
         shares = torch.softmax(scores.masked_fill(~there[:, :, None], -1e9), 1)
         seen = (shares[..., None] * value).sum(1).reshape(-1, WIDTH)
-        judged: torch.Tensor = self.judge(torch.cat([ego, seen], 1))
+        judged: Tensor = self.judge(torch.cat([ego, seen], 1))
         return judged
 
     def as_numpy(self) -> Attention:

@@ -5,7 +5,7 @@ from typing import Any
 
 import torch
 from stable_baselines3.common.policies import ActorCriticPolicy
-from torch import nn
+from torch import Tensor, nn
 
 from codriving.methods.learned.network import AnyNetwork
 from codriving.training.attention import AttentionActor
@@ -47,9 +47,7 @@ class DriverPolicy(ActorCriticPolicy):
         nn.init.orthogonal_(last.weight, 0.01)
         self.optimizer = torch.optim.Adam(self.parameters(), lr=lr_schedule(1), eps=1e-5)
 
-    def forward(
-        self, obs: torch.Tensor, deterministic: bool = False
-    ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+    def forward(self, obs: Tensor, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
         """Return actions, values and the logarithms of the actions' probabilities.
 
         Args:
@@ -59,9 +57,7 @@ class DriverPolicy(ActorCriticPolicy):
         actions = logs.argmax(1) if deterministic else torch.multinomial(logs.exp(), 1).squeeze(1)
         return actions, self.predict_values(obs), logs.gather(1, actions[:, None]).squeeze(1)
 
-    def evaluate_actions(
-        self, obs: torch.Tensor, actions: torch.Tensor
-    ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+    def evaluate_actions(self, obs: Tensor, actions: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Return values, logarithms of the actions' probabilities, and entropy less the pull towards the teacher.
 
         Args:
@@ -75,7 +71,7 @@ class DriverPolicy(ActorCriticPolicy):
             entropy = entropy - self.pull * self.divergence(obs, logs)
         return self.predict_values(obs), chosen, entropy
 
-    def divergence(self, obs: torch.Tensor, logs: torch.Tensor) -> torch.Tensor:
+    def divergence(self, obs: Tensor, logs: Tensor) -> Tensor:
         """Return KL(teacher || policy) of each row; 0 where there is no advice.
 
         Args:
@@ -90,19 +86,19 @@ class DriverPolicy(ActorCriticPolicy):
         terms = torch.where(teacher > 0, teacher * (teacher.clamp(min=1e-9).log() - logs), 0.0)
         return torch.where(known, terms, 0.0).sum(1)
 
-    def predict_values(self, obs: torch.Tensor) -> torch.Tensor:
+    def predict_values(self, obs: Tensor) -> Tensor:
         """Return what the critic expects (n, 1).
 
         Args:
             obs: Observations (n, features + 2 actions).
         """
-        values: torch.Tensor = self.critic(obs[:, : self._features])
+        values: Tensor = self.critic(obs[:, : self._features])
         return values
 
-    def _mask(self, obs: torch.Tensor) -> torch.Tensor:
+    def _mask(self, obs: Tensor) -> Tensor:
         return obs[:, self._features : self._features + self._outputs] > 0.5
 
-    def _logs(self, obs: torch.Tensor) -> torch.Tensor:
+    def _logs(self, obs: Tensor) -> Tensor:
         """Logarithms of probabilities; those of forbidden actions are so low that they are never drawn."""
         logits = self.actor(obs[:, : self._features]).masked_fill(~self._mask(obs), -1e9)
         return torch.log_softmax(logits, 1)

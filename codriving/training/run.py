@@ -43,7 +43,9 @@ def train(settings: AnySettings, folder: TrainingFolder, display: Display, stop:
         trainer.advance()
         display.advance(trainer.decisions)
         if trainer.decisions >= min((len(rows) + 1) * settings.exam_every, settings.decisions):
-            rows.append(_validate(settings, trainer, folder))
+            network, said = trainer.network, {"decisions": trainer.decisions}
+            rows.append({**trainer.section(), **_columns(_exams(settings, network, settings.exam_seed, None))})
+            save(folder.state(trainer.decisions), Trained(network, _purpose(settings, folder, said)))
             store(folder.checkpoint, trainer, {"rows": rows})
             write_text(folder.path / "curve.csv", curve_csv(rows))
             with whole_file(folder.path / "curve.png") as file:
@@ -53,14 +55,6 @@ def train(settings: AnySettings, folder: TrainingFolder, display: Display, stop:
             store(folder.checkpoint, trainer, {"rows": rows})
             raise KeyboardInterrupt
     return _choose(settings, rows, folder, display, trainer)
-
-
-def _validate(settings: AnySettings, trainer: Learner, folder: TrainingFolder) -> dict[str, Any]:
-    """Validate the network as it is, keep it, and return a row of the curve."""
-    decisions, network = trainer.decisions, trainer.network
-    row = {**trainer.section(), **_columns(_exams(settings, network, settings.exam_seed, None))}
-    save(folder.state(decisions), Trained(network, _purpose(settings, folder, {"decisions": decisions})))
-    return row
 
 
 def _exams(settings: AnySettings, network: AnyNetwork, first: int, episodes: int | None) -> dict[str, Grade]:

@@ -40,6 +40,7 @@ class SingleTrainer:
         self._roads = DummyVecEnv([lambda made=environment: made for environment in environments])
         self._endings = _Endings()
         set_random_seed(settings.seed)
+        attends = settings.form == ATTENTION
         self._ppo = PPO(
             DriverPolicy,
             self._roads,
@@ -51,11 +52,7 @@ class SingleTrainer:
             clip_range=settings.clip,
             ent_coef=settings.entropy,
             learning_rate=settings.rate.start,
-            policy_kwargs={
-                "features": feature_count(settings.family),
-                "hidden": settings.hidden,
-                "attends": settings.form == ATTENTION,
-            },
+            policy_kwargs={"features": feature_count(settings.family), "hidden": settings.hidden, "attends": attends},
             device="cpu",
         )
         self._policy: DriverPolicy = self._ppo.policy
@@ -95,15 +92,14 @@ class SingleTrainer:
         """Return what a row of the curve says besides the exams, and begin the next section."""
         endings, self._endings.found = self._endings.found, []
         guidance = self.settings.guidance
-        row: dict[str, float | int | None] = {
+        pull = {} if guidance is None else {"pull": round(guidance.pull.at(self.decisions), 4)}
+        return {
             "decisions": self.decisions,
             "updates": self.rollouts,
             "rate": round(self.settings.rate.at(self.decisions), 6),
             "train_success": round(endings.count(Ending.SUCCESS) / len(endings), 4) if endings else None,
+            **pull,
         }
-        if guidance is not None:
-            row["pull"] = round(guidance.pull.at(self.decisions), 4)
-        return row
 
     def write(self, folder: Path) -> dict[str, Any]:
         """Write the networks, and return what else the training goes on from."""

@@ -71,11 +71,8 @@ def examine(exam: Exam, network: AnyNetwork, family: str, shared: bool, first_se
         endings.append(outcome.ending)
         if outcome.ending is Ending.SUCCESS:
             durations.append(outcome.time)
-    return Grade(
-        len(durations) / episodes,
-        endings.count(Ending.COLLISION) / episodes,
-        sum(durations) / len(durations) if durations else None,
-    )
+    mean = sum(durations) / len(durations) if durations else None
+    return Grade(len(durations) / episodes, endings.count(Ending.COLLISION) / episodes, mean)
 
 
 def features_of(env: "ParallelDriving", family: str, shared: bool) -> Features:

@@ -61,20 +61,16 @@ class Knowledge:
             The others in the order of their ids, by id of the CAV.
         """
         self._tracking.begin_step()
-        cavs = world.cavs
+        cavs, vehicles = world.cavs, world.vehicles
         if not self._shared:
             return {
-                cav.id: tuple(
-                    self._stranger(cav.id, v)
-                    for v in world.vehicles
-                    if v.id != cav.id and hypot(v.x - cav.x, v.y - cav.y) <= self._range
-                )
+                cav.id: tuple(self._stranger(cav.id, v) for v in vehicles if v.id != cav.id and self._near(cav, v))
                 for cav in cavs
             }
         known = [
             self._partner(v, world) if v.kind is Kind.CAV else self._human(v)
-            for v in world.vehicles
-            if v.kind is Kind.CAV or any(hypot(v.x - c.x, v.y - c.y) <= self._range for c in cavs)
+            for v in vehicles
+            if v.kind is Kind.CAV or any(self._near(cav, v) for cav in cavs)
         ]
         return {cav.id: tuple(other for other in known if other.id != cav.id) for cav in cavs}
 
@@ -85,6 +81,9 @@ class Knowledge:
             Priority of its lane; None on roads without such rules, and for those who drive on their own.
         """
         return self._road_map.lanes[v.lane].priority if self._shared and self._road_map.road.regulated else None
+
+    def _near(self, cav: VehicleState, v: VehicleState) -> bool:
+        return hypot(v.x - cav.x, v.y - cav.y) <= self._range
 
     def _partner(self, v: VehicleState, world: WorldState) -> Other:
         """A CAV that has told its route and its target speed."""
