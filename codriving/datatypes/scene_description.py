@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from math import cos, hypot, sin
 
 from codriving.datatypes.road import LaneId
 from codriving.datatypes.vehicle import Intent, Kind, VehicleState
@@ -79,6 +80,19 @@ class SceneDescription:
     def neighbour(self, name: str) -> TrackedVehicle | None:
         """Return a neighbour by id, or None if the ego vehicle does not know of it."""
         return next((n for n in self.neighbours if n.id == name), None)
+
+    def distance(self, n: TrackedVehicle) -> float:
+        """Return the distance of the centres [m]."""
+        return hypot(n.x - self.ego.x, n.y - self.ego.y)
+
+    def by_distance(self) -> list[TrackedVehicle]:
+        """Return the neighbours, nearest first."""
+        return sorted(self.neighbours, key=lambda n: (self.distance(n), n.id))
+
+    def offset(self, n: TrackedVehicle) -> tuple[float, float]:
+        """Return how far ahead and how far to the right of the ego vehicle a vehicle is [m]."""
+        dx, dy, along, across = n.x - self.ego.x, n.y - self.ego.y, cos(self.ego.heading), sin(self.ego.heading)
+        return along * dx + across * dy, along * dy - across * dx
 
     def next_in(self, role: Role) -> TrackedVehicle | None:
         """Return the vehicle that drives next ahead (leading) or behind (rearing) on the lane, or None."""

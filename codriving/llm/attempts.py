@@ -4,7 +4,7 @@ import asyncio
 import random
 from collections import deque
 from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -156,11 +156,9 @@ class Retries:
         Raises:
             CallError: If it took too long, or failed by itself.
         """
-        try:
+        with suppress(TimeoutError):
             async with asyncio.timeout(self.deadline):
                 return await attempt
-        except TimeoutError:
-            pass
         raise CallError(FaultKind.TIMEOUT, f"{self.deadline:g} s")
 
     def _wait(self, made: int, retry_after: float | None) -> float:

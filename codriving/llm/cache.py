@@ -5,14 +5,13 @@ import json
 import os
 import sqlite3
 import threading
-import uuid
 import weakref
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from codriving.errors import ModelError
+from codriving.llm.sqlite_file import connect, create
 
 
 class AnswerCache:
@@ -39,21 +38,19 @@ class AnswerCache:
         Raises:
             ModelError: If there is none in replay, or the file cannot be used.
         """
-        if not self.path.exists():
-            self._absent(request, f"there is no answer cache {self.path}")
-            return None
-        key = key_of(request)
-        text = self._do(lambda connection: _text_of(connection, key))
-        if text is None:
-            self._absent(request, f"the answer cache {self.path} does not hold what is asked now")
-            return None
-        try:
-            reply = json.loads(text)
-        except ValueError as error:
-            raise self._unusable(str(error)) from error
-        if not isinstance(reply, dict):
-            raise self._unusable("a reply is no object")
-        return reply
+        fact = f"there is no answer cache {self.path}"
+        if self.path.exists():
+            key = key_of(request)
+            found: dict[str, Any] | None = self._do(lambda connection: _reply_of(connection, key))
+            if found is not None:
+                return found
+            fact = f"the answer cache {self.path} does not hold what is asked now"
+        if self.mode == "replay":
+            raise ModelError(
+                f"llm.cache=replay: {fact} (model {request.get('model', 'unknown')}); set llm.cache=use to ask the "
+                "model and fill it, or llm.cache_file to the file of the run that is to be repeated"
+            )
+        return None
 
     def keep(self, request: Mapping[str, Any], reply: Mapping[str, Any]) -> dict[str, Any]:
         """Keep a reply, unless somebody else has kept one to the same request meanwhile.
@@ -68,24 +65,16 @@ class AnswerCache:
             return dict(reply)
         key, text = key_of(request), json.dumps(reply, allow_nan=False)
 
-        def write(connection: sqlite3.Connection) -> str | None:
+        def write(connection: sqlite3.Connection) -> dict[str, Any]:
             connection.execute("INSERT OR IGNORE INTO answers (key, reply) VALUES (?, ?)", (key, text))
-            return _text_of(connection, key)
+            return _reply_of(connection, key) or dict(json.loads(text))
 
-        return dict(json.loads(self._do(write) or text))
+        return dict(self._do(write))
 
     def close(self) -> None:
         """Close the file; if no other process has it open, it is complete by itself then. It may be used again."""
         with self._lock:
             _close(self._connections)
-
-    def _absent(self, request: Mapping[str, Any], fact: str) -> None:
-        """Nothing is found: no matter, unless there is nobody else to ask."""
-        if self.mode == "replay":
-            raise ModelError(
-                f"llm.cache=replay: {fact} (model {request.get('model', 'unknown')}); set llm.cache=use to ask the "
-                "model and fill it, or llm.cache_file to the file of the run that is to be repeated"
-            )
 
     def _do(self, action: Any) -> Any:  # noqa: ANN401 - whatever the action gives
         """Do something with the file, one thread at a time."""
@@ -93,7 +82,10 @@ class AnswerCache:
             with self._lock:
                 return action(self._connection())
         except (sqlite3.Error, OSError, ValueError) as error:
-            raise self._unusable(str(error)) from error
+            raise ModelError(
+                f"the answer cache {self.path} cannot be used ({error}); move it away, set llm.cache_file to another "
+                "file, or set llm.cache=off"
+            ) from error
 
     def _connection(self) -> sqlite3.Connection:
         connection = self._connections.get(os.getpid())
@@ -101,12 +93,6 @@ class AnswerCache:
             connection = open_to_read(self.path) if self.mode == "replay" else open_to_write(self.path)
             self._connections[os.getpid()] = connection
         return connection
-
-    def _unusable(self, reason: str) -> ModelError:
-        return ModelError(
-            f"the answer cache {self.path} cannot be used ({reason}); move it away, set llm.cache_file to another "
-            "file, or set llm.cache=off"
-        )
 
 
 def key_of(request: Mapping[str, Any]) -> str:
@@ -121,21 +107,22 @@ def key_of(request: Mapping[str, Any]) -> str:
 
 def _close(connections: dict[int, sqlite3.Connection]) -> None:
     """Close the connection of this process."""
-    connection = connections.pop(os.getpid(), None)
-    if connection is not None:
-        connection.close()
+    if os.getpid() in connections:
+        connections.pop(os.getpid()).close()
 
 
-def _text_of(connection: sqlite3.Connection, key: str) -> str | None:
+def _reply_of(connection: sqlite3.Connection, key: str) -> dict[str, Any] | None:
     row = connection.execute("SELECT reply FROM answers WHERE key = ?", (key,)).fetchone()
-    return None if row is None else str(row[0])
+    if row is None:
+        return None
+    reply = json.loads(str(row[0]))
+    if not isinstance(reply, dict):
+        raise ValueError("a reply is no object")
+    return reply
 
 
 LAYOUT = 1
 """Changes when an older version could not read the file any more."""
-
-BUSY = 60.0
-"""How long to wait for another process that is writing [s]."""
 
 _LOG_PAGES = 64
 """Pages of the log beside the file at which it is worked in: a copy of the file alone then lacks little."""
@@ -150,15 +137,8 @@ def open_to_write(path: Path) -> sqlite3.Connection:
         ValueError: If another version wrote it.
     """
     if not path.exists():
-        _create(path)
-    connection = _connect(path.resolve().as_uri())
-    try:
-        connection.execute("PRAGMA synchronous = NORMAL")
-        connection.execute(f"PRAGMA wal_autocheckpoint = {_LOG_PAGES}")
-        return _checked(connection)
-    except BaseException:
-        connection.close()
-        raise
+        create(path, _fill)
+    return _open(path.resolve().as_uri(), "PRAGMA synchronous = NORMAL", f"PRAGMA wal_autocheckpoint = {_LOG_PAGES}")
 
 
 def open_to_read(path: Path) -> sqlite3.Connection:
@@ -174,40 +154,21 @@ def open_to_read(path: Path) -> sqlite3.Connection:
         return _open(f"{path.resolve().as_uri()}?mode=ro&immutable=1")
 
 
-def _open(uri: str) -> sqlite3.Connection:
-    connection = _connect(uri)
+def _open(uri: str, *settings: str) -> sqlite3.Connection:
+    connection = connect(uri)
     try:
-        return _checked(connection)
+        for setting in settings:
+            connection.execute(setting)
+        connection.execute("SELECT key FROM answers LIMIT 1").fetchone()
+        if connection.execute("PRAGMA user_version").fetchone() != (LAYOUT,):
+            raise ValueError("another version wrote it")
     except BaseException:
         connection.close()
         raise
-
-
-def _checked(connection: sqlite3.Connection) -> sqlite3.Connection:
-    connection.execute("SELECT key FROM answers LIMIT 1").fetchone()
-    if connection.execute("PRAGMA user_version").fetchone() != (LAYOUT,):
-        raise ValueError("another version wrote it")
     return connection
 
 
-def _create(path: Path) -> None:
-    """Make an empty file; if several processes do, the first wins and nobody ever sees half of it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.parent / f".partial-{path.name}-{uuid.uuid4().hex[:12]}"
-    try:
-        connection = _connect(partial.resolve().as_uri())
-        try:
-            connection.execute("PRAGMA journal_mode = WAL")
-            connection.execute("CREATE TABLE answers (key TEXT PRIMARY KEY, reply TEXT NOT NULL)")
-            connection.execute(f"PRAGMA user_version = {LAYOUT}")
-        finally:
-            connection.close()
-        with suppress(FileExistsError):
-            os.link(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
-
-
-def _connect(uri: str) -> sqlite3.Connection:
-    # Every statement is a transaction of its own, so that a killed process leaves none open.
-    return sqlite3.connect(uri, uri=True, timeout=BUSY, isolation_level=None, check_same_thread=False)
+def _fill(connection: sqlite3.Connection) -> None:
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("CREATE TABLE answers (key TEXT PRIMARY KEY, reply TEXT NOT NULL)")
+    connection.execute(f"PRAGMA user_version = {LAYOUT}")

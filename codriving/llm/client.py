@@ -4,7 +4,7 @@ import asyncio
 import json
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import partial
 from typing import Any
 from weakref import WeakValueDictionary
@@ -20,10 +20,7 @@ from codriving.llm.send import Sender
 from codriving.llm.settings import ModelSettings, read_key
 from codriving.llm.spending import Spending, cost_of
 
-_GREETING = (
-    Message("system", "You check that a connection works."),
-    Message("user", "Answer with the one word: yes"),
-)
+_GREETING = (Message("system", "You check that a connection works."), Message("user", "Answer with the one word: yes"))
 
 _FINISH_REASONS = {FaultKind.TOO_LONG: TOO_LONG, FaultKind.FILTERED: "content_filter", FaultKind.UNREADABLE: UNREADABLE}
 """Failures that are replies of a kind, by the finish reason that they are given: the question has to change."""
@@ -124,7 +121,7 @@ class ModelChat:
 
     async def _cached(self, cache: AnswerCache, request: ChatRequest) -> tuple[Reply, bool]:
         """Ask only what is not there, and the same thing only once even if it is asked twice at the same time."""
-        wanted = request.as_dict()
+        wanted = asdict(request)
         lock = self._under_way.setdefault(json.dumps(wanted, sort_keys=True), asyncio.Lock())
         async with lock:
             stored = cache.find(wanted)
@@ -132,7 +129,7 @@ class ModelChat:
                 return Reply.from_dict(stored), True
             reply = await self._fetch(request)
             # Another process may have been quicker; a replay will find its reply, so this run goes by it, too.
-            return Reply.from_dict(cache.keep(wanted, reply.as_dict())), False
+            return Reply.from_dict(cache.keep(wanted, asdict(reply))), False
 
     async def _fetch(self, request: ChatRequest) -> Reply:
         """Ask the server in the strictest form that it takes, retry where that helps, and pay.

@@ -32,7 +32,9 @@ class Connections(httpx.AsyncBaseTransport):
 
     async def handle_async_request(self, request: httpx.Request) -> httpx.Response:
         """Send a request; its transport is free again when the response is closed."""
-        transport = self._free.pop() if self._free else self._another()
+        if not self._free:
+            self._every.append(self._make())
+        transport = self._free.pop() if self._free else self._every[-1]
         try:
             response = await transport.handle_async_request(request)
         except BaseException:
@@ -46,10 +48,6 @@ class Connections(httpx.AsyncBaseTransport):
         """Close all connections."""
         for transport in self._every:
             await transport.aclose()
-
-    def _another(self) -> httpx.AsyncBaseTransport:
-        self._every.append(self._make())
-        return self._every[-1]
 
 
 class _Closing(httpx.AsyncByteStream):

@@ -9,9 +9,6 @@ from codriving.llm.request import TOO_LONG, Reply, schema_of, worded
 Fetch = Callable[[tuple[Message, ...], Question], Awaitable[tuple[Reply, bool]]]
 """Gives the reply to a conversation, and whether it came from the cache."""
 
-_NOTHING = "(no answer)"
-_LONGEST = 2000
-
 
 async def converse(question: Question, fetch: Fetch) -> Answer:
     """Ask a question."""
@@ -22,7 +19,19 @@ async def converse(question: Question, fetch: Fetch) -> Answer:
         messages = question.messages + again
         reply, cached = await fetch(messages, question)
         value, problem = judge(reply, question)
-        calls.append(_call(messages, question, reply, cached, problem))
+        call = Call(
+            messages=worded(messages, reply.form, schema_of(question.schema)),
+            text=reply.text,
+            form=reply.form,
+            prompt_tokens=reply.prompt_tokens,
+            completion_tokens=reply.completion_tokens,
+            cost=reply.cost,
+            seconds=reply.seconds,
+            attempts=reply.attempts,
+            cached=cached,
+            problem=problem,
+        )
+        calls.append(call)
         if reply.finish_reason == TOO_LONG:
             shorter = question.shorter()
             if shorter is None:
@@ -31,26 +40,6 @@ async def converse(question: Question, fetch: Fetch) -> Answer:
         elif value is not None or again:
             return Answer(value, tuple(calls), problem, shortened)
         else:
-            again = _again(reply, problem)
-
-
-def _again(reply: Reply, problem: str) -> tuple[Message, ...]:
-    """Say what was wrong; some servers insist that user and assistant take turns."""
-    said = one_line(reply.text, _LONGEST) or _NOTHING
-    wish = f"This answer cannot be used: {problem}. Answer again, with one JSON object of the form asked for."
-    return (Message("assistant", said), Message("user", wish))
-
-
-def _call(messages: tuple[Message, ...], question: Question, reply: Reply, cached: bool, problem: str) -> Call:
-    return Call(
-        messages=worded(messages, reply.form, schema_of(question.schema)),
-        text=reply.text,
-        form=reply.form,
-        prompt_tokens=reply.prompt_tokens,
-        completion_tokens=reply.completion_tokens,
-        cost=reply.cost,
-        seconds=reply.seconds,
-        attempts=reply.attempts,
-        cached=cached,
-        problem=problem,
-    )
+            # Some servers insist that user and assistant take turns.
+            wish = f"This answer cannot be used: {problem}. Answer again, with one JSON object of the form asked for."
+            again = (Message("assistant", one_line(reply.text, 2000) or "(no answer)"), Message("user", wish))

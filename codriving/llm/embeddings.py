@@ -15,8 +15,6 @@ from codriving.llm.settings import check_address, read_key
 ATTEMPTS = 5
 """How often a request is sent at most."""
 
-_CURE = "check memory.embedding_model, memory.embedding_api_base and memory.embedding_key_env"
-
 
 class EmbeddingModel:
     """An embedding model of one server.
@@ -57,7 +55,10 @@ class EmbeddingModel:
         where = self.api_base or f"the provider of {self.model}"
         if failed.kind.passes and failed.kind is not FaultKind.UNREACHABLE:
             raise ModelUnavailableError(f"{self.model}: {where} {failed}")
-        raise ModelError(f"the embedding model {self.model} cannot be used: {where} {failed}; {_CURE}")
+        raise ModelError(
+            f"the embedding model {self.model} cannot be used: {where} {failed}; check "
+            "memory.embedding_model, memory.embedding_api_base and memory.embedding_key_env"
+        )
 
     async def _embed(self, texts: list[str]) -> list[list[float]]:
         key = read_key(
@@ -65,10 +66,9 @@ class EmbeddingModel:
         )
         await load_litellm()
 
-        async def attempt() -> Any:  # noqa: ANN401 - LiteLLM's response has no narrow type
-            return await self._retries.within_deadline(self._send(texts, key))
-
-        response, _ = await self._retries.run(attempt, lambda fault: fault.kind.passes)
+        response, _ = await self._retries.run(
+            lambda: self._retries.within_deadline(self._send(texts, key)), lambda fault: fault.kind.passes
+        )
         return self._vectors(response, len(texts))
 
     async def _send(self, texts: list[str], key: str | None) -> Any:  # noqa: ANN401
@@ -93,7 +93,8 @@ class EmbeddingModel:
     def _vectors(self, response: Any, wanted: int) -> list[list[float]]:  # noqa: ANN401
         """Read the vectors in the order of the texts."""
         try:
-            entries = sorted((entry if isinstance(entry, dict) else dict(entry) for entry in response.data), key=_place)
+            entries = [entry if isinstance(entry, dict) else dict(entry) for entry in response.data]
+            entries.sort(key=lambda entry: int(entry.get("index", 0)))
             vectors = [[float(x) for x in entry["embedding"]] for entry in entries]
         except (TypeError, ValueError, KeyError, AttributeError) as error:
             raise CallError(FaultKind.UNREADABLE, "no embeddings in the answer") from error
@@ -101,7 +102,3 @@ class EmbeddingModel:
         if len(vectors) != wanted or len(lengths) != 1 or not all(isfinite(x) for v in vectors for x in v):
             raise CallError(FaultKind.UNREADABLE, f"{wanted} vectors of one length with finite numbers expected")
         return vectors
-
-
-def _place(entry: dict[str, Any]) -> int:
-    return int(entry.get("index", 0))

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from enum import Enum
@@ -127,20 +128,18 @@ def _chain(error: BaseException | None) -> Iterator[BaseException]:
         error = error.__cause__ or error.__context__
 
 
+_KINDS = {FaultKind.KEY: (401, 403), FaultKind.QUOTA: (402,), FaultKind.MODEL: (404,), FaultKind.TIMEOUT: (408,)}
+_BY_STATUS = {status: kind for kind, numbers in _KINDS.items() for status in numbers} | {413: FaultKind.TOO_LONG}
+
+
 def _by_status(status: int, text: str) -> FaultKind:
-    if status in (401, 403):
-        return FaultKind.KEY
-    if status == 404:
-        return FaultKind.MODEL
-    if status in (402, 429) and (status == 402 or _NO_MONEY.search(text)):
-        return FaultKind.QUOTA
+    if status in _BY_STATUS:
+        return _BY_STATUS[status]
     if status == 429:
-        return FaultKind.RATE
-    if status == 408:
-        return FaultKind.TIMEOUT
+        return FaultKind.QUOTA if _NO_MONEY.search(text) else FaultKind.RATE
     if status < 400:
         return FaultKind.UNREADABLE
-    if status in (400, 413, 422) and (status == 413 or _TOO_LONG.search(text)):
+    if status in (400, 422) and _TOO_LONG.search(text):
         return FaultKind.TOO_LONG
     if status in (400, 422, 501) and _FORM.search(text):
         return FaultKind.FORM
@@ -157,15 +156,12 @@ def _words(text: str, key: str | None) -> str:
 def _retry_after(headers: httpx.Headers) -> float | None:
     """Read how long to wait, given in seconds or as a date (RFC 9110, 10.2.3)."""
     given = headers.get("retry-after", "").strip()
-    try:
+    with suppress(ValueError):
         return max(0.0, float(given))
-    except ValueError:
-        pass
-    try:
+    with suppress(ValueError):
         when = parsedate_to_datetime(given)
-    except ValueError:
-        return None
-    return max(0.0, (when.replace(tzinfo=when.tzinfo or UTC) - datetime.now(UTC)).total_seconds())
+        return max(0.0, (when.replace(tzinfo=when.tzinfo or UTC) - datetime.now(UTC)).total_seconds())
+    return None
 
 
 def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
@@ -178,10 +174,7 @@ def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
             f"{where} refuses requests without a key{said}; set llm.api_key_env to the name of the variable that holds "
             "the key"
         )
-    what = {
-        FaultKind.KEY: f"refuses the key in {variable}",
-        FaultKind.MODEL: f"does not know the model {settings.model}",
-    }
+    which = {FaultKind.KEY: f" in {variable}", FaultKind.MODEL: f" {settings.model}"}.get(fault.kind, "")
     cure = {
         FaultKind.KEY: f"set {key} to a valid key",
         FaultKind.MODEL: "set llm.model to one that it has, or check llm.api_base",
@@ -193,7 +186,7 @@ def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
         FaultKind.SERVER: "try later, or check llm.model and llm.api_base",
         FaultKind.DROPPED: "try later, or check llm.api_base",
     }.get(fault.kind, "change the setting of llm that it complains about")
-    return ModelError(f"{where} {what.get(fault.kind, fault.kind.value)}{said}; {cure}")
+    return ModelError(f"{where} {fault.kind.value}{which}{said}; {cure}")
 
 
 def unavailable(fault: CallError, settings: ModelSettings) -> ModelUnavailableError:

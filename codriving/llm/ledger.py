@@ -41,20 +41,15 @@ class Ledger:
         Returns:
             Counters by column, and one line of ``transcript.jsonl`` an answer.
         """
-        counts: dict[str, float] = dict(self._counts)
-        counts["cost_usd"] = self._cost
-        counts["model_seconds"] = self._waited()
-        lines = [_line(question, answer, time) for question, answer in self._noted]
-        self._counts, self._cost, self._noted = Counter(), 0.0, []
-        return counts, lines
-
-    def _waited(self) -> float:
-        """How long the step waited [s]: the questions of one purpose are asked at once, the purposes one by one."""
+        # The questions of one purpose are asked at once, the purposes one by one.
         longest: dict[str, float] = {}
         for question, answer in self._noted:
             seconds = sum(call.seconds for call in answer.calls)
             longest[question.purpose] = max(seconds, longest.get(question.purpose, 0.0))
-        return sum(longest.values())
+        counts = {**self._counts, "cost_usd": self._cost, "model_seconds": sum(longest.values())}
+        lines = [_line(question, answer, time) for question, answer in self._noted]
+        self._counts, self._cost, self._noted = Counter(), 0.0, []
+        return counts, lines
 
 
 def _line(question: Question, answer: Answer, time: float) -> dict[str, Any]:

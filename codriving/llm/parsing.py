@@ -55,18 +55,14 @@ def is_page(text: str) -> bool:
     return bool(_PAGE.match(text))
 
 
-def without_thoughts(text: str) -> str:
-    """Leave out what a reasoning model said to itself, whether or not it closed or opened its thoughts properly."""
-    return _BEGUN.sub("", _ENDED.sub("", _THOUGHT.sub("", text)))
-
-
 def last_object(text: str) -> dict[str, Any] | None:
     """Read the last balanced JSON object of a text.
 
     Returns:
         The object, its texts without control characters; None if there is none.
     """
-    text, found, start = without_thoughts(text), None, 0
+    # What a reasoning model said to itself, whether or not it closed or opened its thoughts properly, is left out.
+    text, found, start = _BEGUN.sub("", _ENDED.sub("", _THOUGHT.sub("", text))), None, 0
     while (start := text.find("{", start)) >= 0:
         try:
             value, start = _DECODER.raw_decode(text, start)

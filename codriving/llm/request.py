@@ -2,7 +2,8 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from contextlib import suppress
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -38,10 +39,6 @@ class ChatRequest:
     max_tokens: int
     schema: Mapping[str, Any] | None
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return it as JSON-ready data: what makes two requests the same."""
-        return asdict(self)
-
 
 @dataclass(frozen=True, slots=True)
 class Reply:
@@ -62,29 +59,20 @@ class Reply:
     seconds: float = 0.0
     attempts: int = 1
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return it as JSON-ready data."""
-        return asdict(self)
-
     @classmethod
     def from_dict(cls, stored: Mapping[str, Any]) -> "Reply":
-        """Read what ``as_dict`` wrote.
+        """Read what ``asdict`` gave.
 
         Raises:
             ModelError: If it was not written by this version.
         """
-        try:
+        with suppress(TypeError):
             return cls(**stored)
-        except TypeError:
-            pass
         raise ModelError("the file of llm.cache_file was written by another version; name another one")
 
 
 FORMS = ("json_schema", "json_object", "text")
 """Strictest first."""
-
-_NAME = "answer"
-_LEFT_OUT = ("title", "default")
 
 
 @lru_cache(maxsize=256)
@@ -93,9 +81,7 @@ def schema_of(model: "type[BaseModel]") -> dict[str, Any]:
 
     Strict mode wants every property required and none beside them.
     """
-    strict = _strict(model.model_json_schema())
-    assert isinstance(strict, dict)
-    return strict
+    return dict(_strict(model.model_json_schema()))
 
 
 def _strict(node: Any, names: bool = False) -> Any:  # noqa: ANN401 - any JSON
@@ -107,7 +93,7 @@ def _strict(node: Any, names: bool = False) -> Any:  # noqa: ANN401 - any JSON
     made = {
         key: _strict(inner, names=not names and key in ("properties", "$defs"))
         for key, inner in node.items()
-        if names or key not in _LEFT_OUT
+        if names or key not in ("title", "default")
     }
     if not names and "properties" in made:
         made |= {"additionalProperties": False, "required": list(made["properties"])}
@@ -125,7 +111,7 @@ def response_format(form: str, schema: Mapping[str, Any] | None) -> dict[str, An
         return None
     if form == "json_object":
         return {"type": "json_object"}
-    return {"type": "json_schema", "json_schema": {"name": _NAME, "strict": True, "schema": dict(schema)}}
+    return {"type": "json_schema", "json_schema": {"name": "answer", "strict": True, "schema": dict(schema)}}
 
 
 def worded(messages: tuple[Message, ...], form: str, schema: Mapping[str, Any] | None) -> tuple[Message, ...]:

@@ -35,12 +35,7 @@ class Sender:
         Raises:
             CallError: If there is no reply.
         """
-        options: dict[str, Any] = {"max_tokens": request.max_tokens}
-        if request.temperature is not None:
-            options["temperature"] = request.temperature
-        wanted = response_format(form, request.schema)
-        if wanted is not None:
-            options["response_format"] = wanted
+        optional = {"temperature": request.temperature, "response_format": response_format(form, request.schema)}
         try:
             response = await _loaded[0].acompletion(
                 model=request.model,
@@ -52,7 +47,8 @@ class Sender:
                 max_retries=0,
                 num_retries=0,
                 stream=False,
-                **options,
+                max_tokens=request.max_tokens,
+                **{name: value for name, value in optional.items() if value is not None},
             )
             return _reply(response, form, key)
         except Exception as err:

@@ -87,8 +87,7 @@ class Spending:
 
     def totals(self) -> Totals:
         """Give what has been used up so far, all of the same moment."""
-        with self._lock:
-            return self._totals
+        return self._totals
 
 
 INPUT, OUTPUT = "input_cost_per_token", "output_cost_per_token"

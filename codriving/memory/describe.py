@@ -1,11 +1,10 @@
 """A situation as it is remembered: the same facts that a decider gets, without a name, a place or a route."""
 
-from math import cos, hypot, isfinite, sin
+from math import isfinite
 
 from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.experience import Description
-from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
+from codriving.datatypes.scene_description import Role, SceneDescription
 from codriving.datatypes.situation import Situation
 
 DRIVERS = {"CAV": "CAV", "HDV": "human", None: "unknown"}
@@ -27,7 +26,7 @@ def _scene(situation: Situation, numbers: dict[str, float], kinds: dict[str, str
     numbers["speed"], numbers["target"] = ego.speed, target
     words = [f"Driving {ego.speed:.1f} m/s, target {target:.1f} m/s"]
     for role, name, where in ((Role.LEADING, "lead", "ahead"), (Role.REARING, "rear", "behind")):
-        other = next((n for n in scene.neighbours if n.role is role), None)
+        other = scene.next_in(role)
         if other is None or other.gap is None:
             words.append(f"nobody {where} on the lane")
             continue
@@ -49,7 +48,7 @@ def _beside(scene: SceneDescription, numbers: dict[str, float]) -> list[str]:
         numbers[f"{side}_lane"] = 1.0
         gaps: dict[str, tuple[float, float]] = {}
         for n in (n for n in scene.neighbours if n.lane == lane):
-            along, _ = _offset(scene, n)
+            along, _ = scene.offset(n)
             gap = max(abs(along) - (n.length + scene.ego.length) / 2, 0.0)
             where = "ahead" if along > 0 else "behind"
             gaps[where] = min(gaps.get(where, (gap, n.speed)), (gap, n.speed))
@@ -63,22 +62,15 @@ def _beside(scene: SceneDescription, numbers: dict[str, float]) -> list[str]:
 
 def _nearest(scene: SceneDescription, numbers: dict[str, float]) -> list[str]:
     """The nearest of all vehicles ahead but the leader: all that is seen where no conflicts are."""
-    ego = scene.ego
-    ahead = [n for n in scene.neighbours if n.role is not Role.LEADING and _offset(scene, n)[0] > 0]
-    if not ahead:
+    ahead = (n for n in scene.by_distance() if n.role is not Role.LEADING and scene.offset(n)[0] > 0)
+    nearest = next(ahead, None)
+    if nearest is None:
         return []
-    nearest = min(ahead, key=lambda n: (hypot(n.x - ego.x, n.y - ego.y), n.id))
-    far, right = numbers["near_ahead"], numbers["near_right"] = _offset(scene, nearest)
+    far, right = numbers["near_ahead"], numbers["near_right"] = scene.offset(nearest)
     numbers["near_speed"] = nearest.speed
     side = "right" if right > 0 else "left"
     where = f"{far:.0f} m ahead and {abs(right):.0f} m to the {side}"
     return [f"the nearest other vehicle {where} at {nearest.speed:.1f} m/s"]
-
-
-def _offset(scene: SceneDescription, n: TrackedVehicle) -> tuple[float, float]:
-    """How far ahead and how far to the right of the CAV a vehicle is [m]."""
-    dx, dy, along, across = n.x - scene.ego.x, n.y - scene.ego.y, cos(scene.ego.heading), sin(scene.ego.heading)
-    return along * dx + across * dy, along * dy - across * dx
 
 
 def _conflict(situation: Situation, numbers: dict[str, float], kinds: dict[str, str]) -> str:
@@ -98,15 +90,11 @@ def _conflict(situation: Situation, numbers: dict[str, float], kinds: dict[str, 
         numbers["its_speed"] = other.speed
     if isfinite(situation.clear_times[0]):
         numbers["free"] = situation.clear_times[0]
-    return _words(c, kinds["driver"], numbers)
-
-
-def _words(c: Conflict, driver: str, numbers: dict[str, float]) -> str:
     more = int(numbers["conflicts"]) - 1
     speed = f" at {numbers['its_speed']:.1f} m/s" if "its_speed" in numbers else ""
     return (
-        f"{str(c.relation).capitalize()} conflict with a {driver} vehicle: it is {c.distances[1]:.0f} m away{speed}, "
-        f"TTCP {c.ttcp[1]:.1f} s; the CAV is {c.distances[0]:.0f} m away, TTCP {c.ttcp[0]:.1f} s; "
+        f"{str(c.relation).capitalize()} conflict with a {kinds['driver']} vehicle: it is {c.distances[1]:.0f} m "
+        f"away{speed}, TTCP {c.ttcp[1]:.1f} s; the CAV is {c.distances[0]:.0f} m away, TTCP {c.ttcp[0]:.1f} s; "
         f"dTTCP {c.dttcp:.1f} s, {c.severity}" + (f"; conflicts with {more} more" if more else "") + "."
     )
 
@@ -116,9 +104,7 @@ def _order(situation: Situation, numbers: dict[str, float], kinds: dict[str, str
     ego = situation.scene.ego.id
     before = {p.first for p in situation.order.precedences if p.second == ego}
     numbers["before"] = len(before)
-    first = None
-    if situation.conflicts:
-        first = situation.order.first_of(ego, situation.conflicts[0].other)
+    first = situation.order.first_of(ego, situation.conflicts[0].other) if situation.conflicts else None
     kinds["order"] = "none" if first is None else "first" if first == ego else "second"
     if first is None:
         return f"Nothing was agreed; {len(before)} go before the CAV." if before else "Nothing was agreed."

@@ -1,11 +1,11 @@
 """A memory that grows: one SQLite file is the truth, and what is alike is kept once with a count."""
 
 import sqlite3
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing, suppress
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager, suppress
 from dataclasses import astuple
 from pathlib import Path
-from typing import Self, TypeVar
+from typing import Self
 
 import numpy as np
 
@@ -29,8 +29,6 @@ from codriving.memory.store_file import (
 
 NEIGHBOURS = 16
 """Nearest experiences among which one with the same action and verdict is looked for."""
-
-Result = TypeVar("Result")
 
 
 class MemoryStore:
@@ -65,21 +63,12 @@ class MemoryStore:
             raise damaged(self.path, ValueError(f"vectors of {self._dimension} numbers expected, got {made.shape[1]}"))
         if not np.isfinite(made).all():
             raise damaged(self.path, ValueError("a new vector holds a number that is not finite"))
-
-        def change(connection: sqlite3.Connection) -> int:
+        with self._transaction() as connection:
             self._forget(connection, interaction)
             self._catch_up(connection)
-            cursor = connection.execute(
-                "INSERT INTO interactions (scenario, seed, method, variant, reasoner) VALUES (?, ?, ?, ?, ?)",
-                astuple(interaction),
-            )
-            new = [
-                self._keep(connection, int(cursor.lastrowid or 0), experience, vector)
-                for experience, vector in zip(experiences, made, strict=True)
-            ]
-            return sum(new)
-
-        return self._change(change)
+            insert = "INSERT INTO interactions (scenario, seed, method, variant, reasoner) VALUES (?, ?, ?, ?, ?)"
+            number = int(connection.execute(insert, astuple(interaction)).lastrowid or 0)
+            return sum(self._keep(connection, number, *pair) for pair in zip(experiences, made, strict=True))
 
     def snapshot(self, before: int | None = None) -> Snapshot:
         """Return what can be recalled now.
@@ -91,8 +80,7 @@ class MemoryStore:
             MemoryFileError: If the file is damaged.
         """
         if self._connection is None:
-            dimension = self.embedder.dimension or 1
-            return Snapshot((), np.zeros((0, dimension), dtype=np.float32), "", 0)
+            return Snapshot((), np.zeros((0, self.embedder.dimension or 1), dtype=np.float32), "", 0)
         try:
             rows = self._connection.execute("SELECT id, seed FROM interactions ORDER BY id").fetchall()
             chosen = [number for number, seed in rows if before is None or seed < before]
@@ -115,23 +103,22 @@ class MemoryStore:
     def _open(self, dimension: int | None = None) -> None:
         if not self.path.exists():
             create(self.path, self.embedder.name, dimension or self.embedder.dimension or 1)
-        connection = open_file(self.path, write=True)
+        self._connection = open_file(self.path, write=True)
         try:
-            self._dimension = check_embedder(self.path, about(connection), self.embedder)
+            self._dimension = check_embedder(self.path, about(self._connection), self.embedder)
         except BaseException:
-            connection.close()
+            self.close()
             raise
-        self._connection = connection
 
-    def _change(self, work: Callable[[sqlite3.Connection], Result]) -> Result:
-        """Do something in one transaction; a process that is killed meanwhile has done nothing."""
+    @contextmanager
+    def _transaction(self) -> Iterator[sqlite3.Connection]:
+        """Change the file in one transaction; a process that is killed meanwhile has done nothing."""
         assert self._connection is not None
         try:
             self._connection.execute("BEGIN IMMEDIATE")
             try:
-                done = work(self._connection)
+                yield self._connection
                 self._connection.execute("COMMIT")
-                return done
             except BaseException:
                 # The index may know of what never came to be.
                 self._index = None
@@ -170,19 +157,17 @@ class MemoryStore:
         kind = (str(experience.action), str(experience.verdict))
         # Above 1 nothing is a duplicate, and nobody need look.
         (hits,) = self._index.search(vector[None], NEIGHBOURS) if self.duplicates <= 1 else ([],)
-        known = next((n for n, similarity in hits if similarity >= self.duplicates and self._kinds[n] == kind), None)
-        if known is None:
+        number = next((n for n, similarity in hits if similarity >= self.duplicates and self._kinds[n] == kind), None)
+        new = number is None
+        if number is None:
             marks = ", ".join("?" * len(COLUMNS))
             insert = f"INSERT INTO experiences ({', '.join(COLUMNS)}) VALUES ({marks})"
             number = int(connection.execute(insert, to_row(experience, vector)).lastrowid or 0)
             self._index.add([number], vector[None])
             self._kinds[number] = kind
-        else:
-            number = known
-        connection.execute(
-            "INSERT INTO sightings VALUES (?, ?, ?, ?)", (number, interaction, experience.step, experience.ego)
-        )
-        return known is None
+        seen = (number, interaction, experience.step, experience.ego)
+        connection.execute("INSERT INTO sightings VALUES (?, ?, ?, ?)", seen)
+        return new
 
 
 def merge(sources: list[Path], target: Path, embedder: Embedder, duplicates: float) -> int:
@@ -212,13 +197,13 @@ def read(path: Path, embedder: Embedder) -> Iterator[tuple[Interaction, list[Exp
     """
     with closing(open_file(path, write=False)) as connection:
         dimension = check_embedder(path, about(connection), embedder)
+        query = (
+            f"SELECT step, ego, {', '.join(COLUMNS)} FROM sightings JOIN experiences ON id = experience "
+            "WHERE interaction = ? ORDER BY step, ego"
+        )
         try:
             for number, *row in connection.execute("SELECT * FROM interactions ORDER BY id").fetchall():
-                seen = connection.execute(
-                    f"SELECT step, ego, {', '.join(COLUMNS)} FROM sightings JOIN experiences ON id = experience "
-                    "WHERE interaction = ? ORDER BY step, ego",
-                    (number,),
-                ).fetchall()
+                seen = connection.execute(query, (number,)).fetchall()
                 experiences = [from_row(tuple(values), step, ego) for step, ego, *values in seen]
                 yield Interaction(*row), experiences, vectors_of([values[2] for values in seen], dimension)
         except ValueError as error:

@@ -1,11 +1,8 @@
 """The SQLite file of a memory: made whole, checked on opening, an experience a row, one transaction a change."""
 
 import json
-import os
 import sqlite3
-import uuid
 from collections.abc import Mapping
-from contextlib import closing, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -15,6 +12,7 @@ import numpy as np
 from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Description, Effect, Experience, Verdict
 from codriving.errors import MemoryFileError
+from codriving.llm import sqlite_file
 from codriving.memory.embedder import Embedder, Vectors
 
 LAYOUT = 1
@@ -22,9 +20,6 @@ LAYOUT = 1
 
 APPLICATION = 0x43444D31
 """What tells such a file from any other SQLite file ("CDM1")."""
-
-BUSY = 60.0
-"""How long to wait for somebody else who is writing [s]."""
 
 _TABLES = """
 CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -52,22 +47,18 @@ def create(path: Path, embedder: str, dimension: int) -> None:
     Raises:
         MemoryFileError: If it cannot be written.
     """
-    partial = path.parent / f".partial-{path.name}-{uuid.uuid4().hex[:12]}"
+
+    def fill(connection: sqlite3.Connection) -> None:
+        connection.executescript(_TABLES)
+        about = {"embedder": embedder, "dimension": str(dimension)}
+        connection.executemany("INSERT INTO about VALUES (?, ?)", about.items())
+        connection.execute(f"PRAGMA application_id = {APPLICATION}")
+        connection.execute(f"PRAGMA user_version = {LAYOUT}")
+
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with closing(connect(partial.resolve().as_uri())) as connection:
-            connection.executescript(_TABLES)
-            about = {"embedder": embedder, "dimension": str(dimension)}
-            connection.executemany("INSERT INTO about VALUES (?, ?)", about.items())
-            connection.execute(f"PRAGMA application_id = {APPLICATION}")
-            connection.execute(f"PRAGMA user_version = {LAYOUT}")
-        with suppress(FileExistsError):
-            os.link(partial, path)
+        sqlite_file.create(path, fill)
     except (OSError, sqlite3.Error) as error:
         raise unwritable(path, error) from error
-    finally:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
 
 
 def open_file(path: Path, write: bool) -> sqlite3.Connection:
@@ -82,9 +73,17 @@ def open_file(path: Path, write: bool) -> sqlite3.Connection:
         raise MemoryFileError(f"there is no file of memories {path}; make one with codriving memory build")
     try:
         mode = "rw" if write or path.with_name(f"{path.name}-journal").exists() else "ro"
-        connection = connect(f"{path.resolve().as_uri()}?mode={mode}")
+        connection = sqlite_file.connect(f"{path.resolve().as_uri()}?mode={mode}")
         try:
-            _check(path, connection)
+            (kind,) = connection.execute("PRAGMA application_id").fetchone()
+            (layout,) = connection.execute("PRAGMA user_version").fetchone()
+            if kind != APPLICATION:
+                raise MemoryFileError(f"{path} is no file of memories; name another one")
+            if layout != LAYOUT:
+                raise MemoryFileError(
+                    f"{path} was written by another version (layout {layout}, not {LAYOUT}); build it again with this "
+                    "one"
+                )
         except BaseException:
             connection.close()
             raise
@@ -94,11 +93,6 @@ def open_file(path: Path, write: bool) -> sqlite3.Connection:
             "memory build"
         ) from error
     return connection
-
-
-def connect(uri: str) -> sqlite3.Connection:
-    """Open a connection in which nothing begins a transaction but us."""
-    return sqlite3.connect(uri, uri=True, timeout=BUSY, isolation_level=None, check_same_thread=False)
 
 
 def about(connection: sqlite3.Connection) -> dict[str, str]:
@@ -142,17 +136,6 @@ def unwritable(path: Path, error: Exception) -> MemoryFileError:
     return MemoryFileError(f"cannot write the memory {path}: {error}; make room, or name another file")
 
 
-def _check(path: Path, connection: sqlite3.Connection) -> None:
-    (kind,) = connection.execute("PRAGMA application_id").fetchone()
-    (layout,) = connection.execute("PRAGMA user_version").fetchone()
-    if kind != APPLICATION:
-        raise MemoryFileError(f"{path} is no file of memories; name another one")
-    if layout != LAYOUT:
-        raise MemoryFileError(
-            f"{path} was written by another version (layout {layout}, not {LAYOUT}); build it again with this one"
-        )
-
-
 COLUMNS = ("vector", "action", "verdict", "scene", "conflict", "passing", "numbers", "kinds", "effect", "lesson")
 """The columns of ``experiences`` after the number, in their order."""
 
@@ -164,18 +147,9 @@ def to_row(experience: Experience, vector: Vectors) -> tuple[Any, ...]:
         ValueError: If a number in it is not finite.
     """
     d = experience.description
-    return (
-        vector.astype("<f4").tobytes(),
-        str(experience.action),
-        str(experience.verdict),
-        d.scene,
-        d.conflict,
-        d.order,
-        _json(d.numbers),
-        _json(d.kinds),
-        _json(asdict(experience.effect)),
-        experience.lesson,
-    )
+    labels = (str(experience.action), str(experience.verdict), d.scene, d.conflict, d.order)
+    values = (_json(d.numbers), _json(d.kinds), _json(asdict(experience.effect)))
+    return (vector.astype("<f4").tobytes(), *labels, *values, experience.lesson)
 
 
 def from_row(row: tuple[Any, ...], step: int = 0, ego: str = "") -> Experience:

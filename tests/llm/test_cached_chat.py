@@ -1,6 +1,6 @@
 """A run that was kept is repeated without a server, to the last figure."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
@@ -83,7 +83,7 @@ def test_quicker_process_wins(tmp_path: Path) -> None:
     path = tmp_path / "answers.sqlite"
 
     def overtaken(request: ChatRequest, form: str) -> str:
-        AnswerCache(path, "use").keep(request.as_dict(), reply(GOOD.replace("free", "first")).as_dict())
+        AnswerCache(path, "use").keep(asdict(request), asdict(reply(GOOD.replace("free", "first"))))
         return GOOD
 
     answer = chat(FakeSender(overtaken), cache=AnswerCache(path, "use")).ask([question()])[0]

@@ -15,7 +15,7 @@ from shown import GOLDEN, WORLDS, WRITE
 from worlds import Car, Junction, car
 
 from codriving.errors import ConfigError
-from codriving.llm.prompts.example import example
+from codriving.llm.prompts.example import EXAMPLES
 from codriving.llm.prompts.free_text import Names, one_line
 from codriving.llm.prompts.render import FILES, OURS, Prompts
 from codriving.llm.prompts.variables import decision_view
@@ -135,7 +135,7 @@ def test_template_can_be_replaced_alone(name: str, tmp_path: Path) -> None:
     (tmp_path / name).write_text("Only this.")
     made = Prompts(str(tmp_path))
     purpose, role = name.split(".")[:2]
-    values = example(purpose)
+    values = EXAMPLES[purpose]
     theirs, ours = made.messages(purpose, values), Prompts().messages(purpose, values)
     for mine, before in zip(theirs, ours, strict=True):
         assert mine.content == ("Only this." if mine.role == role else before.content)
@@ -185,7 +185,6 @@ def test_names_are_plain_and_tell_everybody_apart(ids: list[str]) -> None:
     names = Names(ids)
     assert len({names(name) for name in ids}) == len(ids)
     assert all(re.fullmatch(r"[\w.-]+", names(name)) for name in ids)
-    assert [names.id_of(names(name)) for name in ids] == ids
 
 
 def test_hidden_drivers_lose_their_names_in_sentences() -> None:

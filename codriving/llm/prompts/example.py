@@ -1,5 +1,6 @@
 """Made-up variables on which every template is tried out before a run begins."""
 
+from math import inf
 from typing import Any
 
 from codriving.llm.prompts.views import (
@@ -18,20 +19,74 @@ from codriving.llm.prompts.views import (
     WayView,
 )
 
+_KNOWN = (VehicleView("CAV3", "CAV", 12.0, 7.0), VehicleView("HDV1", "human", 9.0, 8.0))
+_SEEN = (VehicleView("V1", "unknown driver", 12.0, 7.0), VehicleView("V3", "unknown driver", 9.0, 8.0))
+_WAYS = (WayView("crossing", 30.0, 12.0, 3.8, 2.0, 1.8, "serious danger"),)
 
-def example(purpose: str) -> dict[str, Any]:
-    """Return variables of every kind: every list has an entry and every condition holds at least once."""
-    return {
-        "negotiate": _negotiation,
-        "decide": _decision,
-        "reflect": _reflection,
-        "dilu": _dilu,
-        "dilu_reflect": _dilu_reflection,
-    }[purpose]()
+_SINGLE_VEHICLE: dict[str, Any] = {
+    "speed": 8.0,
+    "target_speed": 9.0,
+    "route": "north-south",
+    "lane_rank": 1,
+    "lane_count": 2,
+    "between_lanes": True,
+    "must_change": "LANE_RIGHT",
+    "room": 40.0,
+    "lanes": [LaneView("ego lane", *_SEEN), LaneView("right lane", None, None)],
+    "vehicles": [
+        SeenView("V2", "ahead left", 25.0, 6.0, 0.0, _WAYS, 2),
+        SeenView("V4", "behind", 15.0, 0.0, 3.5, (), 1),
+    ],
+    "actions": [MeaningView("SLOWER", 6.0), MeaningView("IDLE", 9.0), MeaningView("LANE_RIGHT", None)],
+    "allowed": ["SLOWER", "IDLE", "LANE_RIGHT"],
+}
 
-
-def _reflection() -> dict[str, Any]:
-    return {
+EXAMPLES: dict[str, dict[str, Any]] = {
+    "negotiate": {
+        "vehicles": [
+            EntrantView("CAV1", 8.0, "north-south", False, 9.0, 30.0, 3.6, True, "CAV3", ((2.0, 4.0), (6.0, 8.0))),
+            EntrantView("CAV2", 6.0, "west-north", True, 6.0, 2.0, 0.3, False, "", ()),
+        ],
+        "pairs": [
+            PairView("p1", "CAV1", "CAV2", "crossing", (30.0, 2.0), (3.8, 0.3), 3.5, "general danger", "CAV2"),
+            PairView("p2", "CAV2", "CAV3", "converging", (2.0, 20.0), (0.3, 2.5), 2.2, "general danger", ""),
+        ],
+        "fixed": [FixedView("CAV3", "CAV1")],
+        "binding": False,
+    },
+    "decide": {
+        "ego": "CAV1",
+        "speed": 8.0,
+        "lane": "a-b/1",
+        "route": "north-south",
+        "target_speed": 9.0,
+        "between_lanes": True,
+        "must_change": "LANE_LEFT",
+        "room": 40.0,
+        "lanes": [
+            LaneView("ego lane", *_KNOWN),
+            LaneView("left lane", None, None),
+        ],
+        "others": [OtherView("V1", "unknown driver", -3.0, 4.0, 8.0)],
+        "conflict_lanes": ["c-d/0"],
+        "conflicts": [
+            ConflictView("crossing", 30.0, 2.0, 3.8, 0.3, 3.5, "general danger", "CAV2", "CAV", "c-d/0", 6.0, 1, inf),
+            ConflictView("converging", 30.0, 9.0, 3.8, 1.5, 2.3, "general danger", "HDV2", "human", "", 6.0, 2, 0.0),
+        ],
+        "intents": [IntentView("CAV2", "west-north", 6.0)],
+        "no_intents": ["HDV1"],
+        "binding": False,
+        "before": [OrderView("CAV2", "CAV2 can no longer stop before the conflict zone")],
+        "after": [OrderView("HDV2", "the CAV is through (3.6 s) before the human driver can be there")],
+        "actions": [
+            ActionView(("SLOWER",), True, (), 40.0, (4.2, 4.2)),
+            ActionView(("IDLE",), True, ("no action is safe; this one is the least dangerous",), None, (inf,)),
+            ActionView(("FASTER",), False, ("same lane: FASTER leaves too little room",), None, ()),
+        ],
+        "memories": ["Slowing down early let CAV2 pass without a stop."],
+        "allowed": ["SLOWER", "IDLE"],
+    },
+    "reflect": {
         "scene": "Driving 8.0 m/s, target 9.0 m/s; nobody ahead on the lane.",
         "conflict": "Crossing conflict with a human vehicle: dTTCP 3.0 s, general danger.",
         "order": "The CAV goes second; 1 go before it.",
@@ -45,85 +100,11 @@ def _reflection() -> dict[str, Any]:
         "forced_braking": 4.5,
         "collision": 2.5,
         "needless": True,
-    }
-
-
-def _negotiation() -> dict[str, Any]:
-    return {
-        "vehicles": [
-            EntrantView("CAV1", 8.0, "north-south", False, 9.0, 30.0, 3.6, True, "CAV3", ((2.0, 4.0), (6.0, 8.0))),
-            EntrantView("CAV2", 6.0, "west-north", True, 6.0, 2.0, 0.3, False, "", ()),
-        ],
-        "pairs": [
-            PairView("p1", "CAV1", "CAV2", "crossing", (30.0, 2.0), (3.8, 0.3), 3.5, "general danger", "CAV2"),
-            PairView("p2", "CAV2", "CAV3", "converging", (2.0, 20.0), (0.3, 2.5), 2.2, "general danger", ""),
-        ],
-        "fixed": [FixedView("CAV3", "CAV1")],
-        "binding": False,
-    }
-
-
-def _decision() -> dict[str, Any]:
-    ahead, behind = VehicleView("CAV3", "CAV", 12.0, 7.0), VehicleView("HDV1", "human", 9.0, 8.0)
-    return {
-        "ego": "CAV1",
-        "speed": 8.0,
-        "lane": "a-b/1",
-        "route": "north-south",
-        "target_speed": 9.0,
-        "between_lanes": True,
-        "must_change": "LANE_LEFT",
-        "room": 40.0,
-        "lanes": [LaneView("ego lane", ahead, behind), LaneView("left lane", None, None)],
-        "others": [OtherView("V1", "unknown driver", -3.0, 4.0, 8.0)],
-        "conflict_lanes": ["c-d/0"],
-        "conflicts": [
-            ConflictView(
-                "CAV2", "CAV", "c-d/0", 6.0, "crossing", 30.0, 2.0, 3.8, 0.3, 3.5, "general danger", 1, float("inf")
-            ),
-            ConflictView("HDV2", "human", "", 6.0, "converging", 30.0, 9.0, 3.8, 1.5, 2.3, "general danger", 2, 0.0),
-        ],
-        "intents": [IntentView("CAV2", "west-north", 6.0)],
-        "no_intents": ["HDV1"],
-        "binding": False,
-        "before": [OrderView("CAV2", "CAV2 can no longer stop before the conflict zone")],
-        "after": [OrderView("HDV2", "the CAV is through (3.6 s) before the human driver can be there")],
-        "actions": [
-            ActionView(("SLOWER",), True, (), 40.0, (4.2, 4.2)),
-            ActionView(("IDLE",), True, ("no action is safe; this one is the least dangerous",), None, (float("inf"),)),
-            ActionView(("FASTER",), False, ("same lane: FASTER leaves too little room",), None, ()),
-        ],
-        "memories": ["Slowing down early let CAV2 pass without a stop."],
-        "allowed": ["SLOWER", "IDLE"],
-    }
-
-
-def _single_vehicle() -> dict[str, Any]:
-    ahead, behind = VehicleView("V1", "unknown driver", 12.0, 7.0), VehicleView("V3", "unknown driver", 9.0, 8.0)
-    crossing = WayView("crossing", 30.0, 12.0, 3.8, 2.0, 1.8, "serious danger")
-    return {
-        "speed": 8.0,
-        "target_speed": 9.0,
-        "route": "north-south",
-        "lane_rank": 1,
-        "lane_count": 2,
-        "between_lanes": True,
-        "must_change": "LANE_RIGHT",
-        "room": 40.0,
-        "lanes": [LaneView("ego lane", ahead, behind), LaneView("right lane", None, None)],
-        "vehicles": [
-            SeenView("V2", "ahead left", 25.0, 6.0, 0.0, (crossing,), 2),
-            SeenView("V4", "behind", 15.0, 0.0, 3.5, (), 1),
-        ],
-        "actions": [MeaningView("SLOWER", 6.0), MeaningView("IDLE", 9.0), MeaningView("LANE_RIGHT", None)],
-        "allowed": ["SLOWER", "IDLE", "LANE_RIGHT"],
-    }
-
-
-def _dilu() -> dict[str, Any]:
-    return {**_single_vehicle(), "interval": 1.0, "memories": ["At 8.0 m/s, no conflict: FASTER. No mistake."]}
-
-
-def _dilu_reflection() -> dict[str, Any]:
-    mistake = {"action": "IDLE", "reason": "nobody is near", "struck": True, "other": "V2", "later": 1.5}
-    return {**_single_vehicle(), **mistake}
+    },
+    "dilu": {**_SINGLE_VEHICLE, "interval": 1.0, "memories": ["At 8.0 m/s, no conflict: FASTER. No mistake."]},
+    "dilu_reflect": {
+        **_SINGLE_VEHICLE,
+        **{"action": "IDLE", "reason": "nobody is near", "struck": True, "other": "V2", "later": 1.5},
+    },
+}
+"""Variables of every kind by purpose: every list has an entry and every condition holds at least once."""

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterable, Mapping
-from math import hypot
 
 from codriving.datatypes.scene_description import SceneDescription
 from codriving.datatypes.situation import Situation
@@ -51,10 +50,6 @@ class Names:
         """Return what a vehicle is called."""
         return self._shown.get(name, "V0")
 
-    def id_of(self, shown: str) -> str | None:
-        """Return the id of the vehicle that is called so, or None."""
-        return next((name for name, word in self._shown.items() if word == shown.strip()), None)
-
     def sentence(self, text: str, longest: int = LONGEST_SENTENCE) -> str:
         """Put a sentence on one line, with every id replaced by what the vehicle is called."""
         if self._ids is not None:
@@ -73,6 +68,4 @@ def names_for(situation: Situation) -> Names:
 
 def seen_names(scene: SceneDescription) -> Names:
     """Return what everybody is called, by distance; ids would tell who is a CAV."""
-    ego = scene.ego
-    near = sorted(scene.neighbours, key=lambda n: (hypot(n.x - ego.x, n.y - ego.y), n.id))
-    return Names([ego.id], [n.id for n in near])
+    return Names([scene.ego.id], [n.id for n in scene.by_distance()])

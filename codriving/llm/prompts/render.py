@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from codriving.errors import ConfigError
-from codriving.llm.prompts.example import example
+from codriving.llm.prompts.example import EXAMPLES
 from codriving.llm.question import Message
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Prompts:
         environment.filters.update(_FILTERS)
         self._templates: dict[str, Template] = {}
         for name, path in _paths(folder).items():
-            values = example(name.split(".")[0])
+            values = EXAMPLES[name.split(".")[0]]
             self._templates[name] = _compiled(environment, path, values)
             self._render(
                 name, values, f"{path}: it cannot be filled in", "; see docs/change-the-prompts.md for what there is"

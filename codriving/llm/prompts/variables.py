@@ -1,13 +1,14 @@
 """The variables of the prompts of CoDrivingLLM: to decide, to negotiate and to reflect."""
 
 from collections.abc import Mapping, Sequence
-from math import cos, hypot, inf, sin
+from dataclasses import asdict
+from math import inf
 from typing import Any
 
 from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.experience import Experience
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.ordering_problem import Instance, Pair
+from codriving.datatypes.ordering_problem import Instance
 from codriving.datatypes.road import LaneId
 from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
 from codriving.datatypes.situation import ActionAssessment, Situation
@@ -32,12 +33,6 @@ OTHERS = 4
 """Vehicles at most that are mentioned though it is not known which lane they are on."""
 
 
-def vehicles_by_distance(situation: Situation) -> list[str]:
-    """Return the ids of everybody that a CAV knows of, nearest first."""
-    ego = situation.scene.ego
-    return [n.id for n in sorted(situation.scene.neighbours, key=lambda n: (hypot(n.x - ego.x, n.y - ego.y), n.id))]
-
-
 def decision_view(situation: Situation, nearest: int | None = None, with_memories: bool = True) -> dict[str, Any]:
     """Return the variables of the decision prompt.
 
@@ -45,7 +40,7 @@ def decision_view(situation: Situation, nearest: int | None = None, with_memorie
         nearest: Number of vehicles, nearest first, that are mentioned; None for all.
     """
     scene, names = situation.scene, names_for(situation)
-    mentioned = set(vehicles_by_distance(situation)[:nearest])
+    mentioned = {n.id for n in scene.by_distance()[:nearest]}
     neighbours = [n for n in scene.neighbours if n.id in mentioned]
     groups: dict[str, list[int]] = {}
     for k, c in enumerate(situation.conflicts):
@@ -102,7 +97,7 @@ def lane_views(scene: SceneDescription, neighbours: Sequence[TrackedVehicle], na
         ahead: list[VehicleView] = []
         behind: list[VehicleView] = []
         for n in (n for n in neighbours if n.lane == lane):
-            along, _ = _offset(scene, n)
+            along, _ = scene.offset(n)
             gap = max(abs(along) - (n.length + scene.ego.length) / 2, 0.0)
             view = VehicleView(names(n.id), DRIVERS[n.kind], gap, n.speed)
             (ahead if along > 0 else behind).append(view)
@@ -114,15 +109,8 @@ def lane_views(scene: SceneDescription, neighbours: Sequence[TrackedVehicle], na
 
 def _others(scene: SceneDescription, neighbours: Sequence[TrackedVehicle], names: Names) -> list[OtherView]:
     """List those nearest whose lane is not known."""
-    unplaced = [n for n in neighbours if n.lane is None and n.role is Role.OTHER]
-    unplaced.sort(key=lambda n: (hypot(n.x - scene.ego.x, n.y - scene.ego.y), n.id))
-    return [OtherView(names(n.id), DRIVERS[n.kind], *_offset(scene, n), n.speed) for n in unplaced[:OTHERS]]
-
-
-def _offset(scene: SceneDescription, n: TrackedVehicle) -> tuple[float, float]:
-    """Return how far ahead and how far to the right of the CAV a vehicle is [m]."""
-    dx, dy, along, across = n.x - scene.ego.x, n.y - scene.ego.y, cos(scene.ego.heading), sin(scene.ego.heading)
-    return along * dx + across * dy, along * dy - across * dx
+    unplaced = [n for n in scene.by_distance() if n in neighbours and n.lane is None and n.role is Role.OTHER]
+    return [OtherView(names(n.id), DRIVERS[n.kind], *scene.offset(n), n.speed) for n in unplaced[:OTHERS]]
 
 
 def _conflict(
@@ -130,21 +118,9 @@ def _conflict(
 ) -> ConflictView:
     c: Conflict = situation.conflicts[ks[0]]
     n = next(n for n in neighbours if n.id == c.other)
-    return ConflictView(
-        id=names(n.id),
-        driver=DRIVERS[n.kind],
-        lane="" if n.lane is None else lane_name(n.lane),
-        speed=n.speed,
-        relation=str(c.relation),
-        mine=c.distances[0],
-        its=c.distances[1],
-        my_ttcp=c.ttcp[0],
-        its_ttcp=c.ttcp[1],
-        dttcp=c.dttcp,
-        severity=str(c.severity),
-        zones=len(ks),
-        free=max(situation.clear_times[k] for k in ks),
-    )
+    lane, free = "" if n.lane is None else lane_name(n.lane), max(situation.clear_times[k] for k in ks)
+    way = (str(c.relation), *c.distances, *c.ttcp, c.dttcp, str(c.severity))
+    return ConflictView(*way, names(n.id), DRIVERS[n.kind], lane, n.speed, len(ks), free)
 
 
 def _actions(
@@ -175,18 +151,18 @@ def negotiation_view(
     """Return the variables of the negotiation prompt."""
     asked = sorted({name for _, c in pairs for name in (c.ego, c.other)})
     ahead = {instance.vehicles[name].leader for name in asked} - {None}
-    fixed = sorted(pair for pair in instance.before if set(pair) <= {*asked, *ahead} and not _follows(instance, pair))
+    # That one drives behind the other is said of that vehicle.
+    fixed = sorted(
+        (first, second)
+        for first, second in instance.before
+        if {first, second} <= {*asked, *ahead} and instance.vehicles[second].leader != first
+    )
     return {
         "vehicles": [_approaching(scenes, instance, name, names) for name in asked],
         "pairs": [_pair(name, c, previous, names) for name, c in pairs],
         "fixed": [FixedView(names(first), names(second)) for first, second in fixed],
         "binding": binding,
     }
-
-
-def _follows(instance: Instance, pair: Pair) -> bool:
-    """Whether a pair is fixed because one drives behind the other, which is said of that vehicle."""
-    return instance.vehicles[pair[1]].leader == pair[0]
 
 
 def _approaching(scenes: Mapping[str, SceneDescription], instance: Instance, name: str, names: Names) -> EntrantView:
@@ -219,22 +195,13 @@ def _joined(windows: Sequence[tuple[float, float]]) -> tuple[tuple[float, float]
 
 def _pair(name: str, c: Conflict, previous: PassingOrder | None, names: Names) -> PairView:
     agreed = None if previous is None else previous.first_of(c.ego, c.other)
-    return PairView(
-        name=name,
-        one=names(c.ego),
-        other=names(c.other),
-        relation=str(c.relation),
-        distances=c.distances,
-        ttcp=c.ttcp,
-        dttcp=c.dttcp,
-        severity=str(c.severity),
-        agreed="" if agreed is None else names(agreed),
-    )
+    first = "" if agreed is None else names(agreed)
+    ego, other, relation, severity = names(c.ego), names(c.other), str(c.relation), str(c.severity)
+    return PairView(name, ego, other, relation, c.distances, c.ttcp, c.dttcp, severity, first)
 
 
 def reflection_view(experience: Experience) -> dict[str, Any]:
     """Return the variables of the reflection prompt."""
-    effect = experience.effect
     return {
         "scene": experience.description.scene,
         "conflict": experience.description.conflict,
@@ -242,11 +209,5 @@ def reflection_view(experience: Experience) -> dict[str, Any]:
         "action": str(experience.action),
         "verdict": str(experience.verdict),
         "comment": experience.lesson,
-        "dttcp_before": effect.dttcp_before,
-        "dttcp_after": effect.dttcp_after,
-        "own_change": effect.own_change,
-        "own_braking": effect.own_braking,
-        "forced_braking": effect.forced_braking,
-        "collision": effect.collision,
-        "needless": effect.needless,
+        **asdict(experience.effect),
     }

@@ -41,19 +41,14 @@ class OtherView:
 
 
 @dataclass(frozen=True, slots=True)
-class ConflictView:
-    """Everything that one other vehicle may get in the CAV's way; of several zones the most urgent one.
+class WayView:
+    """One way that a vehicle may take, and where it meets that of the CAV.
 
     Attributes:
         mine: The CAV's distance to the zone.
         its: The other's distance to the zone.
-        free: When the CAV's way through all of them is expected to be free; 0 if the CAV goes first.
     """
 
-    id: str
-    driver: str
-    lane: str
-    speed: float
     relation: str
     mine: float
     its: float
@@ -61,6 +56,20 @@ class ConflictView:
     its_ttcp: float
     dttcp: float
     severity: str
+
+
+@dataclass(frozen=True, slots=True)
+class ConflictView(WayView):
+    """Everything that one other vehicle may get in the CAV's way; of several zones the most urgent one.
+
+    Attributes:
+        free: When the CAV's way through all of them is expected to be free; 0 if the CAV goes first.
+    """
+
+    id: str
+    driver: str
+    lane: str
+    speed: float
     zones: int
     free: float
 
@@ -141,19 +150,6 @@ class FixedView:
 
     first: str
     second: str
-
-
-@dataclass(frozen=True, slots=True)
-class WayView:
-    """One way that a vehicle may take, and where it meets that of the CAV: both distances to it and times to it."""
-
-    relation: str
-    mine: float
-    its: float
-    my_ttcp: float
-    its_ttcp: float
-    dttcp: float
-    severity: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """The variables of DiLu's prompts: what one CAV sees, lane by lane and vehicle by vehicle."""
 
-from math import atan2, cos, degrees, hypot, sin
+from math import atan2, degrees
 from typing import Any
 
 from codriving.datatypes.action import Action
@@ -35,7 +35,7 @@ def seen_view(
     scene, names = situation.scene, seen_names(situation.scene)
     start, end, index = scene.ego.lane
     targets = _targets_after(driving, scene.ego.speed, scene.intent.target_speed)
-    mentioned = sorted(scene.neighbours, key=lambda n: (_distance(scene, n), n.id))[:nearest]
+    mentioned = scene.by_distance()[:nearest]
     lanes = lane_views(scene, mentioned, names)
     placed = {v.id for lane in lanes for v in (lane.leading, lane.rear) if v is not None}
     meets = {c.other: k for k, c in reversed(list(enumerate(situation.conflicts)))}
@@ -58,10 +58,6 @@ def seen_view(
     }
 
 
-def _distance(scene: SceneDescription, n: TrackedVehicle) -> float:
-    return hypot(n.x - scene.ego.x, n.y - scene.ego.y)
-
-
 def _seen(situation: Situation, n: TrackedVehicle, names: Names) -> SeenView:
     """Describe one vehicle; of each way that it may take, the most urgent place where that meets the CAV's."""
     scene = situation.scene
@@ -72,7 +68,7 @@ def _seen(situation: Situation, n: TrackedVehicle, names: Names) -> SeenView:
     return SeenView(
         id=names(n.id),
         where=_direction(scene, n),
-        distance=_distance(scene, n),
+        distance=scene.distance(n),
         speed=n.speed,
         standing=n.standing,
         ways=_apart([_way(c) for c in ways.values()]),
@@ -86,15 +82,15 @@ def _apart(ways: list[WayView]) -> tuple[WayView, ...]:
     return tuple(w for w in ways if w in apart.values())
 
 
-def _direction(scene: SceneDescription, n: TrackedVehicle) -> str:
-    dx, dy, along, across = n.x - scene.ego.x, n.y - scene.ego.y, cos(scene.ego.heading), sin(scene.ego.heading)
-    # The y axis points to the right of the x axis, so that angles grow clockwise.
-    angle = degrees(atan2(along * dy - across * dx, along * dx + across * dy))
-    return DIRECTIONS[round(angle / 45) % len(DIRECTIONS)]
-
-
 def _way(c: Conflict) -> WayView:
-    return WayView(str(c.relation), c.distances[0], c.distances[1], c.ttcp[0], c.ttcp[1], c.dttcp, str(c.severity))
+    return WayView(str(c.relation), *c.distances, *c.ttcp, c.dttcp, str(c.severity))
+
+
+def _direction(scene: SceneDescription, n: TrackedVehicle) -> str:
+    ahead, right = scene.offset(n)
+    # The y axis points to the right of the x axis, so that angles grow clockwise.
+    angle = degrees(atan2(right, ahead))
+    return DIRECTIONS[round(angle / 45) % len(DIRECTIONS)]
 
 
 def _targets_after(model: DrivingModel, speed: float, target: float) -> dict[Action, float]:
