@@ -5,7 +5,7 @@ import io
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 if TYPE_CHECKING:
@@ -63,17 +63,7 @@ class Column(Generic[T]):
             found = part(item)
             return None if found is None else self.value(found)
 
-        return Column(
-            key or self.key,
-            value,
-            head or self.head,
-            self.text,
-            self.words,
-            self.csv,
-            self.page,
-            self.sparse,
-            self.swept,
-        )
+        return replace(self, key=key or self.key, value=value, head=head or self.head)
 
 
 @dataclass(frozen=True, slots=True)

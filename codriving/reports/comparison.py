@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any
 
 from codriving.metrics.intervals import FEWEST, RESAMPLES
-from codriving.reports.columns import Column, Row, Table, swept_columns, table
+from codriving.reports.columns import Column, Table, swept_columns, table
 from codriving.reports.episodes import number_columns
 from codriving.reports.pairs import PAIRED, PairedCells
 from codriving.reports.paper import Paper, PaperRow
@@ -86,10 +86,6 @@ def _cells(rows: Iterable[Compared]) -> list[CellResults]:
     return [row.cell for row in rows if row.cell]
 
 
-def _cell(row: Compared) -> CellResults | None:
-    return row.cell
-
-
 def status_columns(scenario: bool) -> list[Column[Any]]:
     """Give the columns of labels and status, of what has a cell.
 
@@ -122,9 +118,9 @@ def comparison_table(rows: Sequence[Compared], swept: Sequence[str] = ()) -> Tab
         *status_columns(len({row.scenario for row in rows}) > 1),
         *swept_columns(swept),
         REASONER,
-        *(column.of(_cell) for column in MEASURED if column.key not in rates),
-        *(column.of(_cell) for column in number_columns(named_numbers(_cells(rows)), MEASURED)),
-        *([FALLBACKS.of(_cell)] if model else []),
+        *(column.of(lambda row: row.cell) for column in MEASURED if column.key not in rates),
+        *(column.of(lambda row: row.cell) for column in number_columns(named_numbers(_cells(rows)), MEASURED)),
+        *([FALLBACKS.of(lambda row: row.cell)] if model else []),
         Column("cpu", lambda r: milliseconds(r.cell.cpu) if r.cell else "", CPU, csv=False, page=False),
         *(replace(column, head="").of(lambda r: r.pairs) for column in PAIRED if column.csv),
         *map(_quoted, QUOTED),
@@ -174,10 +170,10 @@ def print_comparison(
         screen: Whether it is for the screen, which shows computing times, too.
     """
     made = comparison_table(rows, swept)
-    groups: list[tuple[object, list[Row], list[Row]]] = [
+    groups = (
         (row.block, [values], [paper_row(row.quoted)] if row.quoted else [])
         for row, values in zip(rows, made.rows, strict=True)
-    ]
+    )
     reasoners = [row.cell.first.reasoner for row in rows if row.cell]
     heading = title("comparison of methods", [row.scenario for row in rows], reasoners, metrics)
     cells = [(row.method, row.status, row.cell) for row in rows]
@@ -221,10 +217,8 @@ def print_pairs(rows: Sequence[Compared], metrics: str, swept: Sequence[str] = (
     found = [row for row in rows if row.pairs]
     if not found:
         return None
-    groups: list[tuple[object, list[Row], list[Row]]] = [
-        (row.block, [values] if row.pairs else [], [])
-        for row, values in zip(rows, table(columns, rows).rows, strict=True)
-    ]
+    made = table(columns, rows)
+    groups = ((row.block, [values] if row.pairs else [], ()) for row, values in zip(rows, made.rows, strict=True))
     notes = [_better_note(row, row.pairs, swept) for row in found if row.pairs and row.pairs.better] or [
         "No method is shown to be better than codriving in success, velocity or PET on these seeds."
     ]

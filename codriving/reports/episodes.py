@@ -7,18 +7,11 @@ from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.score import NamedNumber
 from codriving.reports.columns import Column, mean, swept_columns
-from codriving.reports.results import CellResults, ScoredEpisode, counter_names, named_numbers
+from codriving.reports.results import LABELS, CellResults, ScoredEpisode, counter_names, named_numbers
 from codriving.reports.wording import two_digits
 
-LABELS: tuple[Column[ScoredEpisode], ...] = (
-    Column("scenario", lambda e: e.record.scenario, words=True),
-    Column("method", lambda e: e.record.method, words=True),
-    Column("variant", lambda e: e.record.variant, words=True),
-    Column("reasoner", lambda e: e.record.reasoner, words=True),
-)
-
 LEADING: tuple[Column[ScoredEpisode], ...] = (
-    *LABELS,
+    *(column.of(lambda e: e.record) for column in LABELS),
     Column("seed", lambda e: e.record.seed),
     Column("outcome", lambda e: e.record.outcome.ending.value, words=True),
     Column("pet_mean", lambda e: mean(e.pets)),

@@ -3,7 +3,7 @@
 import io
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from itertools import pairwise
+from itertools import cycle, pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 from codriving.reports.columns import mean
@@ -44,12 +44,7 @@ METHODS: Mapping[str, Style] = {
     "codriving": ("#000000", "*", "-"),
 }
 
-OTHERS: Sequence[Style] = (
-    ("#7a7a7a", "X", "-"),
-    ("#7a1f5c", "<", "--"),
-    ("#5c4a00", ">", "-."),
-    ("#3b5b92", "h", ":"),
-)
+OTHERS: Sequence[Style] = (("#7a7a7a", "X", "-"), ("#7a1f5c", "<", "--"), ("#5c4a00", ">", "-."), ("#3b5b92", "h", ":"))
 """For methods of the user's, in turn."""
 
 LEVELS: Sequence[Style] = (
@@ -199,14 +194,9 @@ def _level(row: LearningRow) -> str:
 
 def _styles(rows: Sequence[LoadRow]) -> dict[str, Style]:
     styles: dict[str, Style] = {}
-    others = 0
+    others = cycle(OTHERS)
     for row in rows:
         usual = METHODS.get(row.method)
-        if row.name in styles:
-            continue
-        if usual is None or usual in styles.values():
-            styles[row.name] = OTHERS[others % len(OTHERS)]
-            others += 1
-        else:
-            styles[row.name] = usual
+        if row.name not in styles:
+            styles[row.name] = next(others) if usual is None or usual in styles.values() else usual
     return styles

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from codriving.reports.columns import Column, Row, Table, swept_columns, table
+from codriving.reports.columns import Column, Table, swept_columns, table
 from codriving.reports.pairs import SIGNIFICANT, PairedCells, points
 from codriving.reports.paper import LearningStatement
 from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.results import CellResults
-from codriving.reports.summary import BY_KEY, CLAIM, LABELS, NAME, NOTE
+from codriving.reports.summary import BY_KEY, CLAIM, NOTE, labels
 from codriving.reports.wording import fixed, title, two_digits
 
 NOTES = (
@@ -50,9 +50,7 @@ class LearningRow:
 
 def learning_rows(cells: Sequence[LearningRow], paper: Sequence[LearningStatement]) -> list[LearningRow]:
     """Put beside each cell what it is compared with and what the paper says."""
-    fewest: dict[int, CellResults] = {}
-    for row in cells:
-        fewest.setdefault(row.setting, row.cell)
+    fewest = {row.setting: row.cell for row in reversed(cells)}
     claims = {(s.scenario, s.interactions): s.statement for s in reversed(paper)}
     return [
         replace(
@@ -78,8 +76,7 @@ def learning_table(rows: Sequence[LearningRow], swept: Sequence[str] = ()) -> Ta
         return Column(key, lambda row: value(row.pairs) if row.pairs else None)
 
     columns: list[Column[Any]] = [
-        *(column.of(lambda row: row.cell) for column in (replace(LABELS[0], head="scenario"), *LABELS[1:], NAME)),
-        *(column.of(lambda row: row.cell) for column in swept_columns(swept)),
+        *(column.of(lambda row: row.cell) for column in (*labels(scenario=True), *swept_columns(swept))),
         Column("interactions", lambda row: row.interactions, "interactions"),
         Column("shots", lambda row: row.shots),
         *(replace(column, head="") for column in cell("memory")),
@@ -106,9 +103,7 @@ def learning_table(rows: Sequence[LearningRow], swept: Sequence[str] = ()) -> Ta
 def print_learning(rows: Sequence[LearningRow], metrics: str, swept: Sequence[str] = ()) -> PrintedTable:
     """Prepare the table for people."""
     made = learning_table(rows, swept)
-    groups: list[tuple[object, list[Row], list[Row]]] = [
-        (_setting(row, swept), [values], []) for row, values in zip(rows, made.rows, strict=True)
-    ]
+    groups = ((_setting(row, swept), [values], ()) for row, values in zip(rows, made.rows, strict=True))
     firsts = [row.cell.first for row in rows]
     heading = title("learning", [first.scenario for first in firsts], [first.reasoner for first in firsts], metrics)
     return printed(heading, made.columns, groups, (NOTE, *NOTES, _shown(rows, swept)))

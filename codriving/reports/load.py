@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Any
 
-from codriving.reports.columns import Column, Row, Table, Value, swept_columns, table
+from codriving.reports.columns import Column, Table, Value, swept_columns, table
 from codriving.reports.comparison import (
     CPU,
     DRIVEN,
@@ -102,7 +102,7 @@ def load_table(rows: Sequence[LoadRow], loads: Sequence[int], swept: Sequence[st
 
 def _at(cavs: int, column: Column[CellResults]) -> Column[LoadRow]:
     head = f"{column.head}, {cavs} CAVs" if column.head else ""
-    return replace(column.of(lambda row: row.at.get(cavs), f"{column.key}_{cavs}"), head=head)
+    return column.of(lambda row: row.at.get(cavs), f"{column.key}_{cavs}", head)
 
 
 def print_loads(
@@ -114,10 +114,10 @@ def print_loads(
         screen: Whether it is for the screen, which shows computing times, too.
     """
     made = load_table(rows, loads, swept)
-    groups: list[tuple[object, list[Row], list[Row]]] = [
-        ((row.scenario, *setting_of(row.swept).items()), [values], [])
+    groups = (
+        ((row.scenario, *setting_of(row.swept).items()), [values], ())
         for row, values in zip(rows, made.rows, strict=True)
-    ]
+    )
     labels = [(row.method, row.status, cell) for row in rows for cell in row.at.values() or [None]]
     notes = (NOTE, *notes_of(labels, screen))
     return printed(load_title(rows, metrics), made.columns, groups, notes, screen)

@@ -30,11 +30,6 @@ class PaperRow:
     numbers: dict[str, float]
     episodes: int | None = SEEDS
 
-    @property
-    def episodes_text(self) -> str:
-        """How many seeds it drove, for tables."""
-        return "-" if self.episodes is None else str(self.episodes)
-
 
 @dataclass(frozen=True, slots=True)
 class PaperStatement:

@@ -10,7 +10,15 @@ from codriving.datatypes.outcome import Ending
 from codriving.datatypes.record import EpisodeRecord
 from codriving.datatypes.score import NamedNumber, Score
 from codriving.metrics.intervals import wilson_interval
-from codriving.reports.columns import Value, mean, share
+from codriving.reports.columns import Column, Value, mean, share
+
+LABELS: tuple[Column[EpisodeRecord], ...] = (
+    Column("scenario", lambda record: record.scenario, words=True),
+    Column("method", lambda record: record.method, words=True),
+    Column("variant", lambda record: record.variant, words=True),
+    Column("reasoner", lambda record: record.reasoner, words=True),
+)
+"""The columns that every table begins with."""
 
 COST = "cost_usd"
 
@@ -200,7 +208,11 @@ def counted(records: Sequence[EpisodeRecord]) -> dict[str, Value]:
     for record in records:
         for name, number in record.counts.items():
             values.setdefault(name, []).append(number)
-    sums: dict[str, Value] = {name: _sum(numbers) for name, numbers in values.items()}
+    # Exact summation makes the sum of amounts the same in any order.
+    sums: dict[str, Value] = {
+        name: math.fsum(numbers) if any(isinstance(number, float) for number in numbers) else sum(numbers)
+        for name, numbers in values.items()
+    }
     if any(map(asked, records)):
         sums = {**dict.fromkeys(ASKED, 0), COST: 0.0, **sums}
         if sums.pop(UNPRICED, 0):
@@ -210,14 +222,8 @@ def counted(records: Sequence[EpisodeRecord]) -> dict[str, Value]:
     return sums
 
 
-def _sum(numbers: Sequence[int | float]) -> int | float:
-    # Exact summation makes the sum of amounts the same in any order.
-    return math.fsum(numbers) if any(isinstance(number, float) for number in numbers) else sum(numbers)
-
-
 def counter_names(records: Sequence[EpisodeRecord]) -> list[str]:
     """List the counters that have a column: those of a language model first, all others by name."""
     names = {name for record in records for name in record.counts} - {UNPRICED, WAITED}
-    model = any(map(asked, records))
-    first = [name for name in ASKED if model or name in names]
+    first = [name for name in ASKED if any(map(asked, records)) or name in names]
     return [*first, *sorted(names.difference(first))]

@@ -11,7 +11,7 @@ from codriving.reports.columns import Column, Row, Table, Value, mean, share, sw
 from codriving.reports.episodes import counter_columns, number_columns, number_head
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.printed import PrintedTable, printed
-from codriving.reports.results import ASKED, COST, CellResults, named_numbers, success_interval
+from codriving.reports.results import ASKED, COST, LABELS, CellResults, named_numbers, success_interval
 from codriving.reports.wording import interval_text, percent, stand_in_notes, three, title, two_digits
 
 SEVERE_PET = 1.5
@@ -27,13 +27,6 @@ STEP_NOTE = "Step: wall-clock time of one decision step, all CAVs and all questi
 
 CLAIM = "the paper says"
 """Head of the column of the paper's statements."""
-
-LABELS: tuple[Column[CellResults], ...] = (
-    Column("scenario", lambda c: c.first.scenario, words=True),
-    Column("method", lambda c: c.first.method, words=True),
-    Column("variant", lambda c: c.first.variant, words=True),
-    Column("reasoner", lambda c: c.first.reasoner, words=True),
-)
 
 NAME: Column[CellResults] = Column("name", lambda c: c.name, "method", words=True, csv=False)
 
@@ -91,7 +84,9 @@ MEMORY: Column[CellResults] = Column(
 
 FALLBACKS: Column[CellResults] = Column(FALLBACK_RATE, lambda c: c.fallback_rate, "fallbacks", percent)
 
-BY_KEY = {column.key: column for column in (*LABELS, *MEASURED, *FURTHER, MEMORY, FALLBACKS)}
+_LABELS = [column.of(lambda c: c.first) for column in LABELS]
+
+BY_KEY = {column.key: column for column in (*_LABELS, *MEASURED, *FURTHER, MEMORY, FALLBACKS)}
 
 _ON_SCREEN: tuple[Column[CellResults], ...] = (
     Column("calls", lambda c: _if_asked(c, _thousands(c.counters.get("model_calls"))), "calls", csv=False),
@@ -103,15 +98,15 @@ _ON_SCREEN: tuple[Column[CellResults], ...] = (
 """What a language model was asked, as people read it; nothing where none reasons."""
 
 
-def summary_columns(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> list[Column[Any]]:
-    """Give the columns of the summary: fixed ones, swept keys, and the counters of methods."""
+def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Table:
+    """Make the summary: fixed columns, swept keys, and the counters of methods."""
     records = [record for cell in cells for record in cell.records]
     memory = [MEMORY] if any(record.memory for record in records) else []
     model = any(cell.asked for cell in cells)
     numeric = {key for key in swept if all(_is_number(cell.swept.get(key)) for cell in cells)}
     values = [replace(column, words=column.key not in numeric) for column in swept_columns(swept)]
     known: list[Column[Any]] = [
-        *labels(cells),
+        *labels(len({cell.first.scenario for cell in cells}) > 1),
         # The CSV has them after the columns that users rely on.
         *(replace(column, csv=False) for column in values),
         *MEASURED,
@@ -123,18 +118,16 @@ def summary_columns(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> 
     counters = counter_columns(records, known)
     rate = len([column for column in counters if column.key in ASKED]) if model else 0
     rest = [*counters[:rate], *([replace(FALLBACKS, head="")] if model else []), *counters[rate:]]
-    return [*known, *rest, *(_ON_SCREEN if model else ())]
+    return table([*known, *rest, *(_ON_SCREEN if model else ())], cells)
 
 
-def labels(cells: Sequence[CellResults], always: bool = False) -> list[Column[Any]]:
-    """Give the columns that tell rows apart; one of scenarios is shown where there are several, or always."""
-    many = always or len({cell.first.scenario for cell in cells}) > 1
-    return [replace(LABELS[0], head="scenario" if many else ""), *LABELS[1:], NAME]
+def labels(scenario: bool) -> list[Column[Any]]:
+    """Give the columns that tell rows apart.
 
-
-def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Table:
-    """Make the summary."""
-    return table(summary_columns(cells, swept), cells)
+    Args:
+        scenario: Whether the scenario is shown.
+    """
+    return [replace(_LABELS[0], head="scenario" if scenario else ""), *_LABELS[1:], NAME]
 
 
 def print_summary(
@@ -156,10 +149,10 @@ def print_summary(
     ablation = any(claim and cell.first.variant not in WHOLE for cell, claim in zip(cells, claims, strict=True))
     claimed: list[Column[Any]] = [Column("claim", lambda _: None, CLAIM, words=True)] if ablation else []
     theirs = _beside(cells, paper)
-    groups: list[tuple[object, list[Row], list[Row]]] = [
+    groups = (
         (row["scenario"], [{**row, "claim": claim}], [paper_row(theirs[index])] if index in theirs else [])
         for index, (row, claim) in enumerate(zip(made.rows, claims, strict=True))
-    ]
+    )
     scenarios, reasoners = ([row[key] for row in made.rows] for key in ("scenario", "reasoner"))
     models = stand_in_notes(row["method"] for row in made.rows)
     said = (NOTE, *number_notes(cells), *models, *_model_notes(cells, screen), *notes)
@@ -182,7 +175,7 @@ def paper_row(paper: PaperRow) -> Row:
     return {
         "scenario": paper.scenario,
         "name": f"paper: {paper.label}",
-        "count": paper.episodes_text,
+        "count": "-" if paper.episodes is None else str(paper.episodes),
         "success_rate": numbers.get("success_rate"),
         "memory": "",
         **{

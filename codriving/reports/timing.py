@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from codriving.datatypes.record import EpisodeRecord
 from codriving.reports.columns import Column, swept_columns
+from codriving.reports.results import LABELS
 from codriving.runs.episode_folder import Timing
 
 
@@ -19,13 +20,7 @@ class TimedEpisode(NamedTuple):
 
 def timing_columns(swept: Iterable[str] = ()) -> list[Column[Any]]:
     """Give the columns of ``timing.csv``; times are in seconds."""
-    labels: list[Column[TimedEpisode]] = [
-        Column("scenario", lambda e: e.record.scenario, words=True),
-        Column("method", lambda e: e.record.method, words=True),
-        Column("variant", lambda e: e.record.variant, words=True),
-        Column("reasoner", lambda e: e.record.reasoner, words=True),
-        Column("seed", lambda e: e.record.seed),
-    ]
+    labels = [column.of(lambda e: e.record) for column in (*LABELS, Column[EpisodeRecord]("seed", lambda r: r.seed))]
     measured: list[Column[TimedEpisode]] = [
         Column("seconds", lambda e: e.timing.seconds if e.timing else None),
         Column("decisions", lambda e: e.record.decisions),
