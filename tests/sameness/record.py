@@ -1,0 +1,35 @@
+"""Writes the golden values: ``PYTHONPATH=CHECKOUT python tests/sameness/record.py [WORD ...]``.
+
+They were recorded with a checkout of version 0.1. With words, only the cells in whose name one of them is are recorded
+anew; a change of the code is no reason to do so unless it is meant to change what is driven.
+"""
+
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from time import process_time
+
+import codriving
+import golden
+from cells import CELLS
+from driving import drive
+
+
+def main(words: Sequence[str]) -> None:
+    """Drive the cells and write the table."""
+    print(f"recording {codriving.__file__}")
+    kept = golden.read() if words else {}
+    rows = []
+    with tempfile.TemporaryDirectory() as place:
+        for k, cell in enumerate(CELLS):
+            if words and not any(word in cell.name for word in words):
+                rows += kept.get(cell.name, [])
+                continue
+            rows += golden.rows_of(cell.name, drive(cell, Path(place) / str(k)))
+            print(f"{process_time():7.1f} s  {cell.name}", flush=True)
+    golden.write(rows)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,21 @@
+"""What version 0.1 drove is driven today: hashes of records and trajectories, prompts and the texts of memories."""
+
+from pathlib import Path
+
+import golden
+import pytest
+from cells import CELLS, Cell
+from driving import drive
+
+GOLDEN = golden.read()
+
+
+def test_cells_and_golden_values_belong_together() -> None:
+    names = [cell.name for cell in CELLS]
+    assert names == list(GOLDEN)
+
+
+@pytest.mark.parametrize("cell", CELLS, ids=lambda cell: cell.name.replace(" ", "-"))
+def test_a_cell_is_driven_as_version_0_1_did(cell: Cell, tmp_path: Path) -> None:
+    found = golden.differences(cell.name, drive(cell, tmp_path), GOLDEN[cell.name])
+    assert not found, "\n".join(found)
