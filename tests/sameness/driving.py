@@ -1,7 +1,8 @@
 """Drives cells as ``python -m codriving`` does, in this process, and gives what they leave.
 
 By hand, in a process whose search path begins with the checkout that is to be driven:
-``PYTHONPATH=CHECKOUT python tests/sameness/driving.py FOLDER`` drives all cells and leaves their files below FOLDER.
+``PYTHONPATH=CHECKOUT python tests/sameness/driving.py FOLDER [WORD ...]`` drives all cells, or those in whose name one
+of the words is, and leaves their files below FOLDER.
 """
 
 import contextlib
@@ -41,12 +42,12 @@ def codriving(*typed: str) -> tuple[int, str]:
         Exit code, and what was printed.
     """
     said, code = io.StringIO(), 0
-    with patch.object(sys, "argv", ["codriving", *typed]), contextlib.redirect_stdout(said):
-        with contextlib.redirect_stderr(said):
-            try:
-                runpy.run_module("codriving", run_name="__main__", alter_sys=True)
-            except SystemExit as ended:
-                code = int(ended.code or 0)
+    printing = contextlib.redirect_stdout(said), contextlib.redirect_stderr(said)
+    with patch.object(sys, "argv", ["codriving", *typed]), printing[0], printing[1]:
+        try:
+            runpy.run_module("codriving", run_name="__main__", alter_sys=True)
+        except SystemExit as ended:
+            code = int(ended.code or 0)
     return code, said.getvalue()
 
 
@@ -121,13 +122,18 @@ def learnt(path: Path) -> tuple[bytes, bytes]:
     return "\n".join(lines).encode(), repr(numbers).encode()
 
 
+def chosen(words: Sequence[str]) -> list[Cell]:
+    """The cells in whose name one of some words is; all if there are none."""
+    return [cell for cell in CELLS if not words or any(word in cell.name for word in words)]
+
+
 def main(arguments: Sequence[str]) -> None:
-    """Drive all cells and leave their files, each cell in a folder of its own."""
+    """Drive cells and leave their files, each cell in a folder of its own."""
     import codriving as package
 
-    [folder] = [Path(argument).resolve() for argument in arguments]
+    folder, words = Path(arguments[0]).resolve(), arguments[1:]
     print(f"driving {package.__file__}", flush=True)
-    for k, cell in enumerate(CELLS):
+    for k, cell in enumerate(chosen(words)):
         place = folder / "places" / str(k)
         for name, content in drive(cell, place).items():
             path = folder / "left" / cell.name / name

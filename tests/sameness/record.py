@@ -10,20 +10,21 @@ from collections.abc import Sequence
 from pathlib import Path
 from time import process_time
 
-import codriving
 import golden
 from cells import CELLS
-from driving import drive
+from driving import chosen, drive
+
+import codriving
 
 
 def main(words: Sequence[str]) -> None:
     """Drive the cells and write the table."""
     print(f"recording {codriving.__file__}")
     kept = golden.read() if words else {}
-    rows = []
+    wanted, rows = chosen(words), []
     with tempfile.TemporaryDirectory() as place:
         for k, cell in enumerate(CELLS):
-            if words and not any(word in cell.name for word in words):
+            if cell not in wanted:
                 rows += kept.get(cell.name, [])
                 continue
             rows += golden.rows_of(cell.name, drive(cell, Path(place) / str(k)))

@@ -1,0 +1,85 @@
+"""Run folders of version 0.1: a run in them goes on as if it had not been interrupted, and they can be replayed."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from cells import MEMORY
+from driving import codriving, episodes
+
+HERE = Path(__file__).parent
+MADE = HERE / "folder-0.1" / "run"
+SETTINGS = (
+    "scenario=intersection", "scenario.cavs=2", "scenario.hdvs=[1,1]", "scenario.simulation_frequency=5",
+    "scenario.decision_frequency=1", "seed=10000", "launcher=serial",
+)  # fmt: skip
+PLAIN = ("run", *SETTINGS, "method=codriving,fcfs", "scenario.time_limit=16")
+FROZEN = ("run", *SETTINGS, "memory=frozen", f"memory.file={MEMORY}", "scenario.time_limit=6")
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+@pytest.fixture
+def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Copies of the folders, below the folder in which the commands are given."""
+    shutil.copytree(MADE, tmp_path / "outputs" / "run")
+    shutil.copy(HERE / MEMORY, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path / "outputs" / "run"
+
+
+def driven(folder: Path) -> dict[str, bytes]:
+    """Files of the episodes but for the decisions, whose last digits depend on the machine."""
+    files = folder.glob("episodes/*/*/*")
+    timeless = [path for path in files if path.name not in ("timing.json", "decisions.jsonl")]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in timeless}
+
+
+def everything(folder: Path) -> dict[str, bytes]:
+    """All files but the lock."""
+    files = [path for path in folder.rglob("*") if path.is_file() and path.name != ".lock"]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+@pytest.mark.parametrize(
+    ("name", "command", "count"), [("plain", (*PLAIN, "episodes=2"), 4), ("frozen", (*FROZEN, "episodes=1"), 1)]
+)
+def test_the_same_command_finds_nothing_to_do(folders: Path, name: str, command: tuple[str, ...], count: int) -> None:
+    code, said = codriving(*command, f"run={name}")
+    assert code == 0, said
+    assert f"Nothing to do: all {count} episodes of this run are finished already." in said
+    before, now = everything(MADE / name), everything(folders / name)
+    assert sorted(before) == sorted(now)
+    assert [path for path in before if before[path] != now[path]] == []
+
+
+@pytest.mark.parametrize(("name", "command", "seeds"), [("plain", PLAIN, 3), ("frozen", FROZEN, 2)])
+def test_a_run_grows_by_what_is_missing_alone(folders: Path, name: str, command: tuple[str, ...], seeds: int) -> None:
+    before = episodes(folders / name)
+    code, said = codriving(*command, f"episodes={seeds}", f"run={name}")
+    assert code == 0, said
+    rows = len(list((folders / name / "episodes").iterdir()))
+    assert f"{rows} of {rows} episodes done, 0 failed" in said
+    grown = episodes(folders / name)
+    assert {file: grown[file] for file in before} == before
+    code, said = codriving(*command, f"episodes={seeds}", "run=fresh")
+    assert code == 0, said
+    assert driven(folders / name) == driven(folders / "fresh")
+    for table in ("episodes.csv", "summary.csv", "summary.md"):
+        assert (folders / name / table).read_bytes() == (folders / "fresh" / table).read_bytes(), table
+
+
+@pytest.mark.parametrize(
+    ("name", "which"),
+    [("plain", ("--cell", "codriving")), ("plain", ("--cell", "fcfs")), ("frozen", ()), ("asked", ())],
+)
+def test_a_stored_episode_is_replayed(folders: Path, name: str, which: tuple[str, ...]) -> None:
+    code, said = codriving("replay", name, *which, "--frame", "3", "--out", "frame.png")
+    assert code == 0, said
+    assert Path("frame.png").read_bytes().startswith(PNG)
+
+
+def test_a_memory_is_read(folders: Path) -> None:
+    code, said = codriving("memory", "show", MEMORY)
+    assert code == 0, said
+    assert "4575c0a7909592b6d4952a2e237964b83154d8ae674656692e2a270d10cc746f" in said
+    assert "41, made 48 times" in said
