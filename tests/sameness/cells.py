@@ -16,12 +16,18 @@ METHODS = (
 ORDERING = ("bruteforce", "coop_game", "coop_game_auction", "fcfs", "idfst", "mcts")
 """Methods that drive by an order and so by an executor."""
 
-CDA = ("agreement_seeking", "full", "intent_sharing", "prescriptive", "status_sharing")
-OWN_ORDERS = ("own_view", "same_rule", "independent")
-CORRECTIONS = (
+CORRECTIONS = {
+    "roundabout": ("route_prediction", "route_leader", "yield_at_entry", "true_collisions"),
+    "merge": ("route_leader", "route_lane", "connected_lanes"),
+}
+"""Corrections of the simulator that make a difference by themselves, by the scenario in which they do."""
+
+ALL_CORRECTIONS = (
     "no_reverse", "route_prediction", "route_leader", "route_lane", "yield_at_entry", "start_into_gap",
     "connected_lanes", "own_parameters", "remove_at_sink", "true_collisions",
 )  # fmt: skip
+
+CROWD = ("scenario.cavs=8", "scenario.hdvs=[4,4]")
 
 MEMORY = "memory-0.1.sqlite"
 """A file of memories that version 0.1 has made; lies in the folder that cells are driven from."""
@@ -62,7 +68,8 @@ def _methods() -> Iterator[Cell]:
     for scenario in LIMITS:
         for method in METHODS:
             yield Cell(f"method {method} {scenario}", _in(scenario, f"method={method}"))
-        for method in ORDERING:
+        # On the highway nobody crosses anybody's way, so that one method shows the executor as well as all.
+        for method in ORDERING if scenario != "highway" else ("fcfs",):
             yield Cell(f"layered {method} {scenario}", _in(scenario, f"method={method}", "executor=layered"))
     # The default executor, named; and settings that the rules have beyond their defaults.
     yield Cell("planned fcfs intersection", _in("intersection", "method=fcfs", "executor=planned"))
@@ -76,27 +83,33 @@ def _methods() -> Iterator[Cell]:
 
 
 def _cooperation() -> Iterator[Cell]:
+    """The classes of cooperation; ``full`` is the default, so that ``method codriving`` has driven it already."""
     for scenario in LIMITS:
-        for cda in CDA:
+        for cda in ("intent_sharing", "prescriptive", "status_sharing"):
             yield Cell(f"cda {cda} {scenario}", _in(scenario, f"cda={cda}"))
-        for order in OWN_ORDERS:
-            for cda in ("intent_sharing", "status_sharing"):
-                yield Cell(f"own_order {order} {cda} {scenario}", _in(scenario, f"cda={cda}", f"cda.own_order={order}"))
-    yield Cell("ablate intersection", _in("intersection"), ("ablate",))
-    yield Cell("ablate merge", _in("merge", "scenario.cavs=4"), ("ablate",))
-    for off in ("state_sharing", "safety_check"):
-        for scenario in ("roundabout", "highway"):
-            yield Cell(f"without {off} {scenario}", _in(scenario, f"cda.{off}=false"))
+        # With class A no conflict is seen, so that there is nothing to order.
+        for order in ("same_rule", "independent"):
+            own = _in(scenario, "cda.negotiation=false", f"cda.own_order={order}")
+            yield Cell(f"own_order {order} {scenario}", own)
+    for cda in ("agreement_seeking", "full"):
+        yield Cell(f"cda {cda} intersection", _in("intersection", f"cda={cda}"))
+    for cda in ("full", "prescriptive"):
+        for scenario in ("intersection", "roundabout"):
+            crowd = _in(scenario, f"cda={cda}", *CROWD, "cda.safety_check=false", limit=14)
+            yield Cell(f"crowded {cda} {scenario}", crowd)
+    for scenario in ("intersection", "merge"):
+        yield Cell(f"ablate {scenario}", _in(scenario, "scenario.cavs=3", limit=11), ("ablate",))
 
 
 def _environment() -> Iterator[Cell]:
-    for name in CORRECTIONS:
-        for scenario in ("roundabout", "merge"):
-            overrides = _in(scenario, f"environment.corrections.{name}=false", "scenario.hdvs=[4,6]", limit=12)
-            yield Cell(f"uncorrected {name} {scenario}", overrides)
-    crowded = ("scenario.cavs=8", "scenario.hdvs=[4,4]")
-    yield Cell("crowded codriving intersection", _in("intersection", *crowded))
-    yield Cell("crowded mcts intersection", _in("intersection", "method=mcts", *crowded, limit=10))
+    for scenario, names in CORRECTIONS.items():
+        for name in names:
+            uncorrected = _in(scenario, f"environment.corrections.{name}=false", "scenario.hdvs=[4,6]", limit=12)
+            yield Cell(f"uncorrected {name} {scenario}", uncorrected)
+    nothing = [f"environment.corrections.{name}=false" for name in ALL_CORRECTIONS]
+    for scenario in LIMITS:
+        yield Cell(f"uncorrected {scenario}", _in(scenario, *nothing))
+    yield Cell("crowded mcts intersection", _in("intersection", "method=mcts", *CROWD, limit=10))
     yield Cell("authors intersection", _in("intersection", "metrics=authors"))
     yield Cell("authors roundabout", _in("roundabout", "metrics=authors", "method=fcfs"))
     yield Cell("free_speed intersection", _in("intersection", "metrics.free_speed=9.0"))
@@ -104,39 +117,38 @@ def _environment() -> Iterator[Cell]:
 
 
 def _memories() -> Iterator[Cell]:
+    """Memories are of the intersection and the merge; a low bar lets more of them count."""
+    unchecked = ("cda.safety_check=false", "memory.least_similarity=0.8")
     for scenario in LIMITS:
-        yield Cell(f"frozen codriving {scenario}", _in(scenario, *FROZEN))
-        yield Cell(f"online codriving {scenario}", _in(scenario, "memory=online"))
         learning = _in(scenario, "interactions=3", "cda.safety_check=false")
         yield Cell(f"build {scenario}", learning, ("memory", "build"))
-    yield Cell(
-        "build words intersection", _in("intersection", "interactions=2", "memory.embedder=words"), ("memory", "build")
-    )
-    unchecked = ("cda.safety_check=false", "memory.least_similarity=0.8")
-    yield Cell("frozen unchecked merge", _in("merge", *FROZEN, *unchecked))
+        yield Cell(f"online codriving {scenario}", _in(scenario, "memory=online", *unchecked))
+    words = _in("intersection", "interactions=2", "memory.embedder=words")
+    yield Cell("build words intersection", words, ("memory", "build"))
+    for scenario in ("intersection", "merge"):
+        yield Cell(f"frozen codriving {scenario}", _in(scenario, *FROZEN))
+        yield Cell(f"frozen unchecked {scenario}", _in(scenario, *FROZEN, *unchecked))
     yield Cell("frozen first intersection", _in("intersection", *FROZEN, "memory.interactions=1", *unchecked))
-    for scenario in ("intersection", "roundabout"):
-        yield Cell(f"frozen dilu {scenario}", _in(scenario, "method=dilu", *FROZEN, "memory.least_similarity=0.8"))
-        yield Cell(f"online dilu {scenario}", _in(scenario, "method=dilu", "memory=online"))
+    yield Cell("frozen dilu intersection", _in("intersection", "method=dilu", *FROZEN, "memory.least_similarity=0.5"))
+    for scenario in ("roundabout", "merge"):
+        yield Cell(f"online dilu {scenario}", _in(scenario, "method=dilu", "memory=online", *unchecked[1:]))
 
 
 def _models() -> Iterator[Cell]:
     for scenario in LIMITS:
-        yield Cell(f"model codriving {scenario}", _in(scenario, limit=10), model=True)
-    junction = ("intersection", "roundabout")
-    for scenario in junction:
-        yield Cell(f"model dilu {scenario}", _in(scenario, "method=dilu", limit=10), model=True)
-        yield Cell(f"model own order {scenario}", _in(scenario, "cda=status_sharing", limit=8), model=True)
-    yield Cell("model binding intersection", _in("intersection", "cda=prescriptive", limit=8), model=True)
-    yield Cell("model plain merge", _in("merge", "llm.ask_plain=true", limit=5), model=True)
+        yield Cell(f"model codriving {scenario}", _in(scenario, limit=6), model=True)
+    yield Cell("model own order intersection", _in("intersection", "cda=intent_sharing", limit=6), model=True)
+    yield Cell("model status roundabout", _in("roundabout", "cda=status_sharing", limit=6), model=True)
+    yield Cell("model binding intersection", _in("intersection", "cda=prescriptive", limit=6), model=True)
+    yield Cell("model plain merge", _in("merge", "llm.ask_plain=true", limit=3), model=True)
     recalling = (*FROZEN, "memory.least_similarity=0.8")
-    yield Cell("model frozen codriving merge", _in("merge", *recalling, limit=8), model=True)
+    yield Cell("model frozen codriving merge", _in("merge", *recalling, limit=6), model=True)
     yield Cell("model frozen dilu intersection", _in("intersection", "method=dilu", *recalling, limit=8), model=True)
+    yield Cell("model dilu highway", _in("highway", "method=dilu", limit=6), model=True)
     reflecting = ("memory=online", "memory.reflection=llm", "cda.safety_check=false")
-    for scenario in junction:
-        yield Cell(f"model reflects codriving {scenario}", _in(scenario, *reflecting, limit=12), model=True)
-        dilu = _in(scenario, "method=dilu", "memory=online", "scenario.cavs=8", limit=14)
-        yield Cell(f"model reflects dilu {scenario}", dilu, model=True)
+    yield Cell("model reflects codriving roundabout", _in("roundabout", *reflecting, limit=12), model=True)
+    dilu = _in("intersection", "method=dilu", "memory=online", "scenario.cavs=8", limit=14)
+    yield Cell("model reflects dilu intersection", dilu, model=True)
 
 
 CELLS = (*_methods(), *_cooperation(), *_environment(), *_memories(), *_models())
