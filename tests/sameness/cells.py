@@ -109,7 +109,6 @@ def _environment() -> Iterator[Cell]:
     nothing = [f"environment.corrections.{name}=false" for name in ALL_CORRECTIONS]
     for scenario in LIMITS:
         yield Cell(f"uncorrected {scenario}", _in(scenario, *nothing))
-    yield Cell("crowded mcts intersection", _in("intersection", "method=mcts", *CROWD, limit=10))
     yield Cell("authors intersection", _in("intersection", "metrics=authors"))
     yield Cell("authors roundabout", _in("roundabout", "metrics=authors", "method=fcfs"))
     yield Cell("free_speed intersection", _in("intersection", "metrics.free_speed=9.0"))

@@ -8,6 +8,7 @@ of the words is, and leaves their files below FOLDER.
 import contextlib
 import io
 import json
+import re
 import runpy
 import shutil
 import sqlite3
@@ -27,6 +28,9 @@ TEXTS = {
     "sightings": "experience, interaction, step, ego",
 }
 """What is compared of a memory. Vectors and effects are left out: their last digits may depend on the machine."""
+
+SECONDS = re.compile(rb'("(?:model_)?seconds": )[0-9.e+-]+')
+"""The only thing in a record (``counts.model_seconds``) and in a transcript (``seconds``) that the clock decides."""
 
 NUMBERS = "id, numbers, effect, vector"
 """What is compared of its experiences besides on one machine."""
@@ -88,7 +92,7 @@ def episodes(folder: Path) -> dict[str, bytes]:
         folder: The run folder.
 
     Returns:
-        Contents by name, without what depends on the clock.
+        Contents by name, without what depends on the clock: the seconds are ``null``.
     """
     left = {}
     rows = sorted(folder.glob("episodes/*"))
@@ -98,7 +102,7 @@ def episodes(folder: Path) -> dict[str, bytes]:
                 continue
             variant = json.loads((path.parent / "record.json").read_text())["variant"]
             begin = f"{variant}: " if len(rows) > 1 else ""
-            left[f"{begin}{path.parent.name}/{path.name}"] = path.read_bytes()
+            left[f"{begin}{path.parent.name}/{path.name}"] = SECONDS.sub(rb"\1null", path.read_bytes())
     return left
 
 

@@ -1,14 +1,53 @@
-"""The golden values: SHA-256 of what each cell leaves, in a table that can be read."""
+"""The golden values: SHA-256 of what each cell leaves, in a table that can be read.
+
+The last digits of what is driven follow the kernel of the linear algebra and the processor's instructions. So that the
+hashes are the same everywhere, a record is hashed with its numbers rounded to four decimals, a trajectory with its
+numbers rounded from four decimals to two: to centimetres, since of millions of numbers in tenths of millimetres some
+lie where one machine rounds up and another down. ``decisions.py`` compares two checkouts without rounding.
+"""
 
 import csv
 import hashlib
+import json
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 PATH = Path(__file__).resolve().with_name("golden.csv")
 FILES = {"record.json": "record", "trajectory.csv": "trajectory", "transcript.jsonl": "text"}
 TEXTS = ("asked", "memory")
 COLUMNS = ("cell", "of", "record", "trajectory", "text")
+
+
+_NUMBER = re.compile(rb"-?\d+\.\d{4}")
+
+
+def _centimetres(number: re.Match[bytes]) -> bytes:
+    # Adding zero turns -0.0 into 0.0, which would print differently.
+    return b"%.2f" % (round(float(number[0]), 2) + 0.0)
+
+
+def rounded(value: Any) -> Any:
+    """Round all numbers in what JSON can hold to four decimals.
+
+    Args:
+        value: What was read from JSON.
+    """
+    if isinstance(value, dict):
+        return {key: rounded(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [rounded(item) for item in value]
+    return round(value, 4) + 0.0 if isinstance(value, float) else value
+
+
+def _hash(file: str, content: bytes) -> str:
+    """Hash a file, rounded if it is one that is."""
+    if file == "record.json":
+        content = json.dumps(rounded(json.loads(content)), indent=2, ensure_ascii=False).encode()
+    if file == "trajectory.csv":
+        content = _NUMBER.sub(_centimetres, content)
+    return hashlib.sha256(content).hexdigest()
 
 
 def rows_of(cell: str, left: Mapping[str, bytes]) -> list[dict[str, str]]:
@@ -27,8 +66,8 @@ def rows_of(cell: str, left: Mapping[str, bytes]) -> list[dict[str, str]]:
         column = FILES.get(file, "text" if name in TEXTS else "")
         if column:
             row = rows.setdefault(of or name, {**dict.fromkeys(COLUMNS, ""), "cell": cell, "of": of or name})
-            row[column] = hashlib.sha256(content).hexdigest()
-    return list(rows.values())
+            row[column] = _hash(file, content)
+    return sorted(rows.values(), key=lambda row: row["of"])
 
 
 def read() -> dict[str, list[dict[str, str]]]:
