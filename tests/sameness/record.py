@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from time import process_time
 
-import golden
+import hashes
 from cells import CELLS
 from driving import chosen, drive
 
@@ -20,16 +20,16 @@ import codriving
 def main(words: Sequence[str]) -> None:
     """Drive the cells and write the table."""
     print(f"recording {codriving.__file__}")
-    kept = golden.read() if words else {}
+    kept = hashes.read() if words else {}
     wanted, rows = chosen(words), []
     with tempfile.TemporaryDirectory() as place:
         for k, cell in enumerate(CELLS):
             if cell not in wanted:
                 rows += kept.get(cell.name, [])
                 continue
-            rows += golden.rows_of(cell.name, drive(cell, Path(place) / str(k)))
+            rows += hashes.rows_of(cell.name, drive(cell, Path(place) / str(k)))
             print(f"{process_time():7.1f} s  {cell.name}", flush=True)
-    golden.write(rows)
+    hashes.write(rows)
 
 
 if __name__ == "__main__":

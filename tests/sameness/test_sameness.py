@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-import golden
+import hashes
 import pytest
 from cells import CELLS, Cell
 from driving import drive
 
-GOLDEN = golden.read()
+GOLDEN = hashes.read()
 
 
 def test_cells_and_golden_values_belong_together() -> None:
@@ -17,5 +17,5 @@ def test_cells_and_golden_values_belong_together() -> None:
 
 @pytest.mark.parametrize("cell", CELLS, ids=lambda cell: cell.name.replace(" ", "-"))
 def test_a_cell_is_driven_as_version_0_1_did(cell: Cell, tmp_path: Path) -> None:
-    found = golden.differences(cell.name, drive(cell, tmp_path), GOLDEN[cell.name])
+    found = hashes.differences(cell.name, drive(cell, tmp_path), GOLDEN[cell.name])
     assert not found, "\n".join(found)
