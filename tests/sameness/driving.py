@@ -32,6 +32,9 @@ TEXTS = {
 SECONDS = re.compile(rb'("(?:model_)?seconds": )[0-9.e+-]+')
 """The only thing in a record (``counts.model_seconds``) and in a transcript (``seconds``) that the clock decides."""
 
+SCORE = ("success", "pets", "travels")
+"""What version 0.1 wrote of a score."""
+
 NUMBERS = "id, numbers, effect, vector"
 """What is compared of its experiences besides on one machine."""
 
@@ -102,8 +105,29 @@ def episodes(folder: Path) -> dict[str, bytes]:
                 continue
             variant = json.loads((path.parent / "record.json").read_text())["variant"]
             begin = f"{variant}: " if len(rows) > 1 else ""
-            left[f"{begin}{path.parent.name}/{path.name}"] = SECONDS.sub(rb"\1null", path.read_bytes())
+            left[f"{begin}{path.parent.name}/{path.name}"] = comparable(path)
     return left
+
+
+def comparable(path: Path) -> bytes:
+    """Read a file of an episode without what depends on the clock, a record as version 0.1 would have written it.
+
+    Version 0.1 wrote the score by the one metric that it knew; later versions write those by each metric, by name. Of a
+    record that is not written otherwise, every byte stays.
+
+    Args:
+        path: The file.
+    """
+    content = SECONDS.sub(rb"\1null", path.read_bytes())
+    if path.name != "record.json":
+        return content
+    record = json.loads(content)
+    if "scores" in record:
+        scores = [{key: score[key] for key in SCORE} for score in record["scores"].values()]
+        [score] = scores or [None]
+        record = {"score" if key == "scores" else key: value for key, value in record.items()}
+        record["score"] = score
+    return (json.dumps(record, indent=2, ensure_ascii=False) + "\n").encode()
 
 
 def learnt(path: Path) -> tuple[bytes, bytes]:
