@@ -68,7 +68,7 @@ def _methods() -> Iterator[Cell]:
     for scenario in LIMITS:
         for method in METHODS:
             yield Cell(f"method {method} {scenario}", _in(scenario, f"method={method}"))
-        # On the highway nobody crosses anybody's way, so that one method shows the executor as well as all.
+        # On the highway no ways cross, so that one method shows the executor as well as all.
         for method in ORDERING if scenario != "highway" else ("fcfs",):
             yield Cell(f"layered {method} {scenario}", _in(scenario, f"method={method}", "executor=layered"))
     # The default executor, named; and settings that the rules have beyond their defaults.
