@@ -1,7 +1,8 @@
 """Scores of driven episodes: by several metrics at once, and later by another one without driving again."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
+from math import isclose
 from pathlib import Path
 from typing import Any
 
@@ -63,6 +64,9 @@ def scored(episodes: Iterable[tuple[Path, EpisodeRecord]], config: Mapping[str, 
                 raise RunFolderError(f"{folder} has no trajectory to score; delete it and run again")
             try:
                 new = {name: scorers[name].score_stored(trajectory, record.outcome, road) for name in lacking}
+                kept = record.scores.get(UNNAMED)
+                if kept is not None:
+                    new = {name: replace(kept, settings=s.settings) if alike(s, kept) else s for name, s in new.items()}
                 record = replace(record, scores={**record.scores, **new})
                 if UNNAMED not in record.scores:
                     write_text(folder / RECORD, encode(record))
@@ -80,6 +84,23 @@ def lacks(record: EpisodeRecord, name: str, settings: Mapping[str, str]) -> bool
         return False
     score = record.scores.get(name)
     return score is None or score.settings != settings
+
+
+def alike(one: object, other: object) -> bool:
+    """Tell whether two scores are the same but for the rounding of the stored trajectory.
+
+    Release 0.1 did not write which metric a score is of; the score that it kept was taken before the rounding.
+    """
+    if is_dataclass(one) and is_dataclass(other):
+        names = {field.name for field in fields(one)} - {"settings"}
+        return type(one) is type(other) and all(alike(getattr(one, name), getattr(other, name)) for name in names)
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(alike(value, other[key]) for key, value in one.items())
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
+        return len(one) == len(other) and all(map(alike, one, other))
+    if isinstance(one, float) and isinstance(other, float):
+        return isclose(one, other, abs_tol=0.01)
+    return one == other
 
 
 def names_of_scores(metrics: Sequence[tuple[str, Mapping[str, str]]]) -> list[str]:
