@@ -2,7 +2,7 @@
 
 import math
 import types
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from enum import Enum
 from pathlib import Path
 from typing import Any, Literal, Union, get_args, get_origin
@@ -18,32 +18,33 @@ def coerce(value: object, wanted: Any) -> object:  # noqa: ANN401 - an annotatio
     """Turn a YAML value into what an annotation asks for, without guessing.
 
     Whole numbers become floats where a float is wanted, lists become tuples, texts become members of an enumeration or
-    paths. Nothing else is converted: ``"5"`` is not 5 and ``4.0`` is not a number of cars. What is not a plain type (a
-    protocol, say) is left to the constructor.
+    paths. Nothing else is converted: ``"5"`` is not 5 and ``4.0`` is not a number of cars. What is not a plain type is
+    left to the constructor.
 
     Raises:
         MismatchError: If the value does not fit.
     """
-    if wanted in _WORDS or wanted is None:
-        return _plain(value, type(None) if wanted is None else wanted)
-    origin = get_origin(wanted)
+    wanted = type(None) if wanted is None else wanted
+    origin, parts = get_origin(wanted), get_args(wanted)
+    if wanted in _WORDS:
+        return _plain(value, wanted)
     if origin is Literal:
-        return _one_of(value, get_args(wanted))
+        return _one_of(value, parts)
     if origin in (Union, types.UnionType):
-        return _any_of(value, get_args(wanted))
-    if origin in (tuple, list, Sequence) or wanted in (tuple, list):
-        return _sequence(value, origin or wanted, get_args(wanted))
-    if origin in (dict, Mapping) or wanted is dict:
-        return _mapping(value, get_args(wanted))
+        return _any_of(value, parts)
+    if (origin or wanted) in (tuple, list, Sequence):
+        return _sequence(value, origin or wanted, parts)
+    if (origin or wanted) in (dict, Mapping):
+        if not isinstance(value, Mapping):
+            raise MismatchError("a mapping")
+        return {k: _part(v, parts[1] if parts else object, "a mapping to {}") for k, v in value.items()}
     if isinstance(wanted, type) and issubclass(wanted, Enum):
         return value if isinstance(value, wanted) else wanted(_one_of(value, [member.value for member in wanted]))
-    if wanted is Path:
-        return Path(str(_plain(value, str)))
-    return value
+    return Path(str(_plain(value, str))) if wanted is Path else value
 
 
 def _plain(value: object, wanted: type) -> object:
-    if wanted is float and isinstance(value, int) and not isinstance(value, bool):
+    if wanted is float and type(value) is int:
         return float(value)
     if not isinstance(value, wanted) or (isinstance(value, bool) and wanted is not bool):
         raise MismatchError(_WORDS[wanted])
@@ -53,7 +54,7 @@ def _plain(value: object, wanted: type) -> object:
 
 
 def _one_of(value: object, allowed: Sequence[object]) -> object:
-    if value not in allowed or isinstance(value, bool) != isinstance(allowed[list(allowed).index(value)], bool):
+    if not any(value == one and isinstance(value, bool) == isinstance(one, bool) for one in allowed):
         raise MismatchError(f"one of {', '.join(map(str, allowed))}")
     return value
 
@@ -70,32 +71,17 @@ def _any_of(value: object, options: Sequence[object]) -> object:
 
 
 def _sequence(value: object, kind: Any, parts: Sequence[object]) -> object:  # noqa: ANN401
-    if not isinstance(value, list | tuple):
-        raise MismatchError(f"a list{_of(parts)}")
-    if kind is tuple and parts and parts[-1] is not Ellipsis:
-        if len(value) != len(parts):
-            raise MismatchError(f"a list of {len(parts)} values")
-        return tuple(
-            _part(v, part, lambda s: f"a list with {s} in each place") for v, part in zip(value, parts, strict=True)
-        )
-    inner = parts[0] if parts else object
-    items = [_part(v, inner, lambda s: f"a list, each {s}") for v in value]
+    fixed = kind is tuple and len(parts) > 0 and parts[-1] is not Ellipsis
+    if not isinstance(value, list | tuple) or (fixed and len(value) != len(parts)):
+        raise MismatchError(f"a list of {len(parts)} values" if fixed and len(parts) > 1 else "a list")
+    if fixed:
+        return tuple(_part(v, part, "a list with {} in each place") for v, part in zip(value, parts, strict=True))
+    items = [_part(v, parts[0] if parts else object, "a list, each {}") for v in value]
     return items if kind is list else tuple(items)
 
 
-def _mapping(value: object, parts: Sequence[object]) -> object:
-    if not isinstance(value, Mapping):
-        raise MismatchError("a mapping")
-    inner = parts[1] if len(parts) == 2 else object
-    return {k: _part(v, inner, lambda s: f"a mapping to {s}") for k, v in value.items()}
-
-
-def _part(value: object, wanted: object, phrase: Callable[[str], str]) -> object:
+def _part(value: object, wanted: object, phrase: str) -> object:
     try:
         return coerce(value, wanted)
     except MismatchError as err:
-        raise MismatchError(phrase(str(err))) from err
-
-
-def _of(parts: Sequence[object]) -> str:
-    return f" of {len(parts)} values" if parts and parts[-1] is not Ellipsis and len(parts) > 1 else ""
+        raise MismatchError(phrase.format(err)) from err

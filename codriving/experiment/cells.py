@@ -13,8 +13,8 @@ from codriving.errors import ConfigError
 from codriving.experiment.contents import contents
 from codriving.experiment.episode import Labels
 from codriving.experiment.naming import folder_name, swept_values
-from codriving.experiment.objects import make_objects
-from codriving.experiment.scoring import settings_of_metric
+from codriving.experiment.objects import make_method, memory_of, model_of
+from codriving.experiment.scoring import scorers_of, settings_of_metric
 from codriving.runs.identity import CHOICES, CellEntry, NamedFile, fingerprint, settings_of
 from codriving.runs.redaction import redact
 
@@ -89,8 +89,8 @@ def make_cell(
         ConfigError: If an object cannot be built or has no name.
     """
     scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
-    objects = make_objects(resolved)
-    method, (scorer,) = objects.method, objects.metrics.values()
+    method = make_method(resolved, model_of(resolved), memory_of(resolved))
+    (scorer,) = scorers_of(resolved).values()
     method.check_road(scenario.road, scenario.pace.target_speeds, 1 / scenario.pace.decision_frequency)
     for key, made in (("scenario", scenario), ("method", method), ("metrics", scorer.metric)):
         if not made.name:

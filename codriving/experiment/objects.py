@@ -32,8 +32,17 @@ def memory_of(config: Mapping[str, Any]) -> CaseMemory | None:
     return build(node, CaseMemory, "memory", plugins)
 
 
+def make_method(config: Mapping[str, Any], llm: Model | None, memory: CaseMemory | None) -> Method:
+    """Build the method of a config, which is handed what it asks for.
+
+    Raises:
+        ConfigError: If it cannot be built.
+    """
+    return build(config["method"], Method, "method", config["plugins"], {Model: llm, CaseMemory: memory})
+
+
 def make_objects(config: Mapping[str, Any], llm: Model | None = None) -> Objects:
-    """Build the objects of a config; llm and memory are built once, and handed to the method if it asks for them.
+    """Build the objects of a config; llm and memory are built once.
 
     Args:
         llm: The model that reasons in the place of the one that the config chooses.
@@ -45,7 +54,7 @@ def make_objects(config: Mapping[str, Any], llm: Model | None = None) -> Objects
     llm, memory = llm or model_of(config), memory_of(config)
     return Objects(
         environment=build(config["environment"], Simulator, "environment", plugins),
-        method=build(config["method"], Method, "method", plugins, {Model: llm, CaseMemory: memory}),
+        method=make_method(config, llm, memory),
         metrics=scorers_of(config),
         llm=llm,
         memory=memory,

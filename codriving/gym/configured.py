@@ -10,6 +10,7 @@ import numpy as np
 from codriving.config.build import build
 from codriving.config.choices import check_config_dir, choices
 from codriving.config.compose import compose
+from codriving.datatypes.parts import Scenario
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
 from codriving.reasoning.sharing.cda import CdaLevel
@@ -44,6 +45,7 @@ def configured(
     tokens = [f"scenario.{key}={_written(f'scenario.{key}', value)}" for key, value in settings.items()]
     config = compose([f"scenario={name}", f"cda={cda}", *overrides, *tokens], folder)
     plugins = config["plugins"]
+    build(config["scenario"], Scenario, "scenario", plugins)
     environment = build(config["environment"], Environment, "environment", plugins)
     return environment, build(config["cda"], CdaLevel, "cda", plugins)
 

@@ -110,6 +110,8 @@ def test_folders_are_readable() -> None:
 def test_a_cell_is_labelled_by_its_objects_and_an_object_without_a_name_is_refused() -> None:
     config = {
         "plugins": ["toy_drive"],
+        "llm": None,
+        "memory": None,
         "scenario": {"_target_": "toy_drive.ToyScenario"},
         "method": {"_target_": "toy_drive.ToyMethod"},
         "metrics": {"_target_": "toy_drive.ToyMetrics"},
@@ -117,7 +119,7 @@ def test_a_cell_is_labelled_by_its_objects_and_an_object_without_a_name_is_refus
     assert make_cell(config).metrics == "toy"
     assert make_cell(config).labels == Labels("toy", *("steady", "full", "rules"))
     assert make_cell(config).folder == folder_name(LABELS)
-    with pytest.raises(ConfigError, match="method: ToyScenario needs an attribute 'variant'"):
+    with pytest.raises(ConfigError, match=r"method must be Method, but toy_drive\.ToyScenario is none"):
         make_cell({**config, "method": config["scenario"]})
 
 

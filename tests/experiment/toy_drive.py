@@ -14,7 +14,8 @@ from codriving.datatypes.action import Action
 from codriving.datatypes.deliberation import Deliberation
 from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.outcome import Collision, Ending, Outcome
-from codriving.datatypes.parts import Method, Metric, Simulator
+from codriving.datatypes.parts import Method, Metric, Scenario, Simulator
+from codriving.datatypes.scene import Scene
 from codriving.datatypes.score import Pet, Score, TravelScore
 from codriving.datatypes.trajectory import Track, Trajectory
 from codriving.datatypes.vehicle import Intent, Kind, VehicleState
@@ -29,12 +30,16 @@ LABELS = Labels("toy", "steady", "full", "rules")
 LANE = ("a", "b", 0)
 
 
-class ToyScenario:
+class ToyScenario(Scenario):
     """Nothing but a name."""
 
     name = "toy"
-    road = None
+    road = None  # type: ignore[assignment]
     pace = SimpleNamespace(target_speeds=(0.0, 5.0), decision_frequency=1.0)
+
+    def scene(self, seed: int) -> Scene:
+        """None at all."""
+        raise NotImplementedError
 
 
 class ToyEnvironment(Simulator):

@@ -16,6 +16,7 @@ from codriving.experiment.plan import Plan
 from codriving.experiment.processes import Processes
 
 EPISODES = 10
+EMPTY: dict[str, object] = {"seed": 0, "plugins": [], "llm": None, "memory": None, "method": None}
 
 
 def toy(**settings: Any) -> Callable[[Mapping[str, Mapping[str, Any]]], BuildToy]:
@@ -24,7 +25,7 @@ def toy(**settings: Any) -> Callable[[Mapping[str, Mapping[str, Any]]], BuildToy
 
 
 def toy_cell(swept: Mapping[str, str] | None = None, **settings: object) -> Cell:
-    return Cell(folder_name(LABELS), LABELS, {"seed": 0, **settings}, "standard", swept or {})
+    return Cell(folder_name(LABELS), LABELS, {**EMPTY, **settings}, "standard", swept or {})
 
 
 def toy_plan(
