@@ -105,8 +105,9 @@ def test_cells_are_added_beside_those_that_are_there(tmp_path: Path) -> None:
 def test_the_config_of_each_cell_is_kept(tmp_path: Path) -> None:
     cells = (toy_cell({"a": "4"}, a=4), toy_cell({"a": "8"}, a=8))
     folder = drive(toy_plan(tmp_path, cells=cells, episodes=1), build=toy()).folder
-    assert (folder / "configs" / "toy-steady-full-a=8.yaml").read_text() == "seed: 0\na: 8\n"
-    assert (folder / "config.yaml").read_text() == "seed: 0\na: 4\n"
+    rest = "plugins: []\nllm: null\nmemory: null\nmethod: null\n"
+    assert (folder / "configs" / "toy-steady-full-a=8.yaml").read_text() == f"seed: 0\n{rest}a: 8\n"
+    assert (folder / "config.yaml").read_text() == f"seed: 0\n{rest}a: 4\n"
 
 
 def test_a_run_that_goes_on_with_another_version_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
