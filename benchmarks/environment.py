@@ -9,7 +9,7 @@ from highway_env.envs.intersection_env import IntersectionEnv
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.environment.environment import Environment
 
 SEEDS = (0, 1, 2)

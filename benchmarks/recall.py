@@ -10,8 +10,8 @@ from time import perf_counter
 
 import numpy as np
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Verdict
+from codriving.datatypes.world import Action
 from codriving.memory.features import FeatureEmbedder
 from codriving.memory.snapshot import open_snapshot
 from codriving.memory.store import MemoryStore

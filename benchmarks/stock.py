@@ -14,8 +14,7 @@ from highway_env.vehicle.kinematics import Vehicle
 from highway_env.vehicle.objects import Obstacle
 
 from codriving.datatypes.road import Arc, Lane, Road, Sine, beside
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind, Start
 from codriving.environment.environment import Environment
 from codriving.environment.network import PAINT
 from codriving.environment.traffic.route_following import route_path

@@ -3,9 +3,16 @@
 What a rule of one's own needs is here by name; see docs/methods/README.md.
 """
 
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
-from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.request import Request, best_subset, in_order
+from codriving.datatypes.order import ApproachingVehicle, Instance
+from codriving.reasoning.ordering.protocol import (
+    JointPlan,
+    JointPlanner,
+    Ordering,
+    OrderRule,
+    Request,
+    best_subset,
+    in_order,
+)
 from codriving.reasoning.ordering.schedule import evacuation_time, repaired, schedule, total_delay
 
 __all__ = [

@@ -7,8 +7,7 @@ which draws a scene.
 
 from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Arc, Block, Lane, LaneId, Line, Point, Road, Route, Sine, Straight, Turn
-from codriving.datatypes.scene import Scene, Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind, Scene, Start
 from codriving.environment.scenarios.pace import Pace
 from codriving.environment.scenarios.placement import Crowd, place
 from codriving.environment.scenarios.shapes import bend, turned

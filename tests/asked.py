@@ -12,7 +12,7 @@ from codriving.llm.ledger import Ledger
 from codriving.llm.question import Question
 from codriving.llm.scripted import Script, ScriptedChat
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.sharing import CdaLevel
 
 
 @dataclass

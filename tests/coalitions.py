@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance, Pair
+from codriving.datatypes.order import ApproachingVehicle, Instance, Pair
 from codriving.methods.coop_game.payoff import Goal, Payoff, Scale
 from codriving.reasoning.ordering.protocol import JointPlan
 from codriving.reasoning.ordering.schedule import schedule, timed

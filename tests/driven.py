@@ -9,21 +9,17 @@ import yaml
 from worlds import Car, Junction, Thoughts
 
 from codriving.config.locate import conf_dir
-from codriving.datatypes.action import Action
-from codriving.datatypes.deliberation import ReasonedDeliberation
-from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Method
-from codriving.datatypes.trajectory import Trajectory
-from codriving.datatypes.vehicle import Kind
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.record import Outcome, Trajectory
+from codriving.datatypes.situation import ReasonedDeliberation
+from codriving.datatypes.world import Action, Kind, WorldState
 from codriving.environment.environment import Environment
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.ordered import Ordered
-from codriving.reasoning.execution.executor import Executor
 from codriving.reasoning.execution.layered import Layered
-from codriving.reasoning.execution.planned import Planned
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.execution.planned import Executor, Planned
 from codriving.reasoning.ordering.protocol import Ordering, OrderRule
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.rollout import rollout
 
 

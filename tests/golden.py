@@ -25,9 +25,9 @@ from pathlib import Path
 
 from worlds import Car, Junction, Thoughts, car, order_of, standing
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.situation import Situation
+from codriving.datatypes.world import Action
 from codriving.reasoning.decision.rules import decide_one
 from codriving.reasoning.ordering.problem import Problem
 from codriving.reasoning.safety.safety_input import SafetyInput

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from codriving.datatypes.vehicle import Intent, Kind
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import Intent, Kind, WorldState
 from codriving.geometry.road_map import RoadMap
 
 

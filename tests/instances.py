@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from random import Random
 
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
+from codriving.datatypes.order import ApproachingVehicle, Instance
 from codriving.reasoning.ordering.protocol import JointPlan
 from codriving.reasoning.ordering.schedule import schedule
 

@@ -9,10 +9,9 @@ import numpy as np
 import yaml
 
 from codriving.config.locate import conf_dir
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Conflict, Relation
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Memory, Verdict
-from codriving.datatypes.vehicle import Kind, VehicleState
+from codriving.datatypes.order import Conflict, Relation
+from codriving.datatypes.world import Action, Kind, VehicleState
 from codriving.memory.effect import LESSONS, DecisionHistory, HistoryStep, OwnCollision
 from codriving.memory.features import FeatureEmbedder
 from codriving.memory.frozen import FrozenMemory

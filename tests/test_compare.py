@@ -16,8 +16,8 @@ from codriving.experiment.compare import EXPERIMENT
 PACKAGE = "toy_methods"
 SOURCE = '''"""Methods for tests."""
 from dataclasses import dataclass, field
-from codriving.datatypes.action import Action
-from codriving.datatypes.deliberation import Deliberation
+from codriving.datatypes.world import Action
+from codriving.datatypes.situation import Deliberation
 from codriving.datatypes.parts import Method
 
 

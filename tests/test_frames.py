@@ -9,8 +9,7 @@ import pytest
 
 import codriving
 from codriving.cli.app import main
-from codriving.datatypes.action import Action
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import Action, WorldState
 from codriving.environment.environment import Environment
 
 OURS = Path(codriving.__file__).parent

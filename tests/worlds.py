@@ -5,23 +5,19 @@ from dataclasses import dataclass, replace
 from math import cos, sin
 from typing import Any
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.order import PassingOrder, Precedence
+from codriving.datatypes.order import Conflict, PassingOrder, Precedence
 from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import LaneId, Road, beside
-from codriving.datatypes.scene import Scene, Start
-from codriving.datatypes.scene_description import SceneDescription
-from codriving.datatypes.vehicle import Intent, Kind, VehicleState
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import SceneDescription
+from codriving.datatypes.world import Action, Intent, Kind, Scene, Start, VehicleState, WorldState
 from codriving.environment.environment import Environment
 from codriving.geometry.lane_path import lane_path
 from codriving.reasoning.conflicts import find_conflicts
-from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.coordinator import RuleCoordinator
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.expectation import expect
 from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.prediction.plans import PLANS
+from codriving.reasoning.prediction.rollout import PLANS
 from codriving.reasoning.safety.safety_input import CONTINUATIONS, LONGITUDINAL, SafetyInput, safety_input
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
 from codriving.reasoning.sharing.sharing import SharedStates, StateSharing

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.animation.window import Area, Window, bounds, rows
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import Track, Trajectory
+from codriving.datatypes.world import Kind
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.road_map import RoadMap
 

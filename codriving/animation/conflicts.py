@@ -8,8 +8,8 @@ from codriving.animation.canvas import Canvas
 from codriving.animation.content import DrawnConflict, DrawnVehicle
 from codriving.animation.style import BAND, HALO, PAPER, SEVERITIES
 from codriving.animation.window import Area, FreeSpace, Points, Window, beside
-from codriving.datatypes.conflict import Severity
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.order import Severity
+from codriving.datatypes.world import Kind
 from codriving.geometry.path import Path
 from codriving.geometry.road_map import RoadMap
 

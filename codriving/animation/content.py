@@ -6,11 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Relation, Severity
-from codriving.datatypes.outcome import Outcome
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.order import Relation, Severity
+from codriving.datatypes.record import Outcome, Track, Trajectory
+from codriving.datatypes.world import Action, Kind
 from codriving.geometry.road_map import RoadMap
 
 

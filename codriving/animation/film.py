@@ -19,10 +19,9 @@ from codriving.animation.camera import Camera
 from codriving.animation.content import StoredFrames
 from codriving.animation.panel import natural
 from codriving.animation.picture import Picture
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import EpisodeRecord, Trajectory
 from codriving.datatypes.road import Road
-from codriving.datatypes.trajectory import Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.errors import FilmError
 from codriving.geometry.road_map import road_map
 

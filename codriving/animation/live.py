@@ -9,10 +9,8 @@ from numpy.typing import NDArray
 
 from codriving.animation.content import DrawnDecision, DrawnVehicle, FrameContent, deliberated
 from codriving.animation.style import check_size
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Outcome
-from codriving.datatypes.vehicle import Kind
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.record import Outcome
+from codriving.datatypes.world import Action, Kind, WorldState
 from codriving.geometry.road_map import RoadMap
 
 if TYPE_CHECKING:

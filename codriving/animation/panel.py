@@ -12,7 +12,7 @@ from codriving.animation.signs import action_glyph, tick
 from codriving.animation.style import BAND, BLUE, FAINT, GREEN, HAIR, INK, KINDS, PAPER, SEVERITIES
 from codriving.animation.vehicles import draw_plan, draw_vehicles
 from codriving.animation.window import Area, Window
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 
 _FIRST, _LINE, _GAP = 20.0, 16.0, 8.0
 """Heights of a card's first line, of its others, and of the space after it [px]."""

@@ -12,8 +12,8 @@ from codriving.animation.signs import cross, target, tick
 from codriving.animation.style import GREEN, GROUND, INK, PANEL, PAPER, VERMILION
 from codriving.animation.vehicles import draw_names, draw_plan, draw_vehicles, way_ahead
 from codriving.animation.window import Area, FreeSpace, Window
-from codriving.datatypes.outcome import Ending, Outcome
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import Ending, Outcome
+from codriving.datatypes.world import Kind
 from codriving.geometry.road_map import RoadMap
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from codriving.animation.canvas import Canvas
 from codriving.animation.style import ACTIONS, PAPER, VERMILION
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 
 _UP = np.array([(-0.5, 0.1), (0.0, -0.4), (0.5, 0.1)])
 _LEFT = np.array([(0.5, 0.0), (-0.5, 0.0), (-0.1, -0.4), (-0.5, 0.0), (-0.1, 0.4)])

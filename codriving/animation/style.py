@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Severity
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.order import Severity
+from codriving.datatypes.world import Action, Kind
 from codriving.errors import ConfigError
 
 PAPER, GROUND, ASPHALT, PAINT = "#ffffff", "#f3f2ec", "#cfd3d9", "#ffffff"

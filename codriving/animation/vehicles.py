@@ -10,7 +10,7 @@ from codriving.animation.content import DrawnVehicle, FrameContent
 from codriving.animation.signs import action_glyph
 from codriving.animation.style import BLUE, HALO, INK, KINDS, PAPER
 from codriving.animation.window import FreeSpace, Points, Window, beside, bounds
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.geometry.road_map import RoadMap
 
 _SMALLEST = 15.0

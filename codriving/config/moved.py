@@ -11,7 +11,7 @@ from codriving.config.locate import PACKAGE
 FACES = ("scenarios", "ordering")
 """Modules from which plug-ins are meant to import; what these offer is named by them."""
 
-RENAMED = {"Metrics": "Metric", "Reasoner": "Model"}
+RENAMED = {"Entrant": "ApproachingVehicle", "Metrics": "Metric", "Reasoner": "Model"}
 """Names that were changed, too."""
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 
 
 class Verdict(StrEnum):

@@ -5,17 +5,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.deliberation import Deliberation
-from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.experience import Experience, Interaction, Memory
-from codriving.datatypes.outcome import Outcome
+from codriving.datatypes.record import Outcome, Score, Trajectory
 from codriving.datatypes.road import Road
-from codriving.datatypes.scene import Scene
-from codriving.datatypes.score import Score
-from codriving.datatypes.situation import Situation
-from codriving.datatypes.trajectory import Trajectory
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import Deliberation, Situation
+from codriving.datatypes.world import Action, DrivingModel, Scene, WorldState
 
 RoadMap: TypeAlias = Any
 """The precomputed road, of which this room may not know: ``codriving.geometry.road_map.RoadMap``."""

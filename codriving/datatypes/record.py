@@ -1,9 +1,136 @@
-"""What is kept of an episode: one record that every table is made from."""
+"""What is kept of an episode: what was driven, how it ended and how it scored, as tables are made from it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Literal
 
-from codriving.datatypes.outcome import Outcome
-from codriving.datatypes.score import Score
+import numpy as np
+from numpy.typing import NDArray
+
+from codriving.datatypes.world import Kind
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """The recorded motion of one vehicle, from its start until it left the road."""
+
+    id: str
+    kind: Kind
+    route: str
+    first_step: int
+    x: NDArray[np.float64]  # Position of the centre (n,) [m]
+    y: NDArray[np.float64]  # Position of the centre (n,) [m]
+    heading: NDArray[np.float64]  # (n,) [rad]
+    speed: NDArray[np.float64]  # (n,) [m/s]
+    acceleration: NDArray[np.float64]  # (n,) [m/s2]
+    action: tuple[str, ...]  # Name of the action in force at each row (n,); empty for HDVs
+    arrived: float | None  # Time of arrival [s], or None
+    length: float = 5.0  # [m]
+    width: float = 2.0  # [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """The motion of all vehicles of one episode."""
+
+    step: float  # Time between two rows [s]
+    tracks: tuple[Track, ...]
+
+
+class Ending(StrEnum):
+    """The ways in which an episode ends; ``error`` is never counted as driving."""
+
+    SUCCESS = "success"
+    COLLISION = "collision"
+    TIMEOUT = "timeout"
+    OFF_ROAD = "off_road"
+    ERROR = "error"
+
+
+@dataclass(frozen=True, slots=True)
+class Collision:
+    """A true overlap of two footprints."""
+
+    time: float  # When the footprints first overlapped [s]
+    striker: str
+    struck: str
+    pair: str  # ``CAV-CAV``, ``CAV-HDV``, ``HDV-HDV``, ``CAV-block`` or ``HDV-block``
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """The one end of an episode."""
+
+    ending: Ending
+    time: float  # Simulated time at the end [s]
+    arrivals: dict[str, float]  # Arrival time of each CAV that arrived [s], by id
+    collision: Collision | None = None
+    bystander_collisions: tuple[Collision, ...] = ()
+    off_road: tuple[str, ...] = ()
+    message: str = ""  # What went wrong, for ``error``
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """The vehicles of the collision, or those that left the road."""
+        return self.off_road if self.collision is None else (self.collision.striker, self.collision.struck)
+
+
+@dataclass(frozen=True, slots=True)
+class Pet:
+    """The post-encroachment time of one pair of vehicles."""
+
+    first: str
+    second: str
+    kind: str  # Kind of the conflict, for instance ``crossing``
+    value: float  # Time between the first leaving and the second entering [s]
+
+
+@dataclass(frozen=True, slots=True)
+class TravelScore:
+    """How one vehicle travelled.
+
+    Attributes:
+        delay: Travel time beyond that of free flow [s], or None where the metric has no such notion.
+    """
+
+    id: str
+    velocity: float  # Mean travel velocity [m/s]
+    time: float  # Travel time [s]
+    delay: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class NamedNumber:
+    """A number that a metric measures besides; a column of its own in the tables.
+
+    Attributes:
+        name: Name of the column, for instance ``waiting_time``.
+        value: None where it is not defined, which is not zero.
+        unit: Its unit, for instance ``s``; empty without one.
+        better: Whether a higher or a lower number is better; None where neither is.
+        shown: Whether its mean is a column on the screen and in Markdown, too.
+    """
+
+    name: str
+    value: float | None
+    unit: str = ""
+    better: Literal["higher", "lower"] | None = None
+    shown: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """The measured quality of one episode.
+
+    Attributes:
+        settings: Those of the metric that gave it, as JSON by key; filled in by what calls the metric.
+    """
+
+    success: bool
+    pets: tuple[Pet, ...] = ()
+    travels: tuple[TravelScore, ...] = ()
+    numbers: tuple[NamedNumber, ...] = ()
+    settings: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,118 @@
-"""Everything a decider is told about one CAV; rules and language models get the same."""
+"""What one CAV knows of the world around it, what a decider is told of that, and all that is decided in one step."""
 
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from enum import StrEnum
+from functools import lru_cache
+from math import cos, hypot, isfinite, sin
+from operator import attrgetter
+from typing import Any, cast
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.experience import Memory
-from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.scene_description import SceneDescription
+from codriving.datatypes.order import Conflict, PassingOrder
+from codriving.datatypes.road import LaneId
+from codriving.datatypes.world import Action, Intent, Kind, VehicleState
+
+
+class Role(StrEnum):
+    """What a neighbour is to the ego vehicle."""
+
+    LEADING = "leading"
+    REARING = "rearing"
+    CONFLICT = "conflict"
+    OTHER = "other"
+
+
+@dataclass(frozen=True, slots=True)
+class TrackedVehicle:
+    """A vehicle as far as the ego vehicle knows it; what it does not know is None.
+
+    Attributes:
+        routes: Each route that it may be on, with its arc length there [m]; one entry if it shared its route.
+        gap: Free distance along the ego lane for a leading or rearing vehicle [m].
+    """
+
+    id: str
+    kind: Kind | None
+    x: float  # [m]
+    y: float  # [m]
+    speed: float  # [m/s]
+    heading: float | None  # [rad]
+    acceleration: float | None  # [m/s2]
+    lane: LaneId | None
+    length: float  # [m]
+    routes: tuple[tuple[str, float], ...] = ()
+    intent: Intent | None = None
+    standing: float = 0.0  # How long it has been standing [s]
+    role: Role = Role.OTHER
+    gap: float | None = None
+
+    @property
+    def is_cav(self) -> bool:
+        """Whether it has shared its intent, as only a CAV can."""
+        return self.intent is not None
+
+    @property
+    def target(self) -> float:
+        """Target speed; its speed where that is not known [m/s]."""
+        return self.speed if self.intent is None else self.intent.target_speed
+
+
+@dataclass(frozen=True, slots=True)
+class LaneChange:
+    """A lane change that the ego vehicle's route asks for."""
+
+    lane: LaneId
+    room: float  # Distance within which it has to be begun, since the present lane ends [m]
+
+
+@dataclass(frozen=True, slots=True)
+class SceneDescription:
+    """The surroundings of one CAV, by lane and by relation.
+
+    Attributes:
+        covers: Other routes onto whose lanes its body reaches while it changes lanes, with its arc length there [m].
+    """
+
+    ego: VehicleState
+    intent: Intent
+    place: float  # Its arc length along its route [m]
+    adjacent_lanes: tuple[LaneId, ...]
+    conflict_lanes: tuple[LaneId, ...]
+    neighbours: tuple[TrackedVehicle, ...]
+    covers: tuple[tuple[str, float], ...] = ()
+    must_change: LaneChange | None = None  # The lane change that its route asks for next, or None
+
+    def neighbour(self, name: str) -> TrackedVehicle | None:
+        """Return a neighbour by id, or None if the ego vehicle does not know of it."""
+        return next((n for n in self.neighbours if n.id == name), None)
+
+    def distance(self, n: TrackedVehicle) -> float:
+        """Return the distance of the centres [m]."""
+        return hypot(n.x - self.ego.x, n.y - self.ego.y)
+
+    def by_distance(self) -> list[TrackedVehicle]:
+        """Return the neighbours, nearest first."""
+        return sorted(self.neighbours, key=lambda n: (self.distance(n), n.id))
+
+    def offset(self, n: TrackedVehicle) -> tuple[float, float]:
+        """Return how far ahead and how far to the right of the ego vehicle a vehicle is [m]."""
+        dx, dy, along, across = n.x - self.ego.x, n.y - self.ego.y, cos(self.ego.heading), sin(self.ego.heading)
+        return along * dx + across * dy, along * dy - across * dx
+
+    def next_in(self, role: Role) -> TrackedVehicle | None:
+        """Return the vehicle that drives next ahead (leading) or behind (rearing) on the lane, or None."""
+        return next((n for n in self.neighbours if n.role is role), None)
+
+    def vehicles(self) -> dict[str, TrackedVehicle]:
+        """Return the ego vehicle and its neighbours, by id and in the order of the ids."""
+        v = self.ego
+        routes = ((self.intent.route, self.place), *self.covers)
+        ego = TrackedVehicle(
+            v.id, v.kind, v.x, v.y, v.speed, v.heading, v.acceleration, v.lane, v.length, routes, self.intent
+        )
+        return {v.id: v for v in sorted((ego, *self.neighbours), key=lambda v: v.id)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,3 +161,106 @@ class Decision:
     action: Action
     reason: str
     recalled: tuple[int, ...] = ()
+
+
+class Deliberation(ABC):
+    """One decision step of a method.
+
+    Attributes:
+        counts: Counters of this step (fallbacks, repaired orders, cost, ...), summed over the episode.
+        transcript: What a language model was asked, one line of ``transcript.jsonl`` a question.
+    """
+
+    counts: Mapping[str, float]
+    transcript: tuple[dict[str, Any], ...] = ()
+
+    @property
+    @abstractmethod
+    def actions(self) -> dict[str, Action]:
+        """The action of each CAV, by id."""
+
+    @abstractmethod
+    def as_dict(self) -> dict[str, Any]:
+        """Return the step as one JSON-ready line of ``decisions.jsonl``."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReasonedDeliberation(Deliberation):
+    """A decision step in which the situation of each CAV is described."""
+
+    time: float  # Simulated time [s]
+    step: int
+    situations: tuple[Situation, ...]
+    decisions: tuple[Decision, ...]
+    counts: Mapping[str, float]
+    transcript: tuple[dict[str, Any], ...] = ()
+
+    @property
+    def actions(self) -> dict[str, Action]:
+        return {d.ego: d.action for d in self.decisions}
+
+    def as_dict(self) -> dict[str, Any]:
+        # CAVs that go by the same order share its entry.
+        written = {key: _order(order) for key, order in {id(s.order): s.order for s in self.situations}.items()}
+        return {
+            "time": self.time,
+            "step": self.step,
+            "cavs": [_entry(s, d, written[id(s.order)]) for s, d in zip(self.situations, self.decisions, strict=True)],
+        }
+
+
+def _order(order: PassingOrder) -> dict[str, Any]:
+    return {
+        "sequence": list(order.sequence),
+        "binding": order.binding,
+        "precedences": [_plain(p) for p in order.precedences],
+    }
+
+
+def _entry(situation: Situation, decision: Decision, order: dict[str, Any]) -> dict[str, Any]:
+    removed = [a for a in situation.assessments if not a.safe]
+    return {
+        "id": decision.ego,
+        "action": str(decision.action),
+        "reason": decision.reason,
+        "scene": _plain(situation.scene),
+        "conflicts": [
+            {**_plain(c), "clear_time": _plain(t)}
+            for c, t in zip(situation.conflicts, situation.clear_times, strict=True)
+        ],
+        "order": order,
+        "allowed": [str(a) for a in situation.allowed],
+        "removed": {str(a.action): list(a.reasons) for a in removed},
+        "assessments": [_plain(a) for a in situation.assessments],
+        "memories": [memory.text for memory in situation.memories],
+        "similarities": [_plain(memory.similarity) for memory in situation.memories],
+        "recalled": list(decision.recalled),
+    }
+
+
+def _plain(value: Any) -> Any:  # noqa: ANN401 - any JSON value
+    """Turn dataclasses into dicts, round floats to a millionth, and turn what is no finite number into None."""
+    if isinstance(value, float):
+        return round(value, 6) if isfinite(value) else None
+    kind = type(value)
+    if kind is str or kind is int or kind is bool or value is None:
+        return value
+    if isinstance(value, (tuple, list)):
+        return [_plain(v) for v in value]
+    record = _record(cast("Hashable", kind))
+    if record is not None:
+        names, read = record
+        return {name: v if type(v) is str else _plain(v) for name, v in zip(names, read(value), strict=True)}
+    if isinstance(value, dict):
+        return {k: _plain(v) for k, v in value.items()}
+    return str(value) if isinstance(value, str) else value
+
+
+@lru_cache(maxsize=64)
+def _record(kind: Hashable) -> tuple[tuple[str, ...], Callable[[Any], tuple[Any, ...]]] | None:
+    """Names of the fields of a dataclass, in their order, and what reads all of them; None for any other kind."""
+    names = tuple(f.name for f in fields(kind)) if is_dataclass(kind) else ()
+    if len(names) == 1:
+        # Asked for a single name, an attrgetter would return the bare value.
+        return names, lambda value: (getattr(value, names[0]),)
+    return (names, attrgetter(*names)) if names else None

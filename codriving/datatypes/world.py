@@ -1,10 +1,92 @@
-"""The world at one moment, as it is handed to a method."""
+"""The world at one moment, as it is handed to a method: vehicles, their intents and actions, and where they start."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.vehicle import Intent, Kind, VehicleState
+from codriving.datatypes.road import LaneId
+
+
+class Kind(StrEnum):
+    """Who drives: a connected automated vehicle or a human."""
+
+    CAV = "CAV"
+    HDV = "HDV"
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleState:
+    """The physical state of one vehicle, as others near enough could perceive it."""
+
+    id: str  # Name, unique in the episode, for instance ``CAV1``
+    kind: Kind
+    x: float  # Position of the centre [m]
+    y: float  # Position of the centre [m]
+    heading: float  # [rad]
+    speed: float  # Speed along the heading [m/s]
+    acceleration: float  # Commanded acceleration of the last simulation step [m/s2]
+    lane: LaneId
+    length: float = 5.0  # [m]
+    width: float = 2.0  # [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Intent:
+    """What a CAV means to do; known to others only if it shares it (CDA class B)."""
+
+    route: str
+    target_speed: float  # Speed that the controller tracks [m/s]
+    target_lane: LaneId
+
+
+class Action(StrEnum):
+    """A high-level decision that lower-level controllers turn into throttle and steering."""
+
+    SLOWER = "SLOWER"
+    IDLE = "IDLE"
+    FASTER = "FASTER"
+    LANE_LEFT = "LANE_LEFT"
+    LANE_RIGHT = "LANE_RIGHT"
+
+
+@dataclass(frozen=True, slots=True)
+class DrivingModel:
+    """The vehicle model seen through the five actions (paper Eq. 1)."""
+
+    target_speeds: tuple[float, ...]  # Allowed target speeds, uniformly spaced and rising [m/s]
+    speed_gain: float  # Proportional gain K_a of the speed law a = K_a (v_r - v) [1/s]
+    step: float  # Simulation step [s]
+    decision_interval: float  # Time between two decisions, a multiple of the step [s]
+    detection_range: float  # Radius within which a CAV perceives other vehicles [m]
+
+    @property
+    def top_speed(self) -> float:
+        """Highest target speed [m/s]."""
+        return self.target_speeds[-1]
+
+    @property
+    def substeps(self) -> int:
+        """Simulation steps per decision."""
+        return round(self.decision_interval / self.step)
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """The beginning of one vehicle."""
+
+    id: str
+    kind: Kind
+    route: str
+    position: float  # Arc length along the route [m]
+    speed: float  # Initial speed [m/s]
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Everything that the seed decides before the first step."""
+
+    seed: int
+    starts: tuple[Start, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,9 +5,7 @@ from collections.abc import Mapping
 from highway_env.road.road import Road
 from highway_env.vehicle.controller import MDPVehicle
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.settings import ControlGains, Corrections
 from codriving.environment.traffic.route_following import RouteFollower, RoutePath
 

@@ -5,7 +5,7 @@ from itertools import combinations
 
 from highway_env.vehicle.objects import RoadObject
 
-from codriving.datatypes.outcome import Collision
+from codriving.datatypes.record import Collision
 from codriving.environment.traffic.route_following import RouteFollower
 from codriving.geometry.box import corners, overlap
 

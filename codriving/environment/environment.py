@@ -4,14 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Scenario, Simulator
-from codriving.datatypes.scene import Scene
-from codriving.datatypes.trajectory import Trajectory
-from codriving.datatypes.vehicle import Kind
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.record import Outcome, Trajectory
+from codriving.datatypes.world import Action, DrivingModel, Kind, Scene, WorldState
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.network import build_network
 from codriving.environment.recorder import Recorder, snapshot

@@ -4,10 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from codriving.datatypes.record import Track, Trajectory
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Intent, Kind, VehicleState
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import Intent, Kind, VehicleState, WorldState
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.traffic.route_following import RouteFollower
 from codriving.environment.traffic.traffic import Traffic

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.datatypes.record import Collision, Ending, Outcome
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.collisions import find_block_collisions, find_collisions
 from codriving.environment.traffic.route_following import RouteFollower

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config.locate import experiments_dir
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.errors import ModelError, ModelUnavailableError
 from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell, with_metrics

@@ -7,11 +7,8 @@ from dataclasses import dataclass, field
 from time import perf_counter, thread_time
 from typing import Any
 
-from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.parts import Method, Simulator
-from codriving.datatypes.record import EpisodeRecord, Participant
-from codriving.datatypes.score import Score
-from codriving.datatypes.trajectory import Trajectory
+from codriving.datatypes.record import Ending, EpisodeRecord, Outcome, Participant, Score, Trajectory
 from codriving.errors import ModelError, ModelUnavailableError
 from codriving.metrics.scorer import Scorer
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config.build import build
-from codriving.datatypes.outcome import Ending
 from codriving.datatypes.parts import Scenario
+from codriving.datatypes.record import Ending
 from codriving.errors import UserError
 from codriving.experiment.stored import read_film
 from codriving.experiment.worker import AfterEpisode, Unit

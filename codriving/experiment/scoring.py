@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config.build import TARGET, build
-from codriving.datatypes.outcome import Ending
 from codriving.datatypes.parts import Metric, Scenario
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.errors import RunFolderError
 from codriving.metrics.scorer import Scorer
 from codriving.runs.atomic import write_text

@@ -9,9 +9,8 @@ from codriving.config.build import TARGET, build
 from codriving.config.choices import choices
 from codriving.config.compose import compose
 from codriving.datatypes.parts import Scenario
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import EpisodeRecord, Trajectory
 from codriving.datatypes.road import Road
-from codriving.datatypes.trajectory import Trajectory
 from codriving.errors import RunFolderError
 from codriving.runs.episode_folder import EPISODES, read_decisions, read_record
 from codriving.runs.identity import CellEntry

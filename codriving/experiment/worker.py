@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from codriving.datatypes.outcome import Ending
 from codriving.datatypes.parts import CaseMemory, Method, Model, Simulator
+from codriving.datatypes.record import Ending
 from codriving.errors import UserError
 from codriving.experiment.episode import EpisodeResult, Labels, failed_result, run_episode
 from codriving.metrics.scorer import Scorer

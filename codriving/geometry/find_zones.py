@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codriving.datatypes.conflict import Relation
+from codriving.datatypes.order import Relation
 from codriving.geometry.box import Footprint
 from codriving.geometry.collision_set import Cells, IntArray, cell_separation, collision_set, components
 from codriving.geometry.curve import FloatArray

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from codriving.datatypes.conflict import Relation
+from codriving.datatypes.order import Relation
 from codriving.geometry.box import Footprint
 from codriving.geometry.curve import FloatArray
 from codriving.geometry.path import Path

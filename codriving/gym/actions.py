@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.config.schema import LARGEST_SEED
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import EpisodeError
 
 FIRST_DRAWN = 1_000_000

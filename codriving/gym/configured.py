@@ -13,7 +13,7 @@ from codriving.config.compose import compose
 from codriving.datatypes.parts import Scenario
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
-from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.sharing import CdaLevel
 
 READ = ("scenario", "environment", "cda", "plugins")
 """Keys of the root that make a difference here."""

@@ -3,10 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.vehicle import Kind
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.record import Ending
+from codriving.datatypes.world import Action, Kind, WorldState
 from codriving.environment.environment import Environment
 from codriving.errors import EpisodeError, ScenarioError
 from codriving.gym.actions import action_mask, action_of

@@ -11,17 +11,14 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
-from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.road import LaneId, Route, beside
-from codriving.datatypes.scene_description import TrackedVehicle
-from codriving.datatypes.vehicle import Intent, VehicleState
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import DrivingModel, Intent, VehicleState, WorldState
 from codriving.environment.scenarios.pace import TOP_SPEED
 from codriving.errors import ConfigError
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.sharing.cda import CdaLevel
-from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, SensedStates, SharedStates
+from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, CdaLevel, SensedStates, SharedStates
 
 
 class Intention(IntEnum):

@@ -5,8 +5,7 @@ from dataclasses import dataclass, fields
 from math import isfinite
 from typing import Any
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.vehicle import VehicleState
+from codriving.datatypes.world import Action, VehicleState
 from codriving.errors import ConfigError
 
 

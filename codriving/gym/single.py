@@ -8,11 +8,9 @@ import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Discrete
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Road
-from codriving.datatypes.scene import Scene
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Action, Kind, Scene
 from codriving.environment.environment import Environment
 from codriving.gym.actions import ACTIONS, check_seed, draw_seed
 from codriving.gym.configured import configured

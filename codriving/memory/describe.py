@@ -2,10 +2,9 @@
 
 from math import isfinite
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Description
-from codriving.datatypes.scene_description import Role, SceneDescription
-from codriving.datatypes.situation import Situation
+from codriving.datatypes.situation import Role, SceneDescription, Situation
+from codriving.datatypes.world import Action
 
 DRIVERS = {"CAV": "CAV", "HDV": "human", None: "unknown"}
 

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import cos, sin
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.experience import Effect, Verdict
-from codriving.datatypes.vehicle import VehicleState
+from codriving.datatypes.order import Conflict
+from codriving.datatypes.world import Action, VehicleState
 
 HORIZON = 3.0
 """How far ahead a collision or needless waiting is put down to an action [s]."""

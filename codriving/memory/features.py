@@ -7,8 +7,8 @@ from math import asinh, cos, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Description
+from codriving.datatypes.world import Action
 from codriving.memory.embedder import Embedder, Vectors, unit
 
 

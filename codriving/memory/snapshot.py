@@ -9,8 +9,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Experience, Memory, Verdict
+from codriving.datatypes.world import Action
 from codriving.errors import MemoryFileError
 from codriving.memory.describe import brief
 from codriving.memory.embedder import Embedder, Vectors

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Description, Effect, Experience, Verdict
+from codriving.datatypes.world import Action
 from codriving.errors import MemoryFileError
 from codriving.llm import sqlite_file
 from codriving.memory.embedder import Embedder, Vectors

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Instance
 from codriving.errors import EpisodeError
 from codriving.methods.order_search import Coded, Found, Prefix, SearchedOrder
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering

@@ -3,13 +3,11 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from codriving.datatypes.deliberation import ReasonedDeliberation
-from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Account, CaseMemory, Method, Model
+from codriving.datatypes.record import Outcome
 from codriving.datatypes.road import Road
-from codriving.datatypes.situation import Decision, Situation
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import Decision, ReasonedDeliberation, Situation
+from codriving.datatypes.world import DrivingModel, WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.experience_log import ConflictLog, learn
@@ -20,11 +18,10 @@ from codriving.reasoning.decision.rules import Decider, decide_one
 from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
 from codriving.reasoning.perception import Perception
 from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.prediction.plans import PLANS
+from codriving.reasoning.prediction.rollout import PLANS
 from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
 from codriving.reasoning.safety.safety_input import CONTINUATIONS
-from codriving.reasoning.sharing.cda import CdaLevel
-from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, SensedStates, SharedStates
+from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, CdaLevel, SensedStates, SharedStates
 from codriving.reasoning.sharing.tracking import Tracking
 
 

@@ -2,10 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
+from codriving.datatypes.order import ApproachingVehicle, Instance
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.request import Request, best_subset
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request, best_subset
 from codriving.reasoning.ordering.schedule import repaired, timed
 from codriving.reasoning.ordering.tickets import reasons
 

@@ -4,14 +4,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.experience import Experience, Interaction, Verdict
-from codriving.datatypes.outcome import Collision, Outcome
 from codriving.datatypes.parts import CaseMemory, Method
-from codriving.datatypes.scene_description import Role
-from codriving.datatypes.situation import Decision, Situation
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.record import Collision, Outcome
+from codriving.datatypes.situation import Decision, Role, Situation
+from codriving.datatypes.world import Action, DrivingModel, WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.memory.describe import describe
 from codriving.memory.effect import LESSONS, DecisionHistory, HistoryStep, OwnCollision, effect_of, verdict_of

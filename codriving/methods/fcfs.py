@@ -3,12 +3,10 @@
 from collections.abc import Sequence
 from typing import Literal, get_args
 
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Instance
 from codriving.errors import require
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.request import Request, in_order
-from codriving.reasoning.ordering.schedule import after_windows, timed
-from codriving.reasoning.ordering.slots import inserted, sequence
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request, in_order
+from codriving.reasoning.ordering.schedule import after_windows, inserted, sequence, timed
 from codriving.reasoning.ordering.tickets import CONTROL_RADIUS, TicketBook, by_slot, by_ticket, reasons
 
 Mode = Literal["conflict", "global", "reservation"]

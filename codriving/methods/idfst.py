@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from itertools import combinations
 from math import inf
 
-from codriving.datatypes.ordering_problem import Instance, Pair
+from codriving.datatypes.order import Instance, Pair
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.request import Request
-from codriving.reasoning.ordering.schedule import LONGEST_WAIT, Objective, timed
-from codriving.reasoning.ordering.slots import carried_over, inserted, sequence
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request
+from codriving.reasoning.ordering.schedule import LONGEST_WAIT, Objective, carried_over, inserted, sequence, timed
 from codriving.reasoning.ordering.tickets import CONTROL_RADIUS, TicketBook, by_slot, reasons
 
 Windows = Sequence[tuple[float, float]]

@@ -5,12 +5,20 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Instance
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.request import Request, best_subset
-from codriving.reasoning.ordering.schedule import LONGEST_WAIT, Objective, after_windows, left, repaired, timed
-from codriving.reasoning.ordering.slots import carried_over, inserted, sequence
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request, best_subset
+from codriving.reasoning.ordering.schedule import (
+    LONGEST_WAIT,
+    Objective,
+    after_windows,
+    carried_over,
+    inserted,
+    left,
+    repaired,
+    sequence,
+    timed,
+)
 from codriving.reasoning.ordering.tickets import TicketBook, reasons
 
 

@@ -2,8 +2,8 @@
 
 from math import cos, inf
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import Precedence
+from codriving.datatypes.world import Action
 from codriving.errors import require_range
 from codriving.methods.single_vehicle.encounters import (
     FRONT,
@@ -17,7 +17,7 @@ from codriving.methods.single_vehicle.encounters import (
 )
 from codriving.methods.single_vehicle.lane_choice import LaneChoice
 from codriving.methods.single_vehicle.method import Choice, Driver
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.prediction.rollout import Plan, rollout

@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-from codriving.datatypes.deliberation import ReasonedDeliberation
 from codriving.datatypes.parts import CaseMemory
-from codriving.datatypes.situation import Situation
+from codriving.datatypes.situation import ReasonedDeliberation, Situation
 from codriving.datatypes.world import WorldState
 from codriving.llm.ledger import Ledger
 from codriving.methods.experience_log import recall

@@ -9,10 +9,8 @@ from itertools import combinations
 
 import numpy as np
 
-from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.parts import Metric
-from codriving.datatypes.score import Pet, Score, TravelScore
-from codriving.datatypes.trajectory import Track, Trajectory
+from codriving.datatypes.record import Ending, Outcome, Pet, Score, Track, Trajectory, TravelScore
 from codriving.errors import ConfigError
 from codriving.geometry.curve import FloatArray
 from codriving.geometry.road_map import RoadMap

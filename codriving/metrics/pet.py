@@ -5,10 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from codriving.datatypes.conflict import Relation
-from codriving.datatypes.score import Pet
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.order import Relation
+from codriving.datatypes.record import Pet, Track, Trajectory
+from codriving.datatypes.world import Kind
 from codriving.geometry.box import TRUE
 from codriving.geometry.curve import FloatArray
 from codriving.geometry.path import Path, progress

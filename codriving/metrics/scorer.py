@@ -3,11 +3,9 @@
 from dataclasses import replace
 from typing import NamedTuple
 
-from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Metric
+from codriving.datatypes.record import Outcome, Score, Trajectory
 from codriving.datatypes.road import Road
-from codriving.datatypes.score import Score
-from codriving.datatypes.trajectory import Trajectory
 from codriving.geometry.road_map import RoadMap, road_map
 
 

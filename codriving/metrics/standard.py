@@ -2,11 +2,9 @@
 
 import numpy as np
 
-from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.parts import Metric
-from codriving.datatypes.score import Score, TravelScore
-from codriving.datatypes.trajectory import Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import Ending, Outcome, Score, Trajectory, TravelScore
+from codriving.datatypes.world import Kind
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
 from codriving.metrics.pet import post_encroachment_times

@@ -1,7 +1,7 @@
 """The conflict description: whose way ahead shares a zone with the ego vehicle's, and how soon (III-C.3, Eq. 3)."""
 
-from codriving.datatypes.conflict import Conflict, Relation, Severity
-from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
+from codriving.datatypes.order import Conflict, Relation, Severity
+from codriving.datatypes.situation import SceneDescription, TrackedVehicle
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
 
@@ -14,13 +14,13 @@ SLOWEST = 0.5
 
 def find_conflicts(scene: SceneDescription, road_map: RoadMap) -> tuple[Conflict, ...]:
     """Find the conflicts of one CAV, most urgent first."""
-    found = []
-    for neighbour in scene.neighbours:
-        certain = neighbour.intent is not None or len(neighbour.routes) == 1
-        for route, place in neighbour.routes:
-            for index, zone in enumerate(road_map.zones(scene.intent.route, route)):
-                if is_open(zone, scene.place, place):
-                    found.append(_conflict(scene, neighbour, route, place, index, zone, certain))
+    found = (
+        _conflict(scene, neighbour, route, place, index, zone)
+        for neighbour in scene.neighbours
+        for route, place in neighbour.routes
+        for index, zone in enumerate(road_map.zones(scene.intent.route, route))
+        if is_open(zone, scene.place, place)
+    )
     return tuple(sorted(found, key=lambda c: (c.dttcp + 0.2 * min(c.ttcp), c.other, c.routes[1], c.zone)))
 
 
@@ -41,13 +41,7 @@ def is_open(zone: ConflictZone, place_i: float, place_j: float) -> bool:
 
 
 def _conflict(
-    scene: SceneDescription,
-    neighbour: TrackedVehicle,
-    route: str,
-    place: float,
-    index: int,
-    zone: ConflictZone,
-    certain: bool,
+    scene: SceneDescription, neighbour: TrackedVehicle, route: str, place: float, index: int, zone: ConflictZone
 ) -> Conflict:
     distances = (max(zone.entry_i - scene.place, 0.0), max(zone.entry_j - place, 0.0))
     times = (ttcp(distances[0], scene.ego.speed), ttcp(distances[1], neighbour.speed))
@@ -63,7 +57,7 @@ def _conflict(
         ttcp=times,
         dttcp=abs(times[0] - times[1]),
         severity=severity(abs(times[0] - times[1])),
-        certain=certain,
+        certain=neighbour.intent is not None or len(neighbour.routes) == 1,
     )
 
 

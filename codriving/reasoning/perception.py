@@ -1,16 +1,36 @@
 """What all CAVs know at one moment, which every method begins with: states, intents, scenes and conflicts."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.order import Conflict
+from codriving.datatypes.situation import SceneDescription, TrackedVehicle
+from codriving.datatypes.world import Action, WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.conflicts import find_conflicts
-from codriving.reasoning.moment import Moment
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
 from codriving.reasoning.sharing.sharing import GUESSED_INTENTS, IntentSharing, SensedStates, StateSharing
 from codriving.reasoning.sharing.tracking import Tracking
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """All that the CAVs know at one time, each by its id; functions are handed ``(moment, ego)``.
+
+    Attributes:
+        vehicles: The vehicles that each CAV knows of, itself included, by id.
+        sees_conflicts: Whether conflicts can be told at all, which takes routes that are shared or guessed.
+    """
+
+    time: float  # Simulated time [s]
+    scenes: Mapping[str, SceneDescription]
+    conflicts: Mapping[str, tuple[Conflict, ...]]
+    vehicles: Mapping[str, dict[str, TrackedVehicle]]
+    available: Mapping[str, tuple[Action, ...]]
+    road_map: RoadMap
+    forecast: Forecast
+    sees_conflicts: bool = True
 
 
 @dataclass(slots=True)
@@ -27,8 +47,7 @@ class Perception:
         """Return what every CAV knows, and begin the predictions of this step."""
         self.forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
         detections = self.state_sharing.detections(world, self.forecast.model)
-        intents = self.intent_sharing.intents(world)
-        scenes = describe_scenes(world, detections, intents, self.tracking)
+        scenes = describe_scenes(world, detections, self.intent_sharing.intents(world), self.tracking)
         conflicts: dict[str, tuple[Conflict, ...]] = dict.fromkeys(scenes, ())
         finds_conflicts = self.intent_sharing.finds_conflicts
         if finds_conflicts:

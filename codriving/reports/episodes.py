@@ -3,9 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
-from codriving.datatypes.score import NamedNumber
+from codriving.datatypes.record import Ending, EpisodeRecord, NamedNumber
 from codriving.reports.columns import Column, mean, swept_columns
 from codriving.reports.results import LABELS, CellResults, ScoredEpisode, counter_names, named_numbers
 from codriving.reports.wording import two_digits

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.metrics.intervals import FEWEST, mcnemar, mean_interval
 from codriving.reports.columns import Column, Value, mean
 from codriving.reports.results import CellResults, ScoredEpisode

@@ -6,9 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
-from codriving.datatypes.score import NamedNumber, Score
+from codriving.datatypes.record import Ending, EpisodeRecord, NamedNumber, Score
 from codriving.metrics.intervals import wilson_interval
 from codriving.reports.columns import Column, Value, mean, share
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.reports.columns import Column, Row, Table, Value, mean, share, swept_columns, table
 from codriving.reports.episodes import counter_columns, number_columns, number_head
 from codriving.reports.paper import WHOLE, Paper, PaperRow

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from codriving.datatypes.record import EpisodeRecord
-from codriving.datatypes.trajectory import Trajectory
+from codriving.datatypes.record import EpisodeRecord, Trajectory
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import whole_folder
 from codriving.runs.json_files import damaged, decode, encode, lines_text, read_episode_text, read_lines

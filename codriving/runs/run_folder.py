@@ -9,8 +9,7 @@ from typing import Self
 
 from filelock import FileLock, Timeout
 
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import PARTIAL, sweep, write_text
 from codriving.runs.continuation import continued, other_behaviour

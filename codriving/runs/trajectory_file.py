@@ -7,9 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from codriving.datatypes.record import EpisodeRecord
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import EpisodeRecord, Track, Trajectory
+from codriving.datatypes.world import Kind
 from codriving.runs.json_files import damaged, read_episode_text
 
 TRAJECTORY = "trajectory.csv"

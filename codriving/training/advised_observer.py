@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import DrivingModel, WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.gym.observation import Observer
 from codriving.methods.learned.features import Features

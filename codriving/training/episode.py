@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.datatypes.world import WorldState
 from codriving.gym.actions import ACTIONS as NUMBERS
 from codriving.methods.learned.features import Features

@@ -10,7 +10,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import DummyVecEnv
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.gym.actions import draw_seed
 from codriving.methods.learned.layout import feature_count
 from codriving.methods.learned.network import ATTENTION, AnyNetwork

@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.parts import Model
 from codriving.datatypes.situation import Situation
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import Action, DrivingModel, WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.language_model.prompted_model import prompted

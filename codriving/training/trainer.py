@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import torch
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
+from codriving.datatypes.world import Action
 from codriving.gym.actions import draw_seed
 from codriving.methods.learned.layout import ACTIONS, feature_count
 from codriving.methods.learned.network import FloatArray, Network, greedy

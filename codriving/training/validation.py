@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.methods.learned.features import Features
 from codriving.methods.learned.network import AnyNetwork, greedy
 from codriving.training.curriculum import at_least

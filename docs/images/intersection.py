@@ -14,12 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.config.compose import compose
-from codriving.datatypes.conflict import Conflict, Severity
-from codriving.datatypes.deliberation import ReasonedDeliberation
+from codriving.datatypes.order import Conflict, Severity
 from codriving.datatypes.road import Lane, Line
-from codriving.datatypes.situation import Situation
-from codriving.datatypes.vehicle import Kind, VehicleState
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import ReasonedDeliberation, Situation
+from codriving.datatypes.world import Kind, VehicleState, WorldState
 from codriving.experiment.objects import BuildObjects
 from codriving.geometry.box import PLANNING, corners
 from codriving.geometry.lane_path import lane_path

@@ -19,7 +19,7 @@ from codriving.config.build import build
 from codriving.config.choices import choices
 from codriving.config.compose import compose
 from codriving.datatypes.road import Line
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.geometry.box import corners
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.path import Path as Way

@@ -4,11 +4,9 @@ from itertools import combinations
 
 import numpy as np
 
-from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.parts import Metric
-from codriving.datatypes.score import NamedNumber, Score
-from codriving.datatypes.trajectory import Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import Ending, NamedNumber, Outcome, Score, Trajectory
+from codriving.datatypes.world import Kind
 from codriving.geometry.road_map import RoadMap
 
 

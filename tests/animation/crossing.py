@@ -7,10 +7,9 @@ import numpy as np
 from matplotlib.colors import to_rgba
 from numpy.typing import NDArray
 
-from codriving.datatypes.outcome import Ending, Outcome
+from codriving.datatypes.record import Ending, Outcome, Track, Trajectory
 from codriving.datatypes.road import Block, Lane, Line, Road, Route, Straight, Turn
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.geometry.road_map import RoadMap, road_map
 
 LENGTH = 60.0

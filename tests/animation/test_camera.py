@@ -8,9 +8,9 @@ from crossing import crossing, highway, track
 
 from codriving.animation.camera import CLOSEST, Camera, overview
 from codriving.animation.window import Area
+from codriving.datatypes.record import Trajectory
 from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
-from codriving.datatypes.trajectory import Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.geometry.road_map import RoadMap, road_map
 
 VIEW = Area(0.0, 0.0, 896.0, 720.0)

@@ -11,8 +11,8 @@ from codriving.animation.conflicts import ConflictLayer, conflict_lines, pressin
 from codriving.animation.content import DrawnConflict, DrawnVehicle
 from codriving.animation.style import PAPER, SEVERITIES
 from codriving.animation.window import Area, FreeSpace, Window
-from codriving.datatypes.conflict import Severity
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.order import Severity
+from codriving.datatypes.world import Kind
 
 WINDOW = Window(Area(0.0, 0.0, 400.0, 400.0), 0.0, 0.0, 10.0)
 WAYS = (("east", 30.0), ("south", 30.0))

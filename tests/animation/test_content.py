@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from codriving.animation.content import FrameContent, StoredFrames, deliberated
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Severity
-from codriving.datatypes.trajectory import Trajectory
+from codriving.datatypes.order import Severity
+from codriving.datatypes.record import Trajectory
+from codriving.datatypes.world import Action
 
 ROADS = crossing()
 KEYS = ("time", "cavs", "id", "action", "reason", "scene", "intent", "route", "conflicts", "order", "sequence")

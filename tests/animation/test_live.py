@@ -12,10 +12,8 @@ from crossing import crossing, line, share
 
 from codriving.animation import LivePicture
 from codriving.animation.style import ACTIONS, BLUE, GREEN, ORANGE
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending, Outcome
-from codriving.datatypes.vehicle import Intent, Kind, VehicleState
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.record import Ending, Outcome
+from codriving.datatypes.world import Action, Intent, Kind, VehicleState, WorldState
 from codriving.errors import ConfigError
 
 LANE = ("w", "e", 0)

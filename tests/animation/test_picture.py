@@ -10,8 +10,7 @@ from codriving.animation.canvas import Canvas
 from codriving.animation.film import EpisodeFilm
 from codriving.animation.picture import sentence
 from codriving.animation.style import ASPHALT, BLUE, GREEN, GROUND, INK, ORANGE, PANEL, PAPER, VERMILION
-from codriving.datatypes.outcome import Collision, Ending, Outcome
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Collision, Ending, EpisodeRecord, Outcome
 
 TRAJECTORY, OUTCOME = episode()
 ROAD = 1280 - round(PANEL)

@@ -11,8 +11,7 @@ from codriving.animation.content import DrawnDecision, DrawnVehicle, FrameConten
 from codriving.animation.style import ACTIONS, BLUE, INK, ORANGE, PAPER
 from codriving.animation.vehicles import draw_names, draw_vehicles
 from codriving.animation.window import Area, FreeSpace, Window
-from codriving.datatypes.action import Action
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Action, Kind
 
 VIEW = Area(0.0, 0.0, 300.0, 300.0)
 WINDOW = Window(VIEW, 0.0, 0.0, 20.0)

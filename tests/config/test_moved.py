@@ -60,3 +60,4 @@ def test_a_plugin_is_told_the_new_place_of_what_it_imports(tmp_path: Path, monke
 def test_a_name_that_is_gone_or_stands_twice_has_no_place() -> None:
     assert new_place("Probe") is None
     assert new_place("Metrics") == "codriving.datatypes.parts.Metric"
+    assert new_place("Entrant") == "codriving.ordering.ApproachingVehicle"

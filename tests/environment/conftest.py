@@ -8,7 +8,7 @@ import pytest
 
 from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Road
-from codriving.datatypes.scene import Scene, Start
+from codriving.datatypes.world import Scene, Start
 from codriving.environment.environment import Environment
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.environment.scenarios.pace import Pace

@@ -7,11 +7,9 @@ from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.controller import ControlledVehicle, MDPVehicle
 from highway_env.vehicle.kinematics import Vehicle
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.environment import Environment
 from codriving.environment.traffic.human_driver import HumanDriver
 from codriving.environment.traffic.route_following import RouteFollower

@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.trajectory import Trajectory
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.record import Trajectory
+from codriving.datatypes.world import Action, WorldState
 from codriving.environment.environment import Environment
 
 Build = Callable[..., Environment]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from codriving.datatypes.outcome import Collision
+from codriving.datatypes.record import Collision
 from codriving.environment.environment import Environment
 from codriving.environment.termination import Termination
 from codriving.environment.traffic.human_driver import HumanDriver

@@ -10,10 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import Action, Kind, Start, WorldState
 from codriving.environment.environment import Environment
 from codriving.environment.settings import DriverProfile
 from codriving.environment.traffic.human_driver import body_ahead

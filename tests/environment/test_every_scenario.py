@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from codriving.config.choices import choices
-from codriving.datatypes.action import Action
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import Action, WorldState
 from codriving.environment.environment import Environment
 from codriving.environment.traffic.human_driver import HumanDriver
 from codriving.geometry.road_map import road_map

@@ -6,9 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.environment import Environment
 from codriving.environment.settings import Corrections

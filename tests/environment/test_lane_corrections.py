@@ -6,10 +6,8 @@ import pytest
 from highway_env.road.road import Road as StockRoad
 from highway_env.vehicle.objects import Obstacle
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.environment import Environment
 from codriving.environment.traffic.route_following import RouteFollower
 

@@ -4,11 +4,9 @@ from collections.abc import Callable
 
 import pytest
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.environment import Environment
 
 Build = Callable[..., Environment]

@@ -6,11 +6,9 @@ from dataclasses import replace
 import pytest
 from highway_env.road.road import Road as StockRoad
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.datatypes.road import Block, Road
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.environment import Environment
 from codriving.environment.traffic.human_driver import GAP, HumanDriver
 from codriving.environment.traffic.route_following import RouteFollower

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind, Start
 from codriving.environment.environment import Environment
 from codriving.environment.traffic.right_of_way import (
     HORIZON,

@@ -7,10 +7,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.environment import Environment
 from codriving.environment.settings import ControlGains

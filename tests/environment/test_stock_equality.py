@@ -12,7 +12,7 @@ from highway_env.vehicle.controller import MDPVehicle
 from highway_env.vehicle.kinematics import Vehicle
 
 from benchmarks.stock import populated, stock_network
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.environment import Environment, spawn
 from codriving.environment.network import build_network

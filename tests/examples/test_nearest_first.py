@@ -9,7 +9,7 @@ import pytest
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.experiment.objects import make_objects
 from codriving.ordering import ApproachingVehicle, Instance
 

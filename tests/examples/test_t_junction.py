@@ -16,8 +16,8 @@ from worlds import Junction
 from codriving.config.build import build
 from codriving.config.choices import describe
 from codriving.config.compose import compose
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
+from codriving.datatypes.world import Action
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
 from codriving.experiment.objects import make_objects

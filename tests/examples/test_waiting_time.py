@@ -10,10 +10,9 @@ import pytest
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.parts import Metric
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import Ending, Outcome, Track, Trajectory
+from codriving.datatypes.world import Kind
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "waiting_time"
 GUIDE = Path(__file__).resolve().parents[2] / "CONTRIBUTING.md"

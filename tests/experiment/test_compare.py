@@ -8,7 +8,7 @@ from codriving.config.build import build
 from codriving.config.choices import COMPARED, SINGLE_VEHICLE, TABLES, TAKING_PART, choices
 from codriving.config.compose import compose
 from codriving.config.locate import experiments_dir
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.environment.scenarios.roundabout import Roundabout
 from codriving.errors import ConfigError

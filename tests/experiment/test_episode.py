@@ -3,7 +3,7 @@
 import pytest
 from toy_drive import LABELS, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.datatypes.world import WorldState
 from codriving.experiment.episode import EpisodeResult, run_episode
 from codriving.metrics.scorer import Scorer

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import codriving.experiment.film
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.errors import FilmError
 from codriving.experiment import run_experiment
 from codriving.experiment.film import FILM, FILM_ERROR, FilmEpisode

@@ -15,7 +15,7 @@ import toy_models
 from test_drive import all_files, deterministic
 from toy_models import CLIENTS, EPISODES, BuildAsking, ToyClient, asking_cell, asking_plan
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.errors import ModelError, ModelUnavailableError, SpendingLimitError
 from codriving.experiment import run
 from codriving.experiment.drive import HaltedError, drive, side_by_side

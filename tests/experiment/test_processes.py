@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from toy_drive import LABELS, BuildToy, run_batch
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.errors import ConfigError
 from codriving.experiment.episode import EpisodeResult
 from codriving.experiment.launchers import Serial, available_cores, worker_count

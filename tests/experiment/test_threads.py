@@ -10,7 +10,7 @@ from threading import enumerate as all_threads
 import pytest
 from toy_drive import LABELS, BuildToy, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics, run_batch
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError, SpendingLimitError
 from codriving.experiment.episode import EpisodeResult, run_episode

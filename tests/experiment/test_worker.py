@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from toy_drive import LABELS, BuildToy
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.errors import ConfigError, RunFolderError
 from codriving.experiment.episode import EpisodeResult
 from codriving.experiment.worker import CELLS_AT_ONCE, AfterEpisode, Job, Objects, Report, Unit, Worker

@@ -10,16 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.deliberation import Deliberation
-from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.outcome import Collision, Ending, Outcome
 from codriving.datatypes.parts import Method, Metric, Scenario, Simulator
-from codriving.datatypes.scene import Scene
-from codriving.datatypes.score import Pet, Score, TravelScore
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Intent, Kind, VehicleState
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.record import Collision, Ending, Outcome, Pet, Score, Track, Trajectory, TravelScore
+from codriving.datatypes.situation import Deliberation
+from codriving.datatypes.world import Action, DrivingModel, Intent, Kind, Scene, VehicleState, WorldState
 from codriving.experiment.episode import Labels
 from codriving.experiment.launchers import Launcher
 from codriving.experiment.scoring import settings_of_metric

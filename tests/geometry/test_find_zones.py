@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from codriving.datatypes.conflict import Relation
+from codriving.datatypes.order import Relation
 from codriving.datatypes.road import Lane, Straight
 from codriving.geometry.box import TRUE
 from codriving.geometry.find_zones import find_zones

@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from codriving.datatypes.conflict import Relation
+from codriving.datatypes.order import Relation
 from codriving.datatypes.road import Arc, Lane, Road, Route, Straight, Turn
 from codriving.errors import ScenarioError
 from codriving.geometry.box import PLANNING, TRUE, Footprint

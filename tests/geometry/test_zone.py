@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from codriving.datatypes.conflict import Relation
+from codriving.datatypes.order import Relation
 from codriving.datatypes.road import Arc, Lane, Straight
 from codriving.geometry.box import PLANNING, TRUE, Footprint, separation
 from codriving.geometry.curve import FloatArray

@@ -99,7 +99,7 @@ def test_agents_that_change_with_the_seed_are_refused(make_varying: Callable[[],
 @pytest.fixture
 def make_varying(monkeypatch: pytest.MonkeyPatch) -> Callable[[], ParallelDriving]:
     """An environment whose scenario has one CAV less for odd seeds."""
-    from codriving.datatypes.scene import Scene
+    from codriving.datatypes.world import Scene
     from codriving.environment.scenarios.intersection import Intersection
 
     draw = Intersection.scene

@@ -8,7 +8,7 @@ import pytest
 from choosers import FASTER, IDLE, LANE_LEFT, SLOWER, always, episode
 
 from codriving.config.schema import LARGEST_SEED
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import EpisodeError
 from codriving.gym.actions import draw_seed
 from codriving.gym.parallel import ParallelDriving

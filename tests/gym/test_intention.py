@@ -1,7 +1,7 @@
 """One number for what a vehicle means to do, on junctions and on lanes."""
 
 from codriving.datatypes.road import LaneId, Route, Turn
-from codriving.datatypes.vehicle import Intent
+from codriving.datatypes.world import Intent
 from codriving.gym.observation import Intention, intention
 
 RAMP: tuple[LaneId, ...] = (("j", "b", 0), ("b", "c", 2), ("b", "c", 1), ("c", "d", 1))

@@ -13,7 +13,7 @@ from worlds import FULL, Car, Junction, car
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.gym.observation import FEATURES, CdaObserver, FloatArray, Layout
-from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.sharing import CdaLevel
 
 X, Y, VX, VY, LANE, INTENTION = range(6)
 LEFT, STRAIGHT, RIGHT = 1, 2, 3

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from codriving.config.choices import choices
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.gym.observation import FEATURES
 from codriving.gym.parallel import ParallelDriving
 from codriving.gym.registration import env_id

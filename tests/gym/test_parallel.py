@@ -10,7 +10,7 @@ from choosers import at_random, by_the_rules, episode
 import codriving
 from codriving.config.choices import choices
 from codriving.config.compose import compose
-from codriving.datatypes.trajectory import Trajectory
+from codriving.datatypes.record import Trajectory
 from codriving.environment.environment import Environment
 from codriving.experiment.objects import make_objects
 from codriving.gym.actions import ACTIONS

@@ -8,7 +8,7 @@ import pytest
 from choosers import FASTER, SLOWER
 
 from codriving.animation.live import LivePicture
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import EpisodeError
 from codriving.gym.parallel import ParallelDriving
 

@@ -5,8 +5,7 @@ from typing import Any
 
 import pytest
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.vehicle import Kind, VehicleState
+from codriving.datatypes.world import Action, Kind, VehicleState
 from codriving.errors import ConfigError
 from codriving.gym.reward import CavStep, RewardWeights, reward_weights, rewards
 

@@ -5,8 +5,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 from codriving.config.choices import choices
-from codriving.datatypes.vehicle import Kind
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import Kind, WorldState
 from codriving.environment.environment import Environment
 from codriving.gym.actions import ACTIONS, FIRST_DRAWN
 from codriving.gym.configured import configured

@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 from worlds import Car, Junction, car, order_of
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.situation import ActionAssessment, Situation
+from codriving.datatypes.world import Action
 from codriving.memory.describe import brief, describe
 
 MET = (

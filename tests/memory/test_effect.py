@@ -7,8 +7,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from remembered import conflict, crossing_way, moment, vehicle, without_conflicts
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Effect, Verdict
+from codriving.datatypes.world import Action
 from codriving.memory.effect import (
     LESSONS,
     DecisionHistory,

@@ -16,7 +16,7 @@ from codriving.memory.embedders import WordEmbedder
 from codriving.memory.features import FeatureEmbedder
 from codriving.memory.retrieval_metrics import chance, precision_at, same_kind
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.sharing import CdaLevel
 
 KEPT, HELD_BACK = (10_001, 10_002, 10_003), (10_004, 10_005)
 

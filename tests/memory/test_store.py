@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from remembered import description, experience, filled, interaction, noise
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Verdict
+from codriving.datatypes.world import Action
 from codriving.errors import MemoryFileError
 from codriving.memory.embedders import WordEmbedder
 from codriving.memory.features import FeatureEmbedder

@@ -8,7 +8,7 @@ from worlds import FULL, Junction
 
 from codriving.llm.language_model import Offline
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.sharing import CdaLevel
 
 
 @pytest.fixture(scope="session")

@@ -7,10 +7,8 @@ import pytest
 from asked import reasoned
 from worlds import Junction, car
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import Ending
+from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError, ModelUnavailableError
 from codriving.llm.language_model import Offline
@@ -18,8 +16,7 @@ from codriving.llm.question import Question
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
 from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
-from codriving.reasoning.sharing.cda import CdaLevel
-from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, SensedStates, SharedStates
+from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, CdaLevel, SensedStates, SharedStates
 
 Make = Callable[..., CoDriving]
 

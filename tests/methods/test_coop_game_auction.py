@@ -8,11 +8,11 @@ from coalitions import Scheduled, everybody, instance, problems, vehicle
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Instance
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.methods.coop_game_auction import Auction, bid, overtaken
-from codriving.reasoning.ordering.request import Request
+from codriving.reasoning.ordering.protocol import Request
 
 
 def test_bid_is_the_formula() -> None:

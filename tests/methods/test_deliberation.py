@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from worlds import Junction, car
 
-from codriving.datatypes.deliberation import ReasonedDeliberation
+from codriving.datatypes.situation import ReasonedDeliberation
 from codriving.methods.codriving import CoDriving
 
 Make = Callable[..., CoDriving]

@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from instances import NoPlanner, both, crossroads, instance
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Instance
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.idfst import SpanningTree
-from codriving.reasoning.ordering.request import Request
+from codriving.reasoning.ordering.protocol import Request
 from codriving.reasoning.ordering.schedule import total_delay
 from codriving.reasoning.ordering.tickets import Ticket, in_turn
 

@@ -6,14 +6,20 @@ from itertools import combinations
 import pytest
 from instances import NoPlanner, both, crossroads, instance, is_valid
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Instance
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.idfst import SpanningTree, clock_windows, moved_windows
-from codriving.reasoning.ordering.request import Request
-from codriving.reasoning.ordering.schedule import evacuation_time, total_delay
-from codriving.reasoning.ordering.slots import carried_over, earliest_slot, inserted, sequence
+from codriving.reasoning.ordering.protocol import Request
+from codriving.reasoning.ordering.schedule import (
+    carried_over,
+    earliest_slot,
+    evacuation_time,
+    inserted,
+    sequence,
+    total_delay,
+)
 
 
 @pytest.mark.parametrize("windows", [False, True])

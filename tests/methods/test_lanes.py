@@ -7,15 +7,12 @@ from typing import Any
 import pytest
 from worlds import FULL, Junction, car
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.record import Ending
+from codriving.datatypes.world import Action, Kind, Start, WorldState
 from codriving.environment.environment import Environment
 from codriving.llm.language_model import Offline
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.sharing import CdaLevel
 
 CHANGES = {Action.LANE_LEFT, Action.LANE_RIGHT}
 SENSED: dict[str, Any] = {"state_sharing": False, "negotiation": False}

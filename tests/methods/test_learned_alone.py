@@ -17,8 +17,8 @@ from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.config.sweep import expand
 from codriving.config.training import compose_training
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
+from codriving.datatypes.world import Action
 from codriving.environment.environment import Environment
 from codriving.errors import WeightsError
 from codriving.experiment.plan import make_plan

@@ -9,17 +9,17 @@ from driven import Episode, drive
 from remembered import configured_memory, description, experience, filled, frozen, online
 from worlds import FULL, Junction
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Experience, Interaction, Memory, Verdict
-from codriving.datatypes.outcome import Ending
 from codriving.datatypes.parts import CaseMemory
+from codriving.datatypes.record import Ending
 from codriving.datatypes.situation import Situation
+from codriving.datatypes.world import Action
 from codriving.llm.language_model import Offline
 from codriving.memory.features import FeatureEmbedder
 from codriving.memory.online import OnlineMemory
 from codriving.memory.snapshot import open_snapshot
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.sharing import CdaLevel
 
 NO_CHECK = {"safety_check": False}
 

@@ -16,17 +16,14 @@ from codriving.animation.content import deliberated
 from codriving.animation.film import EpisodeFilm
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.action import Action
-from codriving.datatypes.ordering_problem import Instance
-from codriving.datatypes.outcome import Ending, Outcome
-from codriving.datatypes.record import EpisodeRecord
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.order import Instance
+from codriving.datatypes.record import Ending, EpisodeRecord, Outcome
+from codriving.datatypes.world import Action, WorldState
 from codriving.environment.environment import Environment
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.ordered import Ordered
 from codriving.reasoning.execution.planned import Planned
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.request import Request, in_order
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request, in_order
 from codriving.reasoning.ordering.schedule import repaired, timed
 from codriving.runs.json_files import lines_text
 

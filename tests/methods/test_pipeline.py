@@ -7,10 +7,8 @@ from typing import Any
 import pytest
 from worlds import Junction, car
 
-from codriving.datatypes.deliberation import ReasonedDeliberation
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Intent, Kind
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import ReasonedDeliberation
+from codriving.datatypes.world import Intent, Kind, Start, WorldState
 from codriving.methods.codriving import CoDriving
 
 Make = Callable[..., CoDriving]

@@ -9,8 +9,8 @@ from driven import drive
 from remembered import experience, online
 from worlds import FULL, Junction
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Effect, Verdict
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError, ModelUnavailableError
 from codriving.llm.language_model import Offline
 from codriving.llm.ledger import Ledger
@@ -23,7 +23,7 @@ from codriving.memory.snapshot import open_snapshot
 from codriving.methods.codriving import CoDriving
 from codriving.methods.language_model.prompted_model import PromptedModel
 from codriving.methods.language_model.reflection import reflect
-from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.sharing import CdaLevel
 
 
 def teacher(question: Question) -> str:

@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 import pytest
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
+from codriving.datatypes.world import Action
 from codriving.environment.environment import Environment
 from codriving.llm.language_model import Offline
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.sharing import CdaLevel
 
 Make = Callable[..., Environment]
 CHANGES = {Action.LANE_LEFT, Action.LANE_RIGHT}

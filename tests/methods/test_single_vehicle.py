@@ -11,8 +11,8 @@ from worlds import Junction, car
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.scene import Start
+from codriving.datatypes.record import Ending
+from codriving.datatypes.world import Start
 from codriving.environment.environment import Environment
 from codriving.methods.single_vehicle.method import SingleVehicle
 from codriving.runs.json_files import lines_text

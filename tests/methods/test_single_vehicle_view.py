@@ -9,8 +9,7 @@ from hidden import scrambled
 from worlds import Junction, car
 
 from codriving.environment.environment import Environment
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.perception import single_vehicle_perception
+from codriving.reasoning.perception import Moment, single_vehicle_perception
 
 SCENARIOS = ("intersection", "roundabout", "highway", "merge")
 

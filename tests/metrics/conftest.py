@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from codriving.datatypes.record import Track
 from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
-from codriving.datatypes.trajectory import Track
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.geometry.road_map import RoadMap
 
 STEP = 0.1

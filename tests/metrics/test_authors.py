@@ -5,10 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from codriving.datatypes.outcome import Ending, Outcome
 from codriving.datatypes.parts import Metric
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import Ending, Outcome, Track, Trajectory
+from codriving.datatypes.world import Kind
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
 from codriving.metrics.authors import AuthorsMetrics, Log, LoggedEncounter, encounters, entry_arm

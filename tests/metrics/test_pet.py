@@ -7,8 +7,8 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import Track, Trajectory
+from codriving.datatypes.world import Kind
 from codriving.geometry.box import TRUE
 from codriving.geometry.road_map import RoadMap
 from codriving.metrics.pet import post_encroachment_times

@@ -9,7 +9,7 @@ from worlds import FULL
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.errors import ConfigError
-from codriving.reasoning.sharing.cda import CdaLevel
+from codriving.reasoning.sharing.sharing import CdaLevel
 
 
 def preset(*overrides: str) -> CdaLevel:

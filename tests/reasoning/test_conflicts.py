@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
 
-from codriving.datatypes.conflict import Conflict, Relation
+from codriving.datatypes.order import Conflict, Relation
 
 ROUTES = tuple(
     f"{a}-{b}" for a in ("south", "west", "north", "east") for b in ("south", "west", "north", "east") if a != b

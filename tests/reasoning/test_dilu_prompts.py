@@ -12,9 +12,9 @@ from worlds import Junction
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Memory, Verdict
-from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.datatypes.record import Collision, Ending, Outcome
+from codriving.datatypes.world import Action
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
 from codriving.methods.dilu.dilu import DiLu

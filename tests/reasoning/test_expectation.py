@@ -8,11 +8,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from worlds import LAG, Junction, Thoughts, car, order_of
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.world import Action
 from codriving.reasoning.prediction.clearance import first_overlap
 from codriving.reasoning.prediction.expectation import Expected, expect, is_behind, keeps_order, worth
-from codriving.reasoning.prediction.plans import FIRST, HOLDS, PLANS, ROLLS, STARTS_WITH, WAITS
+from codriving.reasoning.prediction.rollout import FIRST, HOLDS, PLANS, ROLLS, STARTS_WITH, WAITS
 
 HEADWAY = 0.8
 

@@ -7,7 +7,7 @@ import pytest
 from worlds import Junction, car
 
 from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
-from codriving.datatypes.scene_description import Role, SceneDescription
+from codriving.datatypes.situation import Role, SceneDescription
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.sharing.scenes import adjacent_lanes, with_roles
 from codriving.reasoning.sharing.sharing import SensedStates

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from codriving.datatypes.conflict import Severity
+from codriving.datatypes.order import Severity
 from codriving.reasoning.conflicts import severity, ttcp
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from worlds import Car, Junction, car
 
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.reasoning.sharing.sharing import SensedStates, SharedStates
 
 USUAL_LENGTH = 5.0

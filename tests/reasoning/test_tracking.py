@@ -3,8 +3,8 @@
 import pytest
 from worlds import Junction, car
 
-from codriving.datatypes.scene_description import TrackedVehicle
-from codriving.datatypes.vehicle import Intent, Kind
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import Intent, Kind
 from codriving.reasoning.sharing.sharing import SensedStates, SharedStates
 from codriving.reasoning.sharing.tracking import Tracking
 

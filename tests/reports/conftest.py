@@ -4,9 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from codriving.datatypes.outcome import Collision, Ending, Outcome
-from codriving.datatypes.record import EpisodeRecord, Participant
-from codriving.datatypes.score import Pet, Score, TravelScore
+from codriving.datatypes.record import Collision, Ending, EpisodeRecord, Outcome, Participant, Pet, Score, TravelScore
 
 Make = Callable[..., EpisodeRecord]
 

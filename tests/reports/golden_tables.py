@@ -7,9 +7,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 from codriving.config.locate import experiments_dir
-from codriving.datatypes.outcome import Collision, Ending, Outcome
-from codriving.datatypes.record import EpisodeRecord, Participant
-from codriving.datatypes.score import Pet, Score, TravelScore
+from codriving.datatypes.record import Collision, Ending, EpisodeRecord, Outcome, Participant, Pet, Score, TravelScore
 from codriving.reports.built_memory import BuiltMemory, print_built
 from codriving.reports.columns import table
 from codriving.reports.comparison import comparison_rows, comparison_table, print_comparison, print_pairs

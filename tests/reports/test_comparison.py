@@ -5,8 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from codriving.config.locate import experiments_dir
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.comparison import comparison_rows, comparison_table, print_comparison, print_pairs
 from codriving.reports.paper import Paper, read_paper
 from codriving.reports.printed import markdown_text

@@ -4,8 +4,7 @@ import csv
 import io
 from collections.abc import Callable
 
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from tests.reports.making import episodes_of
 
 

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from codriving.config.locate import experiments_dir
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.figures import learning_figure
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
 from codriving.reports.paper import read_learning

@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.figures import METHODS, load_figure
 from codriving.reports.load import LoadRow, load_rows, load_table, print_loads
 from codriving.reports.results import CellResults

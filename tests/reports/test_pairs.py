@@ -2,8 +2,7 @@
 
 from collections.abc import Callable
 
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.columns import Row, table
 from codriving.reports.pairs import PAIRED, Difference, PairedCells
 from codriving.reports.results import CellResults

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.paper import ABLATION, COMPARISON, Paper, read_paper
 from codriving.reports.printed import markdown_text, print_table
 from codriving.reports.results import CellResults

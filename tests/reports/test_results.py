@@ -5,9 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
-from codriving.datatypes.score import NamedNumber
+from codriving.datatypes.record import Ending, EpisodeRecord, NamedNumber
 from codriving.reports.comparison import comparison_rows, comparison_table, print_comparison
 from codriving.reports.load import load_rows, load_table, print_loads
 from codriving.reports.paper import Paper

@@ -4,8 +4,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.paper import Paper
 from codriving.reports.results import CellResults
 from codriving.reports.run_tables import run_tables

@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.record import EpisodeRecord
+from codriving.datatypes.record import Ending, EpisodeRecord
 from tests.reports.making import summary_of, summary_row
 
 

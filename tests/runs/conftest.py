@@ -5,9 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from codriving.datatypes.outcome import Collision, Ending, Outcome
-from codriving.datatypes.record import EpisodeRecord, Participant
-from codriving.datatypes.score import Pet, Score, TravelScore
+from codriving.datatypes.record import Collision, Ending, EpisodeRecord, Outcome, Participant, Pet, Score, TravelScore
 
 HERE = str(Path(__file__).parent)
 if HERE not in sys.path:

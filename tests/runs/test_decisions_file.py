@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import RunFolderError
 from codriving.runs.episode_folder import DECISIONS, read_decisions
 from codriving.runs.json_files import lines_text

@@ -11,9 +11,17 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from codriving.datatypes.outcome import Collision, Ending, Outcome
-from codriving.datatypes.record import EpisodeRecord, Participant
-from codriving.datatypes.score import NamedNumber, Pet, Score, TravelScore
+from codriving.datatypes.record import (
+    Collision,
+    Ending,
+    EpisodeRecord,
+    NamedNumber,
+    Outcome,
+    Participant,
+    Pet,
+    Score,
+    TravelScore,
+)
 from codriving.errors import RunFolderError
 from codriving.runs.episode_folder import RECORD, read_record
 from codriving.runs.json_files import decode, encode

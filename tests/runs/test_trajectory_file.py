@@ -8,10 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.datatypes.outcome import Ending, Outcome
-from codriving.datatypes.record import EpisodeRecord, Participant
-from codriving.datatypes.trajectory import Track, Trajectory
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import Ending, EpisodeRecord, Outcome, Participant, Track, Trajectory
+from codriving.datatypes.world import Kind
 from codriving.errors import RunFolderError
 from codriving.runs.trajectory_file import TRAJECTORY, read_trajectory, trajectory_text
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
 from codriving.training.episode import AgentStep
 from codriving.training.nstep import Trail, Transition
 

@@ -10,8 +10,8 @@ from worlds import Junction, car
 
 from codriving.config.build import build
 from codriving.config.training import compose_training
-from codriving.datatypes.action import Action
 from codriving.datatypes.parts import Model, RuleModel
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat

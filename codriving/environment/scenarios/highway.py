@@ -6,8 +6,7 @@ import numpy as np
 
 from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Lane, Line, Road, Route, Straight, Turn
-from codriving.datatypes.scene import Scene, Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind, Scene, Start
 from codriving.environment.scenarios.pace import Pace
 from codriving.environment.scenarios.placement import Crowd, place
 from codriving.errors import require_range

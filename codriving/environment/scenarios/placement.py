@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from codriving.datatypes.road import Road
-from codriving.datatypes.scene import Scene, Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind, Scene, Start
 from codriving.errors import ScenarioError, require_interval, require_range
 
 DRAWS_PER_VEHICLE = 200

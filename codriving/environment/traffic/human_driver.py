@@ -9,7 +9,7 @@ from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.objects import Obstacle, RoadObject
 
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene import Start
+from codriving.datatypes.world import Start
 from codriving.environment.motion import STANDSTILL, clip
 from codriving.environment.settings import Corrections, DriverProfile
 from codriving.environment.traffic.route_following import RouteFollower, RoutePath

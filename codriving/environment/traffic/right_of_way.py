@@ -6,7 +6,7 @@ import numpy as np
 from highway_env.vehicle.behavior import IDMVehicle
 from numpy.typing import NDArray
 
-from codriving.datatypes.conflict import Relation
+from codriving.datatypes.order import Relation
 from codriving.environment.traffic.route_following import RouteFollower
 from codriving.geometry.road_map import RoadMap
 

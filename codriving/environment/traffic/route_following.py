@@ -14,8 +14,7 @@ from highway_env.vehicle.objects import RoadObject
 from numpy.typing import NDArray
 
 from codriving.datatypes.road import LaneId, Route, beside
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind, Start
 from codriving.environment.motion import PlainMotion
 from codriving.environment.settings import Corrections
 from codriving.errors import ScenarioError

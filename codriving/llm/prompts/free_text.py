@@ -3,8 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping
 
-from codriving.datatypes.scene_description import SceneDescription
-from codriving.datatypes.situation import Situation
+from codriving.datatypes.situation import SceneDescription, Situation
 
 LONGEST_NAME = 32
 """Characters of a vehicle's name."""

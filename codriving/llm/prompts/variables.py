@@ -5,13 +5,10 @@ from dataclasses import asdict
 from math import inf
 from typing import Any
 
-from codriving.datatypes.conflict import Conflict
 from codriving.datatypes.experience import Experience
-from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Conflict, Instance, PassingOrder
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
-from codriving.datatypes.situation import ActionAssessment, Situation
+from codriving.datatypes.situation import ActionAssessment, Role, SceneDescription, Situation, TrackedVehicle
 from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for
 from codriving.llm.prompts.views import (
     ActionView,

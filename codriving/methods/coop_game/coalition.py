@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Instance
 from codriving.methods.coop_game.levels import Allocation, Levels, Streams, is_free
 from codriving.methods.coop_game.payoff import Payoff
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner

@@ -3,13 +3,12 @@
 from collections.abc import Sequence
 from itertools import islice
 
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Instance
 from codriving.errors import require, require_range
 from codriving.methods.coop_game.coalition import Agreement, Coalition
 from codriving.methods.coop_game.levels import Levels, Streams, find_streams, levels_of
 from codriving.methods.coop_game.payoff import Goal, Payoff, Scale
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.request import Request, best_subset
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request, best_subset
 from codriving.reasoning.ordering.schedule import timed
 from codriving.reasoning.ordering.tickets import TicketBook, by_ticket, reasons
 

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Instance
 
 Allocation = tuple[int, ...]
 """Level of each stream; a lower level goes first."""

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
+from codriving.datatypes.order import ApproachingVehicle, Instance
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
 
 SLOPE, OFFSET = 1.44, 25.4

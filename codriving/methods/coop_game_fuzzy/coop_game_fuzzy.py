@@ -2,19 +2,18 @@
 
 from collections.abc import Sequence
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.ordering_problem import Instance
-from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.order import Instance
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import Action
 from codriving.errors import require_range
 from codriving.methods.coop_game_fuzzy.joint_choice import MOST, Costs, Joint, settle, shapley
 from codriving.methods.coop_game_fuzzy.joint_costs import Weights, joint_costs
 from codriving.methods.ordered import Ordered
-from codriving.reasoning.execution.executor import Drive, Executor, humans_expected
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.request import Request, best_subset
+from codriving.reasoning.execution.planned import Drive, Executor, humans_expected
+from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering, OrderRule, Request, best_subset
 from codriving.reasoning.ordering.schedule import timed
 from codriving.reasoning.ordering.tickets import TicketBook, by_ticket, reasons
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.rollout import Plan
 from codriving.reasoning.safety.safety_input import then_stop
@@ -168,7 +167,7 @@ class JointActions(Executor):
         return shapley(names, saved)
 
 
-class NoPlans:
+class NoPlans(JointPlanner):
     """A planner that has no plan for any order."""
 
     def __init__(self, sample: float) -> None:

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.situation import TrackedVehicle
 from codriving.geometry.path import Path
 from codriving.methods.coop_game_fuzzy.joint_choice import Array, Costs
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
 
 YIELDS_AFTER = 2.0
 """A driver who has been standing for this long keeps its place [s]."""

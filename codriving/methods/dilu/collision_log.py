@@ -4,11 +4,10 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Effect, Experience, Verdict
-from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.datatypes.record import Collision, Ending, Outcome
 from codriving.datatypes.situation import Decision, Situation
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import Action, WorldState
 from codriving.llm.prompts.free_text import one_line, seen_names
 from codriving.memory.describe import describe
 from codriving.methods.experience_log import ExperienceLog, LoggedDecision

@@ -4,10 +4,9 @@ from dataclasses import replace
 
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene_description import SceneDescription
-from codriving.datatypes.situation import ActionAssessment, Situation
+from codriving.datatypes.situation import ActionAssessment, SceneDescription, Situation
 from codriving.methods.single_vehicle.lane_choice import look
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.safety.safety_input import SIDES
 
 

@@ -8,14 +8,11 @@ from math import ceil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.deliberation import ReasonedDeliberation
-from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.outcome import Outcome
 from codriving.datatypes.parts import Account, CaseMemory, Method, Model
+from codriving.datatypes.record import Outcome
 from codriving.datatypes.road import Road
-from codriving.datatypes.situation import Decision, Situation
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import Decision, ReasonedDeliberation, Situation
+from codriving.datatypes.world import Action, DrivingModel, WorldState
 from codriving.errors import ConfigError
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.dilu.collision_log import CollisionLog, Correction, Mistake

@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from typing import Any, cast
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.situation import Situation
+from codriving.datatypes.world import Action, DrivingModel
 from codriving.geometry.road_map import RoadMap
 from codriving.llm.prompts.free_text import LONGEST_MEMORY, one_line, seen_names
 from codriving.llm.prompts.replies import CorrectionReply, correction_reply

@@ -3,11 +3,9 @@
 from math import atan2, degrees
 from typing import Any
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
-from codriving.datatypes.situation import Situation
+from codriving.datatypes.order import Conflict
+from codriving.datatypes.situation import SceneDescription, Situation, TrackedVehicle
+from codriving.datatypes.world import Action, DrivingModel
 from codriving.geometry.road_map import RoadMap
 from codriving.llm.prompts.free_text import Names, seen_names
 from codriving.llm.prompts.variables import lane_views, side_name

@@ -4,14 +4,14 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Verdict
 from codriving.datatypes.situation import Decision, Situation
+from codriving.datatypes.world import Action
 from codriving.methods.dilu.collision_log import Correction, Mistake
 from codriving.methods.single_vehicle.demonstrated import PREFERRED
 from codriving.methods.single_vehicle.method import Driver, account
 from codriving.reasoning.decision.cases import favour
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.safety.safety_input import SIDES
 
 

@@ -4,19 +4,17 @@ from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from typing import cast
 
-from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.ordering_problem import Pair
-from codriving.datatypes.scene_description import SceneDescription
+from codriving.datatypes.order import Conflict, Pair, PassingOrder
+from codriving.datatypes.situation import SceneDescription
 from codriving.llm.prompts.free_text import Names
 from codriving.llm.prompts.replies import OrderReply, first_of_pairs, order_reply
 from codriving.llm.prompts.variables import negotiation_view
 from codriving.llm.question import Question
 from codriving.methods.language_model.prompted_model import PromptedModel
-from codriving.reasoning.moment import Moment
 from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator
 from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
 from codriving.reasoning.ordering.problem import Problem, pose
+from codriving.reasoning.perception import Moment
 
 AgreedPairs = dict[Pair, str]
 """Pairs of CAVs, the one that goes first first, and why."""

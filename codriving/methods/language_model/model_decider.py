@@ -4,8 +4,8 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any, ClassVar, cast
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.situation import Decision, Situation
+from codriving.datatypes.world import Action
 from codriving.llm.prompts.free_text import names_for
 from codriving.llm.prompts.replies import DecisionReply, decision_reply
 from codriving.llm.prompts.variables import decision_view

@@ -6,10 +6,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.road import Turn
-from codriving.datatypes.vehicle import VehicleState
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import DrivingModel, VehicleState, WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.learned.known import Knowledge, Other
 from codriving.methods.learned.layout import FAR, JUNCTION, LANES

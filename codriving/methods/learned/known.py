@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 from math import hypot
 
-from codriving.datatypes.scene_description import TrackedVehicle
-from codriving.datatypes.vehicle import Kind, VehicleState
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import Kind, VehicleState, WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.sharing.tracking import Places, Tracking
 

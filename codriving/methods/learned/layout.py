@@ -5,8 +5,8 @@ from collections.abc import Collection
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.road import Road
+from codriving.datatypes.world import Action
 
 VERSION = 1
 """Version of the features; weights that were trained on another one are refused."""

@@ -7,12 +7,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.deliberation import Deliberation
-from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.parts import Method
 from codriving.datatypes.road import Road
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import Deliberation
+from codriving.datatypes.world import Action, DrivingModel, WorldState
 from codriving.errors import WeightsError
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.learned.features import Features, Observation

@@ -5,10 +5,9 @@ from math import cos, hypot
 
 import numpy as np
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Relation
+from codriving.datatypes.order import Relation
 from codriving.datatypes.road import LaneId, Straight
-from codriving.datatypes.vehicle import Intent, VehicleState
+from codriving.datatypes.world import Action, Intent, VehicleState
 from codriving.geometry.box import TRUE
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.path import Path

@@ -12,7 +12,7 @@ from codriving.methods.noncoop_game.payoff import Array, Flags, Temper
 from codriving.methods.single_vehicle.encounters import Encounter, leaders
 from codriving.methods.single_vehicle.lane_choice import Side
 from codriving.reasoning.conflicts import SLOWEST
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.idm import IntelligentDriver
 
 ACCELERATIONS: Array = np.array([2.0, 0.0, -2.0, -4.0])

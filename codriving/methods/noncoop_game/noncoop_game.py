@@ -12,7 +12,7 @@ from codriving.methods.pidm import ProjectedIdm, closest_action, mean_accelerati
 from codriving.methods.single_vehicle.encounters import Encounter, Patience, goes_first
 from codriving.methods.single_vehicle.lane_choice import Side
 from codriving.methods.single_vehicle.method import Choice, Driver
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.idm import IntelligentDriver
 
 UNBRAKED = int(np.sum(ACCELERATIONS >= 0))

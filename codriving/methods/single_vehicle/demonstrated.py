@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import Precedence
+from codriving.datatypes.world import Action
 from codriving.errors import require_range
 from codriving.methods.single_vehicle.encounters import (
     Encounter,
@@ -20,7 +20,7 @@ from codriving.methods.single_vehicle.encounters import (
 )
 from codriving.methods.single_vehicle.lane_choice import LaneChoice, Side
 from codriving.methods.single_vehicle.method import Choice, Driver
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import stays_behind
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.prediction.rollout import Plan

@@ -4,12 +4,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin
 
-from codriving.datatypes.conflict import Conflict, Relation
-from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
+from codriving.datatypes.order import Conflict, Relation
+from codriving.datatypes.situation import Role, SceneDescription, TrackedVehicle
 from codriving.geometry.box import Footprint
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.expectation import is_behind
 from codriving.reasoning.sharing.tracking import STANDING
 

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene_description import Role, TrackedVehicle
+from codriving.datatypes.situation import Role, TrackedVehicle
+from codriving.datatypes.world import Action
 from codriving.errors import require_range
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.safety.safety_input import SIDES
 from codriving.reasoning.sharing.scenes import with_roles

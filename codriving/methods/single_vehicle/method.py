@@ -5,17 +5,13 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.deliberation import ReasonedDeliberation
-from codriving.datatypes.driving_model import DrivingModel
 from codriving.datatypes.order import PassingOrder, Precedence
 from codriving.datatypes.parts import Method
-from codriving.datatypes.situation import ActionAssessment, Decision, Situation
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import ActionAssessment, Decision, ReasonedDeliberation, Situation
+from codriving.datatypes.world import Action, DrivingModel, WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.conflicts import SLOWEST
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.perception import single_vehicle_perception
+from codriving.reasoning.perception import Moment, single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
 

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import log2
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Memory, Verdict
 from codriving.datatypes.situation import ActionAssessment, Decision, Situation
+from codriving.datatypes.world import Action
 
 BY_SPEED = (Action.SLOWER, Action.IDLE, Action.FASTER)
 """Actions along the lane from the slowest to the fastest."""

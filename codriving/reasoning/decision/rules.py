@@ -4,9 +4,8 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.scene_description import Role, SceneDescription, TrackedVehicle
-from codriving.datatypes.situation import Decision, Situation
+from codriving.datatypes.situation import Decision, Role, SceneDescription, Situation, TrackedVehicle
+from codriving.datatypes.world import Action
 from codriving.reasoning.decision.cases import reconsider
 
 EAGERNESS = (Action.FASTER, Action.IDLE, Action.SLOWER)
@@ -71,16 +70,14 @@ def decide_one(situation: Situation) -> Decision:
         return change
     if not allowed:
         return Decision(ego, situation.allowed[0], "the only action that the safety check left")
-    waits_for = _first(situation)
+    waits_for = ", ".join(dict.fromkeys(p.first for p in situation.order.precedences if p.second == ego))
     ahead = {action: gain for action, gain in reached.items() if action in allowed}
     if not ahead:
         # Standing does not help a vehicle that has to go first; something safe has to be done.
         stands = situation.scene.ego.speed < STANDS
         action, how = (allowed[0], "fastest") if stands else (allowed[-1], "slowest")
-        with_whom = waits_for or "others"
-        return Decision(
-            ego, action, f"the order cannot be kept with {with_whom}; {action} is the {how} action that is safe"
-        )
+        kept = f"the order cannot be kept with {waits_for or 'others'}"
+        return Decision(ego, action, f"{kept}; {action} is the {how} action that is safe")
     best = max(ahead.values())
     action = next(action for action in allowed if ahead.get(action, -math.inf) >= best * (1 - TOLERANCE))
     return Decision(ego, action, _reason(action, allowed, waits_for))
@@ -105,12 +102,6 @@ def _lane_change(situation: Situation, reached: Mapping[Action, float]) -> Decis
     if sides[action] <= stays * (1 + OVERTAKES):
         return None
     return Decision(scene.ego.id, action, f"{action} gets {sides[action] - stays:.0f} m farther than staying")
-
-
-def _first(situation: Situation) -> str:
-    ego = situation.scene.ego.id
-    names = [p.first for p in situation.order.precedences if p.second == ego]
-    return ", ".join(dict.fromkeys(names))
 
 
 def _reason(action: Action, allowed: list[Action], waits_for: str) -> str:

@@ -4,32 +4,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.situation import TrackedVehicle
 from codriving.geometry.box import TRUE
 from codriving.reasoning.conflicts import is_open
-from codriving.reasoning.execution.violations import (
-    SIZES,
-    Array,
-    Meeting,
-    Steps,
-    first_true,
-    meetings_behind,
-    minds_humans,
-)
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.ordering.protocol import JointPlan
+from codriving.reasoning.execution.violations import SIZES, Meeting, meetings_behind, minds_humans
+from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
+from codriving.reasoning.perception import Moment
+from codriving.reasoning.prediction.clearance import Array, Flags, Steps, first_true
 from codriving.reasoning.prediction.expectation import is_behind, worth
-from codriving.reasoning.prediction.plans import PLANS
-from codriving.reasoning.prediction.rollout import Plan
-from codriving.reasoning.safety.safety_input import then_stop
+from codriving.reasoning.prediction.rollout import PLANS, Plan
+from codriving.reasoning.safety.safety_input import SIDES, then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
-
-Flags = NDArray[np.bool_]
-
-LANE_CHANGES = frozenset((Action.LANE_LEFT, Action.LANE_RIGHT))
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +27,7 @@ class Joint:
     stuck: tuple[str, ...]
 
 
-class JointPlans:
+class JointPlans(JointPlanner):
     """The plans of one moment.
 
     Args:
@@ -140,7 +126,7 @@ class JointPlans:
 
     def _against(self, first: str, k: int, second: str) -> Steps | None:
         """When each plan of a vehicle first comes too close to another one that has been planned before it."""
-        meetings = self._meetings(first, second)
+        meetings = self.meetings(first, second)
         if not meetings:
             return None
         key = (first, k, second)
@@ -152,7 +138,7 @@ class JointPlans:
             self._pairs[key] = found
         return self._pairs[key]
 
-    def _meetings(self, first: str, second: str) -> list[Meeting]:
+    def meetings(self, first: str, second: str) -> list[Meeting]:
         """Where one CAV has to mind another one that has been planned before it."""
         if (first, second) not in self._met:
             ego, other, zones = self.vehicles[second], self.vehicles[first], self.moment.road_map.zones
@@ -165,10 +151,6 @@ class JointPlans:
                         found.append(Meeting(sizes, place, there, n, self._lag, self.pad))
             self._met[first, second] = found
         return self._met[first, second]
-
-    def shares_zone(self, first: str, second: str) -> bool:
-        """Whether one CAV has to mind another one that goes before it."""
-        return bool(self._meetings(first, second))
 
     def plan(self, order: Sequence[str]) -> JointPlan:
         """Return what all CAVs would do."""
@@ -209,7 +191,7 @@ def drives_ahead(moment: Moment, vehicles: Mapping[str, TrackedVehicle]) -> set[
 def _is_alongside(moment: Moment, changing: TrackedVehicle, other: TrackedVehicle) -> bool:
     """Whether a CAV cannot go first since another one drives ahead or alongside on the lane that it must change to."""
     change = moment.scenes[changing.id].must_change
-    if change is None or not LANE_CHANGES & set(moment.available[changing.id]):
+    if change is None or SIDES.keys().isdisjoint(moment.available[changing.id]):
         return False
     (route, place), (way, there) = changing.routes[0], other.routes[0]
     if moment.scenes[other.id].ego.lane != change.lane:

@@ -2,13 +2,12 @@
 
 from collections.abc import Mapping
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.scene_description import Role, SceneDescription
-from codriving.datatypes.vehicle import VehicleState
+from codriving.datatypes.situation import Role, SceneDescription
+from codriving.datatypes.world import Action, VehicleState
 from codriving.geometry.box import TRUE
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.ordering.request import Request
+from codriving.reasoning.ordering.protocol import Request
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.safety.adjacent_lane import HEADWAY, MARGIN, check_adjacent
@@ -37,11 +36,7 @@ class LaneRequests:
         self._changed: dict[str, float] = {}
 
     def gather(
-        self,
-        moment: Moment,
-        agreed: PassingOrder,
-        expected: Mapping[str, tuple[Expected, ...]],
-        lag: int,
+        self, moment: Moment, agreed: PassingOrder, expected: Mapping[str, tuple[Expected, ...]], lag: int
     ) -> list[Request]:
         """Return the requests of this moment, the earliest first."""
         found = {name: self._wanted(moment, name, agreed, expected, lag) for name in sorted(moment.scenes)}
@@ -60,12 +55,7 @@ class LaneRequests:
         self._changed |= dict.fromkeys(sorted(names), time)
 
     def _wanted(
-        self,
-        moment: Moment,
-        name: str,
-        agreed: PassingOrder,
-        expected: Mapping[str, tuple[Expected, ...]],
-        lag: int,
+        self, moment: Moment, name: str, agreed: PassingOrder, expected: Mapping[str, tuple[Expected, ...]], lag: int
     ) -> tuple[Action, float] | None:
         """Return the lane change that a CAV wants most among those that pass the gap test, and its incentive."""
         scene, actions = moment.scenes[name], moment.available[name]

@@ -1,15 +1,14 @@
 """The layered executor, a reference: the first group accelerates, all others hold back and wait for their turn."""
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.scene_description import Role
+from codriving.datatypes.situation import Role
+from codriving.datatypes.world import Action
 from codriving.errors import require_range
 from codriving.geometry.box import TRUE
-from codriving.reasoning.execution.executor import Drive, Executor
 from codriving.reasoning.execution.joint_planner import JointPlans
-from codriving.reasoning.execution.planned import drive_of
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.execution.planned import Drive, Executor, drive_of
 from codriving.reasoning.ordering.problem import window
 from codriving.reasoning.ordering.protocol import Ordering
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.safety.safety_input import then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
 
@@ -106,8 +105,7 @@ def _occupied(moment: Moment, name: str) -> str:
     """Return the vehicle that is inside the first zone that a vehicle comes to."""
     ahead = [c for c in moment.conflicts[name] if c.distances[0] > 0]
     nearest = min((c.distances[0] for c in ahead), default=0.0)
-    inside = [c.other for c in ahead if c.distances[0] <= nearest + TRUE.length and c.distances[1] <= 0]
-    return inside[0] if inside else ""
+    return next((c.other for c in ahead if c.distances[0] <= nearest + TRUE.length and c.distances[1] <= 0), "")
 
 
 def _human_first(moment: Moment, name: str, ordering: Ordering) -> str:

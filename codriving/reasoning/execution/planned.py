@@ -1,18 +1,70 @@
-"""The planned executor: all CAVs are planned in passing order with the exact vehicle model, and arrive in time."""
+"""What an executor is, and the planned one: all CAVs are planned in passing order with the exact vehicle model."""
 
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import require_range
-from codriving.reasoning.execution.executor import Drive, Executor, humans_expected
 from codriving.reasoning.execution.joint_planner import Joint, JointPlans
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.ordering.protocol import Ordering
-from codriving.reasoning.prediction.expectation import Expected, progress_by_action
-from codriving.reasoning.prediction.plans import PLANS
-from codriving.reasoning.prediction.rollout import Plan
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning.perception import Moment
+from codriving.reasoning.prediction.expectation import Expected, expect_human, progress_by_action
+from codriving.reasoning.prediction.rollout import PLANS, Plan
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """What an executor makes of an order.
+
+    Attributes:
+        progress: How far each CAV gets within the horizon after each first action with which it can keep the order
+            [m], by id; no entry for an action with which it cannot.
+    """
+
+    actions: Mapping[str, Action]
+    reasons: Mapping[str, str]
+    expected: Mapping[str, tuple[Expected, ...]]
+    progress: Mapping[str, Mapping[Action, float]]
+    counts: Mapping[str, int] = field(default_factory=dict)
+
+
+class Executor(ABC):
+    """Turns passing orders into actions, step after step of one episode.
+
+    Attributes:
+        gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
+        margin: The same for motions, and for the gap test of lane changes [s].
+        library: Plans that it uses besides those that all methods predict.
+    """
+
+    name: str = ""
+    gap: float
+    margin: float
+    library: tuple[Plan, ...] = ()
+
+    def reset(self) -> None:  # noqa: B027
+        """Begin an episode; nothing is remembered from the one before."""
+
+    @abstractmethod
+    def planner(self, moment: Moment) -> JointPlanner:
+        """Return what plans all CAVs in an order; the rule uses it to choose the order."""
+
+    @abstractmethod
+    def drive(self, moment: Moment, ordering: Ordering) -> Drive:
+        """Return what every CAV does now."""
+
+
+def humans_expected(moment: Moment) -> dict[str, tuple[Expected, ...]]:
+    """Expect each human driver that any CAV knows to keep its speed, on every way that it may take."""
+    found: dict[str, tuple[Expected, ...]] = {}
+    for known in moment.vehicles.values():
+        for v in known.values():
+            if not v.is_cav and v.id not in found:
+                found[v.id] = expect_human(moment, v)
+    return found
 
 
 class Planned(Executor):
@@ -81,7 +133,7 @@ def _reason(plans: JointPlans, joint: Joint, name: str, sequence: Sequence[str])
     if joint.chosen[name] == 0:
         return "nobody has to be waited for"
     earlier = sequence[: sequence.index(name)] if name in sequence else sequence
-    waits = [other for other in earlier if other in joint.chosen and plans.shares_zone(other, name)]
+    waits = [other for other in earlier if other in joint.chosen and plans.meetings(other, name)]
     action = plans.plan_of(name, joint.chosen[name])[0]
     what = {Action.FASTER: "accelerates", Action.IDLE: "keeps its speed", Action.SLOWER: "slows down"}[action]
     return f"{what} to arrive after {', '.join(waits)}" if waits else f"{what} because of human drivers or those ahead"

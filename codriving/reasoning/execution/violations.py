@@ -6,30 +6,22 @@ Functions return the step of the first violation of each plan (plans,), or the n
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.order import Conflict
+from codriving.datatypes.situation import TrackedVehicle
 from codriving.geometry.box import PLANNING, TRUE, Footprint
 from codriving.geometry.zone import ConflictZone
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
+from codriving.reasoning.prediction.clearance import Array, Steps, first_true
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.conflict_lane import BODY
-
-Array = NDArray[np.float64]
-Steps = NDArray[np.int64]
 
 SIZES: tuple[Footprint, ...] = (PLANNING, BODY, TRUE)
 """Sizes of vehicles for planning; a smaller one is taken where vehicles are already closer together than the larger."""
 
 ROOM = 0.5
 """Room that a driver who gives way leaves to the zone [m]."""
-
-
-def first_true(flags: NDArray[np.bool_]) -> Steps:
-    """Return the first step at which a flag of each row is set."""
-    return np.asarray(np.where(flags.any(axis=1), flags.argmax(axis=1), flags.shape[1]))
 
 
 def passes_too_early(zone: ConflictZone, ego: Array, first: Array, lag: int, pad: float) -> Steps:

@@ -1,15 +1,16 @@
 """The conflict coordinator by rules: arrival order, turning yields to straight, who is committed goes (III-C.3)."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise, permutations
+from math import inf
 
-from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance, Pair
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.ordering.agreement import agreement
+from codriving.datatypes.order import ApproachingVehicle, Instance, Pair, PassingOrder, Precedence
 from codriving.reasoning.ordering.problem import Problem, pose
 from codriving.reasoning.ordering.schedule import schedule, start_time
+from codriving.reasoning.perception import Moment
 
 TURN_YIELDS = 1.0
 """A turning vehicle goes before one that goes straight only if it can do so this much earlier [s]."""
@@ -69,12 +70,9 @@ class RuleCoordinator(Coordinator):
             options = []
             for vehicle in ready:
                 time = start_time(vehicle, times, instance.separation)
+                rivals = (k for k in waiting if (k, vehicle.id) in instance.separation and k != vehicle.id)
                 handicap = TURN_YIELDS if vehicle.turning else 0.0
-                if any(
-                    self._was_first(k, vehicle.id)
-                    for k in waiting
-                    if (k, vehicle.id) in instance.separation and k != vehicle.id
-                ):
+                if any(self._was_first(k, vehicle.id) for k in rivals):
                     handicap += KEEPS_TURN
                 options.append((not vehicle.committed, time + handicap, vehicle.id, time))
             _, _, name, time = min(options)
@@ -103,16 +101,13 @@ def improve(times: Mapping[str, float], instance: Instance, previous: PassingOrd
     improved = True
     while improved and tries < TRIES:
         improved = False
-        for k in range(len(order)):
-            for to in range(len(order)):
-                if to == k:
-                    continue
-                tries += 1
-                moved = order[:k] + order[k + 1 :]
-                moved.insert(to, order[k])
-                found = schedule(instance, moved)
-                if found is not None and cost(found, instance, previous) < least - SAVES:
-                    best, least, order, improved = found, cost(found, instance, previous), moved, True
+        for k, to in permutations(range(len(order)), 2):
+            tries += 1
+            moved = order[:k] + order[k + 1 :]
+            moved.insert(to, order[k])
+            found = schedule(instance, moved)
+            if found is not None and cost(found, instance, previous) < least - SAVES:
+                best, least, order, improved = found, cost(found, instance, previous), moved, True
     return best
 
 
@@ -122,13 +117,10 @@ def cost(planned: Mapping[str, float], instance: Instance, previous: PassingOrde
     Args:
         planned: When each vehicle passes, in the order in which they go [s].
     """
-    changed = 0.0
-    if previous is not None:
-        place = {name: k for k, name in enumerate(planned)}
-        for p in previous.precedences:
-            if p.first in place and p.second in place and place[p.first] > place[p.second]:
-                changed += SWAP
-    return sum(t - max(instance.vehicles[name].eta, 0.0) for name, t in planned.items()) + changed
+    place = {name: k for k, name in enumerate(planned)}
+    agreed = () if previous is None else previous.precedences
+    turned = sum(p.first in place and p.second in place and place[p.first] > place[p.second] for p in agreed)
+    return sum(t - max(instance.vehicles[name].eta, 0.0) for name, t in planned.items()) + SWAP * turned
 
 
 def reason_between(first: ApproachingVehicle, second: ApproachingVehicle) -> str:
@@ -142,3 +134,86 @@ def reason_between(first: ApproachingVehicle, second: ApproachingVehicle) -> str
     if first.eta <= second.eta:
         return f"{first.id} can be there earlier ({first.eta:.1f} s against {second.eta:.1f} s)"
     return f"{first.id} goes first so that the others have to wait less"
+
+
+def agreement(
+    moment: Moment, problem: Problem, times: Mapping[str, float], reason: Callable[[str, str], str], binding: bool
+) -> PassingOrder:
+    """Write down who goes first in every conflict.
+
+    A human driver goes first unless the CAV is scheduled before the driver can be there.
+
+    Args:
+        times: When each CAV passes, in the order in which they go [s].
+    """
+    rank = {name: k for k, name in enumerate(times)}
+    pairs = {(min(c.ego, c.other), max(c.ego, c.other)) for cs in moment.conflicts.values() for c in cs}
+    ranked = (sorted(pair, key=rank.__getitem__) for pair in sorted(pairs) if rank.keys() >= set(pair))
+    precedences = [Precedence(first, second, reason(first, second)) for first, second in ranked]
+    arrivals = dict(times)
+    for ego, people in problem.passages.items():
+        for human, (begin, end) in people.items():
+            human_first = times[ego] > begin
+            first, second = (human, ego) if human_first else (ego, human)
+            precedences.append(Precedence(first, second, reason_human(human_first, begin, end, times[ego])))
+            arrivals[human] = min(arrivals.get(human, begin), begin)
+    kept, sequence = without_cycles(precedences, arrivals)
+    return PassingOrder(sequence, kept, binding)
+
+
+def reason_human(human_first: bool, begin: float, end: float, time: float) -> str:
+    """Explain the order of a CAV and a human driver.
+
+    Args:
+        begin: Time from which the CAV could no longer pass in front [s].
+        end: Time from which the CAV can pass behind [s].
+        time: When the CAV will pass [s].
+    """
+    if human_first:
+        return f"a human driver shares no intent and may use the zone until {end:.1f} s from now"
+    if begin == inf:
+        return "the human driver gives way: it stands, or the CAV has the right of way or is in the junction already"
+    return f"the CAV is through ({time:.1f} s) before the human driver can be there"
+
+
+def without_cycles(
+    precedences: Sequence[Precedence], times: Mapping[str, float]
+) -> tuple[tuple[Precedence, ...], tuple[str, ...]]:
+    """Drop precedences until none of them contradict, and line all vehicles up accordingly.
+
+    CAVs are scheduled one after another, so a circle always runs through a human driver, and one of its links
+    contradicts the times; that link is dropped. A CAV that is not told to go first has to be able to wait.
+
+    Args:
+        times: When each vehicle is expected to pass [s]; settles what the pairs leave open.
+
+    Returns:
+        The precedences that are kept, and all vehicles from first to last.
+    """
+    kept = list(precedences)
+    while True:
+        ahead: dict[str, set[str]] = {name: set() for name in times}
+        for p in kept:
+            ahead[p.second].add(p.first)
+        try:
+            sorter = TopologicalSorter(ahead)
+            sorter.prepare()
+        except CycleError as error:
+            pairs = set(pairwise(error.args[1]))
+            links = [p for p in kept if (p.first, p.second) in pairs]
+            kept.remove(max(links, key=lambda p: (_gives_up(p, times), p.first, p.second)))
+            continue
+        sequence: list[str] = []
+        ready = list(sorter.get_ready())
+        while ready:
+            name = min(ready, key=lambda name: (times[name], name))
+            sequence.append(name)
+            ready.remove(name)
+            sorter.done(name)
+            ready += sorter.get_ready()
+        return tuple(kept), tuple(sequence)
+
+
+def _gives_up(p: Precedence, times: Mapping[str, float]) -> tuple[bool, float]:
+    """Rank a link of a circle: first those that the times contradict most."""
+    return times[p.first] > times[p.second], times[p.first] - times[p.second]

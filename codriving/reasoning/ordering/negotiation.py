@@ -9,13 +9,12 @@ import numpy as np
 
 from codriving.datatypes.order import PassingOrder, Precedence
 from codriving.datatypes.road import Turn
-from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
+from codriving.datatypes.situation import SceneDescription, TrackedVehicle
 from codriving.reasoning.conflicts import ttcp
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.ordering.agreement import without_cycles
-from codriving.reasoning.ordering.coordinator import TURN_YIELDS, Coordinator
+from codriving.reasoning.ordering.coordinator import TURN_YIELDS, Coordinator, without_cycles
 from codriving.reasoning.ordering.problem import passes_first
-from codriving.reasoning.sharing.cda import OwnOrder
+from codriving.reasoning.perception import Moment
+from codriving.reasoning.sharing.sharing import OwnOrder
 
 DOUBT = 1.0
 """Difference of arrival times at which a guess is right in about three of four cases [s]."""
@@ -85,14 +84,12 @@ class OwnOrders(Negotiation):
     def _compare(
         self, moment: Moment, scene: SceneDescription, n: TrackedVehicle, mine: float, theirs: float
     ) -> tuple[bool, str]:
-        handicap = _handicap(moment, scene.intent.route) - _handicap(moment, n.routes[0][0])
-        lead = theirs - mine - handicap
+        lead = theirs - mine - (_handicap(moment, scene.intent.route) - _handicap(moment, n.routes[0][0]))
         said = f"{mine:.1f} s against {theirs:.1f} s for {n.id}"
         if self.reading == "independent":
             pair = (scene.ego.id, n.id)
             if pair not in self._guesses:
-                entropy = (self.seed, crc32("|".join(pair).encode()))
-                draw = np.random.default_rng(np.random.SeedSequence(entropy)).random()
+                draw = np.random.default_rng((self.seed, crc32("|".join(pair).encode()))).random()
                 self._guesses[pair] = bool(draw < 1 / (1 + exp(-max(min(lead / DOUBT, 50.0), -50.0))))
             return self._guesses[pair], f"a guess at {said}"
         if self.reading == "same_rule" and abs(lead) < 1e-9:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 
-from codriving.datatypes.ordering_problem import Instance, Pair
+from codriving.datatypes.order import Instance, Pair
 
 CHANGES = 1.0
 """Time by which the one that could be there later must have become the earlier one [s]."""
@@ -69,8 +69,7 @@ def find_circle(pairs: Iterable[Pair]) -> list[str] | None:
     try:
         sorter.prepare()
     except CycleError as error:
-        circle: list[str] = error.args[1]
-        return circle
+        return list(error.args[1])
     return None
 
 

@@ -7,14 +7,13 @@ from math import inf
 
 import numpy as np
 
-from codriving.datatypes.conflict import Conflict, Relation
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance, Pair
+from codriving.datatypes.order import ApproachingVehicle, Conflict, Instance, Pair, Relation
 from codriving.datatypes.road import Turn
-from codriving.datatypes.scene_description import Role, TrackedVehicle
+from codriving.datatypes.situation import Role, TrackedVehicle
 from codriving.geometry.box import TRUE, Footprint
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.right_of_way import gives_way
 
 GAP = 1.0

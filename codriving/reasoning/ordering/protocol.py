@@ -1,15 +1,54 @@
-"""What an ordering rule is: it is handed an instance and says in which order vehicles pass."""
+"""What an ordering rule is: it is handed an instance, or requests to change lanes, and says who passes first."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.ordering_problem import Instance, Pair
-from codriving.reasoning.ordering.request import Request
+from codriving.datatypes.order import Instance, Pair
+from codriving.datatypes.world import Action
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A CAV's wish to change lanes.
+
+    Attributes:
+        incentive: What it and those behind it gain (MOBIL) [m/s2]; inf if its route asks for the change.
+    """
+
+    ego: str
+    action: Action
+    incentive: float
+    since: float  # Simulated time at which it first asked [s]
+    excludes: frozenset[str] = frozenset()
+
+
+def in_order(requests: Iterable[Request]) -> frozenset[str]:
+    """Grant one request after another if it overlaps with none that has been granted."""
+    granted: set[str] = set()
+    for request in requests:
+        if not granted & request.excludes:
+            granted.add(request.ego)
+    return frozenset(granted)
+
+
+def best_subset(requests: Sequence[Request]) -> frozenset[str]:
+    """Grant the requests that do not overlap and gain most together."""
+    bounded = sorted(requests, key=lambda r: (-min(r.incentive, 1e6), r.since, r.ego))[:12]
+    best: tuple[float, tuple[str, ...]] = (0.0, ())
+    for size in range(1, len(bounded) + 1):
+        for chosen in combinations(bounded, size):
+            names = {r.ego for r in chosen}
+            if any(r.excludes & names for r in chosen):
+                continue
+            gain = sum(min(r.incentive, 1e6) for r in chosen)
+            if gain > best[0] + 1e-9:
+                best = gain, tuple(sorted(names))
+    return frozenset(best[1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,20 +85,20 @@ class JointPlan:
         return np.gradient(self.travels[name], self.sample, edge_order=2)
 
 
-class JointPlanner(Protocol):
+class JointPlanner(ABC):
     """Plans all CAVs in a given order; the same planner that drives the cars."""
 
+    @abstractmethod
     def plan(self, order: Sequence[str]) -> JointPlan:
         """Return what all CAVs would do."""
-        ...
 
+    @abstractmethod
     def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
         """Return the time between one vehicle's leaving a shared zone and the other's entering it, the least of all.
 
         Returns:
             Time [s]; inf if they share no zone or one of them does not come there within the horizon.
         """
-        ...
 
 
 class OrderRule(ABC):

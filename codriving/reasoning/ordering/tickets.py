@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance, Pair
+from codriving.datatypes.order import ApproachingVehicle, Instance, Pair
 from codriving.errors import require_range
 from codriving.reasoning.ordering.schedule import Times, repaired
 

@@ -7,6 +7,7 @@ from codriving.geometry.zone import ConflictZone
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Steps = NDArray[np.int64]
 
 REACTION = 1.0
 """Time after which a driver brakes for a vehicle that is in the way [s]."""
@@ -66,7 +67,12 @@ def reacts(zone: ConflictZone, ego: Array, other: Array, sample: float) -> Array
     return np.concatenate([other[:sees], other[sees] + pace * later - BRAKING * later**2 / 2])
 
 
-def first_overlap(zone: ConflictZone, ego: Array, other: Array) -> NDArray[np.int64]:
+def first_true(flags: Flags) -> Steps:
+    """Return the first step at which a flag of each row is set; the number of steps where none is."""
+    return np.asarray(np.where(flags.any(axis=1), flags.argmax(axis=1), flags.shape[1]))
+
+
+def first_overlap(zone: ConflictZone, ego: Array, other: Array) -> Steps:
     """Step at which two motions first overlap in a zone.
 
     Args:
@@ -77,5 +83,4 @@ def first_overlap(zone: ConflictZone, ego: Array, other: Array) -> NDArray[np.in
         One step a plan (plans,); n where they never overlap.
     """
     begin, end = zone.blocked(other)
-    hit = (ego >= begin) & (ego <= end)
-    return np.asarray(np.where(hit.any(axis=1), hit.argmax(axis=1), ego.shape[1]))
+    return first_true((ego >= begin) & (ego <= end))

@@ -1,23 +1,18 @@
 """How all vehicles are expected to move if the passing order is kept: planned one after another, first to last."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Relation
-from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.order import PassingOrder, Relation
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import Action
 from codriving.geometry.zone import ConflictZone
 from codriving.reasoning.conflicts import is_open
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.prediction.clearance import stays_behind
-from codriving.reasoning.prediction.plans import PLANS, STARTS_WITH
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from codriving.reasoning.perception import Moment
+from codriving.reasoning.prediction.clearance import Array, Flags, stays_behind
+from codriving.reasoning.prediction.rollout import PLANS, STARTS_WITH
 
 HEADWAY = 0.8
 """Time gap to the vehicle ahead that is planned for [s]; the safety check alone would allow less or ask for more."""
@@ -64,6 +59,12 @@ def expect_all(
     return found
 
 
+def expect_human(moment: Moment, human: TrackedVehicle) -> tuple[Expected, ...]:
+    """Expect a human driver to keep its speed on each route that it may take."""
+    steady = moment.forecast.reach(human.speed, False).steady
+    return tuple(Expected(route, place + steady, True, {}) for route, place in human.routes)
+
+
 def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str, tuple[Expected, ...]]:
     """Plan every vehicle that one CAV knows of in the passing order against those before it.
 
@@ -75,12 +76,8 @@ def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str,
     Returns:
         Expected motions by id: one a route that the vehicle may be on or reaches onto, that of its intent first.
     """
-    vehicles, forecast = moment.vehicles[ego], moment.forecast
-    found: dict[str, tuple[Expected, ...]] = {}
-    for v in vehicles.values():
-        if not v.is_cav:
-            steady = forecast.reach(v.speed, False).steady
-            found[v.id] = tuple(Expected(route, place + steady, True, {}) for route, place in v.routes)
+    vehicles = moment.vehicles[ego]
+    found = {v.id: expect_human(moment, v) for v in vehicles.values() if not v.is_cav}
     rank = {name: i for i, name in enumerate(order.sequence)}
     # CAVs in no conflict follow the order of the lanes: the vehicle farther along its route first.
     cavs = (v for v in vehicles.values() if v.is_cav)
@@ -149,10 +146,9 @@ def keeps_order(
             there = float(motion.places[0])
             for zone in moment.road_map.zones(route, motion.route):
                 following = is_behind(zone, place, there)
-                if not following and not (minds and is_open(zone, place, there)):
-                    continue
-                after = headway if following else lag
-                keeps &= stays_behind(zone, places, motion.places[: places.shape[1]], after, 0.0)
+                if following or (minds and is_open(zone, place, there)):
+                    after = headway if following else lag
+                    keeps &= stays_behind(zone, places, motion.places[: places.shape[1]], after, 0.0)
     return keeps
 
 
@@ -181,18 +177,6 @@ def progress_by_action(gained: Array) -> dict[Action, float]:
     """
     best = {first: float(max(gained[list(plans)])) for first, plans in STARTS_WITH.items()}
     return {action: gain for action, gain in best.items() if gain > -np.inf}
-
-
-def binding_zones(
-    zones: Sequence[ConflictZone], place: float, other: float, minds_conflicts: bool
-) -> list[ConflictZone]:
-    """Select the zones in which a vehicle has to mind another one that goes before it.
-
-    Args:
-        place: Arc length of the vehicle [m].
-        other: Arc length of the one that goes before it [m].
-    """
-    return [z for z in zones if (minds_conflicts and is_open(z, place, other)) or is_behind(z, place, other)]
 
 
 def is_behind(zone: ConflictZone, place: float, other: float) -> bool:

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.world import Action, DrivingModel
+from codriving.reasoning.prediction.clearance import Array
 from codriving.reasoning.prediction.rollout import Plan, canonical, travelled
-
-Array = NDArray[np.float64]
 
 HORIZON = 10.0
 """How far ahead each vehicle is predicted [s]; a stop from top speed and a crossing both fit in."""
@@ -222,6 +220,5 @@ def fastest(speed: float, times: Array, limit: float) -> Array:
     Returns:
         Distance travelled (n,) [m].
     """
-    gain = max(limit - speed, 0.0)
-    rising = np.minimum(times, gain / HARD_ACCELERATION)
+    rising = np.minimum(times, max(limit - speed, 0.0) / HARD_ACCELERATION)
     return np.asarray(speed * times + HARD_ACCELERATION * rising**2 / 2 + HARD_ACCELERATION * rising * (times - rising))

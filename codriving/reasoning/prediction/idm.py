@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from math import sqrt
 
-from codriving.datatypes.scene_description import TrackedVehicle
-from codriving.datatypes.vehicle import VehicleState
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import VehicleState
 
 Pair = tuple[TrackedVehicle | None, TrackedVehicle | None]
 """The vehicles next ahead and behind on a lane."""

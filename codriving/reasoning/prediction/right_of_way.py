@@ -1,7 +1,7 @@
 """Whether a human driver has to give way, and can: the traffic rules that all drivers know (Section III-C.3)."""
 
-from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.order import Conflict
+from codriving.datatypes.situation import TrackedVehicle
 from codriving.geometry.road_map import RoadMap
 
 STANDS = 2.0

@@ -1,16 +1,13 @@
-"""What CAVs do when they are given lists of actions: highway-env's rule, simulated exactly."""
+"""What CAVs do when they are given lists of actions: highway-env's rule, simulated exactly; the library of plans."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.driving_model import DrivingModel
-
-Array = NDArray[np.float64]
+from codriving.datatypes.world import Action, DrivingModel
+from codriving.reasoning.prediction.clearance import Array
 
 Plan = tuple[Action, ...]
 """Actions, one a decision; the last one is repeated for ever."""
@@ -19,12 +16,41 @@ CHANGE = {Action.SLOWER: -1, Action.FASTER: 1}
 """Steps of the target speed that an action asks for; every other action leaves the target alone."""
 
 
+FIRST = (Action.FASTER, Action.IDLE, Action.SLOWER)
+"""What a vehicle may do now, most progress first."""
+
+WAITS = (0, 1, 2, 3, 4, 6, 8, 11, 14)
+"""For how many decisions it may then slow down before it goes for good."""
+
+HOLDS = (0, 1, 2, 4)
+"""For how many decisions it may then slow down or accelerate before it keeps its speed, as one does behind a leader."""
+
+ROLLS = (1, 2, 3, 4, 6, 8, 11)
+"""For how many decisions it may then keep its speed before it goes for good, to arrive moving when the way is free."""
+
+
+def _after(first: Action) -> Iterator[Plan]:
+    yield from ((first, *(Action.SLOWER,) * k, Action.FASTER) for k in WAITS)
+    for slows in (0, 1):
+        yield from ((first, *(Action.SLOWER,) * slows, *(Action.IDLE,) * k, Action.FASTER) for k in ROLLS)
+    yield from ((first, *(change,) * k, Action.IDLE) for k in HOLDS for change in (Action.FASTER, Action.SLOWER))
+    yield first, Action.SLOWER
+
+
+PLANS: tuple[Plan, ...] = tuple(dict.fromkeys(plan for first in FIRST for plan in _after(first)))
+"""Every plan: something now, then slowing down or rolling for a while or for good, then going or keeping the speed."""
+
+STARTS_WITH: dict[Action, tuple[int, ...]] = {
+    first: tuple(i for i, plan in enumerate(PLANS) if plan[0] is first) for first in FIRST
+}
+"""Indices of the plans that begin with an action."""
+
+
 def canonical(plan: Plan) -> Plan:
     """Return the shortest way to write a plan: its last action is repeated anyway."""
-    n = len(plan)
-    while n > 1 and plan[n - 2] is plan[n - 1]:
-        n -= 1
-    return plan[:n]
+    while len(plan) > 1 and plan[-2] is plan[-1]:
+        plan = plan[:-1]
+    return plan
 
 
 def _changes(plans: tuple[Plan, ...], decisions: int) -> Array:

@@ -1,7 +1,7 @@
 """Second layer: a lane change must not collide with the vehicles of the adjacent lane (Section III-C.4)."""
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import Action
 from codriving.reasoning.prediction.expectation import is_behind
 from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.safety_input import SIDES, SafetyInput

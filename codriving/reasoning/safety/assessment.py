@@ -1,26 +1,19 @@
 """All three layers together: which actions stay, and why the others were removed."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.situation import ActionAssessment
-from codriving.reasoning.prediction.clearance import first_overlap
-from codriving.reasoning.prediction.expectation import (
-    binding_zones,
-    is_behind,
-    plans_that_keep,
-    progress_by_action,
-    worth,
-)
+from codriving.datatypes.world import Action
+from codriving.reasoning.conflicts import is_open
+from codriving.reasoning.prediction.clearance import Array, Steps, first_overlap
+from codriving.reasoning.prediction.expectation import is_behind, plans_that_keep, progress_by_action, worth
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
 from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.safety_input import LONGITUDINAL, SafetyInput
 from codriving.reasoning.safety.same_lane import check_ahead, check_behind
-
-Array = NDArray[np.float64]
 
 
 class SafetyCheck(ABC):
@@ -36,10 +29,7 @@ class NoCheck(SafetyCheck):
 
     def assess(self, given: SafetyInput) -> tuple[ActionAssessment, ...]:
         """Return every action as safe."""
-        return tuple(
-            ActionAssessment(action, True, (), arrivals(given, k), progress(given, action))
-            for k, action in enumerate(given.actions)
-        )
+        return _assessments(given, dict.fromkeys(given.actions, ()))
 
 
 class ThreeLayers(SafetyCheck):
@@ -63,16 +53,16 @@ class ThreeLayers(SafetyCheck):
         forced = None if any(not why for why in reasons.values()) else least_dangerous(given)
         if forced is not None:
             reasons[forced].append("no action is safe; this one is the least dangerous")
-        return tuple(
-            ActionAssessment(
-                action,
-                not reasons[action] or action is forced,
-                tuple(reasons[action]),
-                arrivals(given, k),
-                progress(given, action),
-            )
-            for k, action in enumerate(given.actions)
-        )
+        return _assessments(given, reasons, forced)
+
+
+def _assessments(
+    given: SafetyInput, reasons: Mapping[Action, Sequence[str]], forced: Action | None = None
+) -> tuple[ActionAssessment, ...]:
+    return tuple(
+        ActionAssessment(action, not why or action is forced, tuple(why), arrivals(given, k), progress(given, action))
+        for k, (action, why) in enumerate(reasons.items())
+    )
 
 
 def arrivals(given: SafetyInput, k: int) -> tuple[float, ...]:
@@ -107,22 +97,17 @@ def least_dangerous(given: SafetyInput) -> Action:
 
     Others are taken to keep their speed, to brake hard and to accelerate hard; the vehicle ahead may always brake.
     """
-    best: tuple[int, int, Action] | None = None
     preferred = {Action.SLOWER: 2, Action.IDLE: 1}
     motions = np.concatenate((given.stops, given.goes))
     soonest = sum(_soonest(given, motions, n).reshape(2, -1).max(axis=0) for n in range(3))
-    for action, margin in zip(given.actions, np.asarray(soonest).tolist(), strict=True):
-        key = (margin, preferred.get(action, 0), action)
-        if best is None or key[:2] > best[:2]:
-            best = key
-    assert best is not None  # there is always at least IDLE
-    return best[2]
+    margins: dict[Action, int] = dict(zip(given.actions, np.asarray(soonest).tolist(), strict=True))
+    return max(margins, key=lambda action: (margins[action], preferred.get(action, 0)))
 
 
-def _soonest(given: SafetyInput, motions: Array, guess: int) -> NDArray[np.int64]:
+def _soonest(given: SafetyInput, motions: Array, guess: int) -> Steps:
     """Return the step at which each motion first overlaps with that of another vehicle, for one of three guesses."""
     scene = given.scene
-    soonest: NDArray[np.int64] = np.full(len(motions), motions.shape[1])
+    soonest: Steps = np.full(len(motions), motions.shape[1])
     for name, expected in given.expected.items():
         if name == scene.ego.id:
             continue
@@ -131,10 +116,10 @@ def _soonest(given: SafetyInput, motions: Array, guess: int) -> NDArray[np.int64
         travel = (reach.steady, reach.least, reach.most)[guess]
         for e in expected:
             now = float(e.places[0])
-            zones = given.road_map.zones(scene.intent.route, e.route)
             # A vehicle behind on the same lane has to mind the CAV, not the other way round.
-            for zone in binding_zones(zones, scene.place, now, True):
+            for zone in given.road_map.zones(scene.intent.route, e.route):
                 ahead = is_behind(zone, scene.place, now)
-                steps = first_overlap(zone, motions, now + (reach.least if ahead else travel))
-                soonest = np.minimum(soonest, steps)
+                if ahead or is_open(zone, scene.place, now):
+                    steps = first_overlap(zone, motions, now + (reach.least if ahead else travel))
+                    soonest = np.minimum(soonest, steps)
     return soonest

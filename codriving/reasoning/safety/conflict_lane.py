@@ -3,19 +3,15 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Conflict, Relation
-from codriving.datatypes.scene_description import TrackedVehicle
+from codriving.datatypes.order import Conflict, Relation
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import Action
 from codriving.geometry.box import TRUE, Footprint
 from codriving.geometry.zone import ConflictZone
-from codriving.reasoning.prediction.clearance import first_overlap, reacts, stays_ahead, stays_behind
+from codriving.reasoning.prediction.clearance import Array, Flags, first_overlap, reacts, stays_ahead, stays_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.safety_input import SafetyInput
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 PAD = 0.5
 """Room along the route beyond the planning footprint [m]."""

@@ -4,22 +4,18 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Conflict
-from codriving.datatypes.order import PassingOrder, Precedence
-from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene_description import SceneDescription, TrackedVehicle
+from codriving.datatypes.order import Conflict, PassingOrder, Precedence
+from codriving.datatypes.situation import SceneDescription, TrackedVehicle
+from codriving.datatypes.world import Action
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.conflicts import find_conflicts
-from codriving.reasoning.moment import Moment
+from codriving.reasoning.perception import Moment
+from codriving.reasoning.prediction.clearance import Array
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.rollout import Plan
 from codriving.reasoning.sharing.scenes import with_conflicts, with_roles
-
-Array = NDArray[np.float64]
 
 LONGITUDINAL = (Action.SLOWER, Action.IDLE, Action.FASTER)
 
@@ -118,15 +114,10 @@ def safety_input(
     return SafetyInput(moment, ego, order, expected, lag, scene.place + stops, scene.place + goes)
 
 
-def lane_after(scene: SceneDescription, action: Action) -> LaneId:
-    """Return the lane to which a lane change leads."""
-    start, end, index = scene.intent.target_lane
-    return start, end, index + SIDES[action]
-
-
 def _changed(given: SafetyInput, action: Action) -> SafetyInput | None:
     moment, scene, road_map = given.moment, given.scene, given.road_map
-    lane = lane_after(scene, action)
+    start, end, index = scene.intent.target_lane
+    lane = (start, end, index + SIDES[action])
     beside = road_map.changes.routes_beside(scene.intent.route, scene.intent.target_lane)
     route = next((name for name, side in beside if side == lane), None)
     if route is None:

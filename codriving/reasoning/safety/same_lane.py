@@ -1,15 +1,12 @@
 """First layer: no collision with the vehicles of the same lane, ahead or behind (Section III-C.4)."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.scene_description import Role, TrackedVehicle
-from codriving.reasoning.prediction.clearance import stays_behind
+from codriving.datatypes.situation import Role, TrackedVehicle
+from codriving.datatypes.world import Action
+from codriving.reasoning.prediction.clearance import Array, stays_behind
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind
 from codriving.reasoning.safety.safety_input import SafetyInput
-
-Array = NDArray[np.float64]
 
 STANDSTILL_GAP = 1.0
 """Free distance that must be left to the leading vehicle when both have stopped [m]."""
@@ -97,10 +94,9 @@ def forced_braking(given: SafetyInput, behind: TrackedVehicle, goes: Array) -> f
     Returns:
         Braking [m/s2]; inf if there is no room left.
     """
-    after = given.forecast.model.decision_interval
-    done = max(1, int(np.searchsorted(given.forecast.times, after + 1e-9)) - 1)
-    speed = float(goes[done] - goes[done - 1]) / given.forecast.sample
-    closing = behind.speed - speed
+    forecast = given.forecast
+    done = max(1, int(np.searchsorted(forecast.times, forecast.model.decision_interval + 1e-9)) - 1)
+    closing = behind.speed - float(goes[done] - goes[done - 1]) / forecast.sample
     if closing <= 0 or behind.gap is None:
         return 0.0
     room = behind.gap + float(goes[done] - goes[0]) - behind.speed * REACTION

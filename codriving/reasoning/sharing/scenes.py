@@ -4,11 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import cos, pi
 
-from codriving.datatypes.conflict import Conflict
+from codriving.datatypes.order import Conflict
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.scene_description import LaneChange, Role, SceneDescription, TrackedVehicle
-from codriving.datatypes.vehicle import Intent, Kind, VehicleState
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import LaneChange, Role, SceneDescription, TrackedVehicle
+from codriving.datatypes.world import Intent, Kind, VehicleState, WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.sharing.sharing import Detections
 from codriving.reasoning.sharing.tracking import Tracking
@@ -68,11 +67,8 @@ def with_roles(
     others = tuple(neighbours)
     road_map.project_all(route, [(n.x, n.y) for n in others])
     roles = _roles(others, ego, route, place, road_map)
-    wanted = [roles.get(n.id, NO_ROLE) for n in others]
-    return tuple(
-        n if (n.role, n.gap) == (role, gap) else replace(n, role=role, gap=gap)
-        for n, (role, gap) in zip(others, wanted, strict=True)
-    )
+    wanted = ((n, *roles.get(n.id, NO_ROLE)) for n in others)
+    return tuple(n if (n.role, n.gap) == (role, gap) else replace(n, role=role, gap=gap) for n, role, gap in wanted)
 
 
 def _roles(
@@ -95,10 +91,7 @@ def _roles(
 def with_conflicts(scene: SceneDescription, conflicts: tuple[Conflict, ...], road_map: RoadMap) -> SceneDescription:
     """Mark the vehicles and lanes with which the ego vehicle is in conflict."""
     others = {c.other for c in conflicts}
-    lanes: set[LaneId] = set()
-    for c in conflicts:
-        zone = road_map.zones(*c.routes)[c.zone]
-        lanes.add(road_map.lane_at(c.routes[1], zone.point_j))
+    lanes = {road_map.lane_at(c.routes[1], road_map.zones(*c.routes)[c.zone].point_j) for c in conflicts}
     neighbours = tuple(
         replace(n, role=Role.CONFLICT) if n.id in others and n.role is Role.OTHER else n for n in scene.neighbours
     )
@@ -108,8 +101,7 @@ def with_conflicts(scene: SceneDescription, conflicts: tuple[Conflict, ...], roa
 def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
     """Return the lanes to the left and right of a lane that run its way."""
     start, end, index = lane
-    sides = ((start, end, index - 1), (start, end, index + 1))
-    return tuple(side for side in sides if side in road_map.lanes)
+    return tuple(side for k in (-1, 1) if (side := (start, end, index + k)) in road_map.lanes)
 
 
 def _neighbour(
@@ -121,17 +113,10 @@ def _neighbour(
     role: Role,
     gap: float | None,
 ) -> TrackedVehicle:
-    return TrackedVehicle(
-        id=seen.id,
+    return replace(
+        seen,
         # A vehicle that shares an intent has said that it is a CAV.
         kind=Kind.CAV if intent is not None else seen.kind,
-        x=seen.x,
-        y=seen.y,
-        speed=seen.speed,
-        heading=seen.heading,
-        acceleration=seen.acceleration,
-        lane=seen.lane,
-        length=seen.length,
         routes=tracking.places(ego, seen, intent),
         intent=intent,
         standing=tracking.standing(ego, seen, time),

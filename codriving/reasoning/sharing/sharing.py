@@ -1,14 +1,14 @@
-"""State and intent sharing, SAE J3216 classes A and B: what each CAV is told of the others (Section III-C.1 and 2)."""
+"""The CDA level of a run (SAE J3216), and what each CAV is told of the others (Section III-C.1 and 2)."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import hypot
+from typing import Literal
 
-from codriving.datatypes.driving_model import DrivingModel
-from codriving.datatypes.scene_description import TrackedVehicle
-from codriving.datatypes.vehicle import Intent, VehicleState
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import DrivingModel, Intent, VehicleState, WorldState
+from codriving.errors import ConfigError
 from codriving.geometry.box import TRUE
 
 USUAL_LENGTH = TRUE.length
@@ -92,3 +92,38 @@ HIDDEN_INTENTS = IntentSharing(shared=False, finds_conflicts=False)
 
 GUESSED_INTENTS = IntentSharing(shared=False, finds_conflicts=True)
 """Nothing is shared, and conflicts are found with all ways that the map allows."""
+
+
+OwnOrder = Literal["own_view", "same_rule", "independent"]
+
+
+@dataclass(frozen=True, slots=True)
+class CdaLevel:
+    """Toggles of the reasoning module.
+
+    Raises:
+        ConfigError: If the order is to bind without being negotiated.
+    """
+
+    state_sharing: bool
+    intent_sharing: bool
+    negotiation: bool
+    safety_check: bool
+    binding: bool
+    own_order: OwnOrder
+
+    def __post_init__(self) -> None:
+        if self.binding and not self.negotiation:
+            raise ConfigError("cda.binding=true needs cda.negotiation=true: only a negotiated order can bind")
+        if self.own_order not in ("own_view", "same_rule", "independent"):
+            raise ConfigError(f"cda.own_order must be own_view, same_rule or independent, got {self.own_order!r}")
+
+    @property
+    def variant(self) -> str:
+        """Name of the variant for tables, for instance ``full`` or ``no_negotiation/own_view``."""
+        parts = ("state_sharing", "intent_sharing", "negotiation", "safety_check")
+        missing = [part for part in parts if not getattr(self, part)]
+        name = "_".join(["no", *missing]) if missing else "full"
+        if not self.negotiation and self.intent_sharing:
+            name += f"/{self.own_order}"
+        return f"{name}/binding" if self.binding else name

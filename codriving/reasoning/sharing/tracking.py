@@ -2,8 +2,8 @@
 
 from math import acos, cos, hypot
 
-from codriving.datatypes.scene_description import TrackedVehicle
-from codriving.datatypes.vehicle import Intent
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import Intent
 from codriving.geometry.road_map import RoadMap
 
 STANDING = 0.5

@@ -7,8 +7,7 @@ from typing import Any
 from codriving.config.compose import compose
 from codriving.config.target import find_class
 from codriving.datatypes.parts import Scenario
-from codriving.datatypes.scene import Scene, Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind, Scene, Start
 
 LENGTH = 5.0
 

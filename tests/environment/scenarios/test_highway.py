@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from starting import check_people, check_room, scenario
 
 from codriving.datatypes.road import Straight
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.environment.scenarios.highway import Highway
 from codriving.errors import ConfigError, ScenarioError
 from codriving.geometry.road_map import RoadMap, road_map

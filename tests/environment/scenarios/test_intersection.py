@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from codriving.datatypes.road import Turn
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.environment.scenarios.placement import LENGTH, braking_gap
 from codriving.errors import ConfigError, ScenarioError

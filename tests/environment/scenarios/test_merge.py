@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from starting import check_people, check_room, scenario
 
-from codriving.datatypes.conflict import Relation
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.order import Relation
+from codriving.datatypes.world import Kind
 from codriving.environment.scenarios.merge import Merge
 from codriving.errors import ConfigError, ScenarioError
 from codriving.geometry.box import PLANNING

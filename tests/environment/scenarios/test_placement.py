@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind, Start
 from codriving.environment.scenarios.placement import Crowd, braking_gap, leaves_room, place
 from codriving.errors import ConfigError, ScenarioError
 

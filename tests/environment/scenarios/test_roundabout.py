@@ -12,10 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from starting import can_brake, check_people, check_room, scenario
 
-from codriving.datatypes.conflict import Relation
+from codriving.datatypes.order import Relation
 from codriving.datatypes.road import Turn
-from codriving.datatypes.scene import Scene
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Kind, Scene
 from codriving.environment.scenarios.roundabout import LEGS, Roundabout
 from codriving.errors import ConfigError, ScenarioError
 from codriving.geometry.curve import lane_curve

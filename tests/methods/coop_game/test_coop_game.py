@@ -10,13 +10,12 @@ from coalitions import GAME, SAMPLE, STEPS, TOP, Scheduled, everybody, instance,
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
+from codriving.datatypes.order import ApproachingVehicle, Instance
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.methods.coop_game.coop_game import CoopGame
 from codriving.methods.coop_game.payoff import Goal, Scale, on_one_scale
-from codriving.reasoning.ordering.protocol import JointPlan, Ordering
-from codriving.reasoning.ordering.request import Request
+from codriving.reasoning.ordering.protocol import JointPlan, Ordering, Request
 from codriving.reasoning.ordering.schedule import repaired
 from codriving.reasoning.ordering.tickets import TicketBook
 

@@ -7,7 +7,7 @@ from coalitions import everybody, instance, problems, vehicle
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.datatypes.ordering_problem import Instance
+from codriving.datatypes.order import Instance
 from codriving.methods.coop_game.levels import FewLevels, OwnLevels, find_streams, is_free, layered, levels_of
 
 Graph = tuple[int, list[tuple[int, int]]]

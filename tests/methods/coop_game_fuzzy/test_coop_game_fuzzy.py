@@ -8,13 +8,12 @@ import pytest
 from coalitions import Scheduled, instance, vehicle
 from worlds import Car, Junction, car
 
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.methods.coop_game_fuzzy.coop_game_fuzzy import LIBRARY, OPTIONS, Arrival, CoopGameFuzzy
-from codriving.reasoning.execution.executor import Executor
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.ordering.protocol import Ordering
-from codriving.reasoning.ordering.request import Request
+from codriving.reasoning.execution.planned import Executor
+from codriving.reasoning.ordering.protocol import Ordering, Request
+from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.forecast import Forecast
 
 ORDER = Ordering((), {})

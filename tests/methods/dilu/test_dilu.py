@@ -15,8 +15,8 @@ from worlds import Junction, car
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Memory, Verdict
+from codriving.datatypes.world import Action
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
 from codriving.llm.language_model import Offline

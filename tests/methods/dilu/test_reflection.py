@@ -7,11 +7,10 @@ import pytest
 from dilu_driven import NEVER_HELD, Notebook, always, modelled, ruled, text
 from worlds import Junction, car
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Experience, Verdict
-from codriving.datatypes.outcome import Collision, Ending, Outcome
+from codriving.datatypes.record import Collision, Ending, Outcome
 from codriving.datatypes.situation import Decision, Situation
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import Action, WorldState
 from codriving.methods.dilu.collision_log import CollisionLog
 from codriving.methods.dilu.description import describe_alone
 from codriving.methods.dilu.dilu import DiLu

@@ -8,9 +8,7 @@ import pytest
 from worlds import Car, Junction, car
 
 from codriving.datatypes.road import Straight
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import Kind, Start, WorldState
 from codriving.methods.learned.features import Features, Observation
 from codriving.methods.learned.layout import JUNCTION, LANES, SLOTS, family_of, feature_count, feature_names
 from codriving.methods.learned.slots import EQUAL, GIVES_WAY, GOES_FIRST

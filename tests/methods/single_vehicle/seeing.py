@@ -10,8 +10,7 @@ from codriving.config.compose import compose
 from codriving.methods.noncoop_game.noncoop_game import NonCooperativeGame
 from codriving.methods.pidm import ProjectedIdm
 from codriving.methods.single_vehicle.method import Choice, Driver, SingleVehicle
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.perception import single_vehicle_perception
+from codriving.reasoning.perception import Moment, single_vehicle_perception
 
 D = TypeVar("D", bound=Driver)
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from worlds import Junction
 
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.methods.pidm import closest_action, mean_accelerations
 
 MEANS = (-1.5, 0.0, 1.5)

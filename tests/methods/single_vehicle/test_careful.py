@@ -8,8 +8,8 @@ from worlds import Junction, car
 
 from codriving.config.build import build
 from codriving.config.training import compose_training
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
+from codriving.datatypes.record import Ending
+from codriving.datatypes.world import Action
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
 from codriving.methods.single_vehicle.careful import Careful

@@ -4,12 +4,11 @@ import pytest
 from dilu_driven import rule
 from worlds import Car, Junction, car
 
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.methods.single_vehicle.demonstrated import CONSTANT, LIMITS
 from codriving.methods.single_vehicle.method import Choice
-from codriving.reasoning.moment import Moment
-from codriving.reasoning.perception import single_vehicle_perception
+from codriving.reasoning.perception import Moment, single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
 
 

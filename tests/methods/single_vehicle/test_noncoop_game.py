@@ -9,7 +9,7 @@ from worlds import Junction, car
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.methods.noncoop_game.games import ACCELERATIONS, CHANGE, LaneGame, PassingGame, passing_game
 from codriving.methods.noncoop_game.payoff import pure_equilibria

@@ -8,7 +8,7 @@ from worlds import Junction, car
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.methods.pidm import LIMITS
 from codriving.methods.single_vehicle.encounters import TURN

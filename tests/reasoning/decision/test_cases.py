@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 from remembered import memory
 from worlds import Junction, car
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.experience import Memory, Verdict
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.situation import ActionAssessment, Decision, Situation
+from codriving.datatypes.world import Action
 from codriving.reasoning.decision.cases import favour, reconsider
 from codriving.reasoning.decision.rules import RuleDecider, decide_one
 

@@ -5,10 +5,9 @@ from dataclasses import replace
 import pytest
 from worlds import Car, Junction, car
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.scene_description import LaneChange
-from codriving.datatypes.situation import ActionAssessment, Decision, Situation
+from codriving.datatypes.situation import ActionAssessment, Decision, LaneChange, Situation
+from codriving.datatypes.world import Action
 from codriving.reasoning.decision.rules import decide_one
 
 LEFT, RIGHT, FASTER, IDLE, SLOWER = (

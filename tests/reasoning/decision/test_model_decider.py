@@ -9,8 +9,8 @@ from asked import Reasoned, allowed, deciding, reasoned, sensible, shown
 from remembered import memory
 from worlds import Junction, car
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.situation import ActionAssessment, Situation
+from codriving.datatypes.world import Action
 from codriving.llm.ledger import Ledger
 from codriving.llm.prompts.render import load_prompts
 from codriving.llm.prompts.replies import decision_reply

@@ -5,9 +5,8 @@ from dataclasses import replace
 import pytest
 from worlds import Car, Junction, car, order_of
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.scene_description import LaneChange
-from codriving.datatypes.situation import ActionAssessment, Situation
+from codriving.datatypes.situation import ActionAssessment, LaneChange, Situation
+from codriving.datatypes.world import Action
 from codriving.reasoning.decision.rules import is_plain
 
 GOOD = tuple(

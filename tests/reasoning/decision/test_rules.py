@@ -5,9 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from worlds import Car, Junction, Thoughts, car, order_of
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.situation import ActionAssessment, Situation
+from codriving.datatypes.world import Action
 from codriving.reasoning.decision.rules import RuleDecider, decide_one
 from codriving.reasoning.safety.assessment import ThreeLayers
 

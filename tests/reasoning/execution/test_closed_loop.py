@@ -10,11 +10,8 @@ from worlds import Junction
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.action import Action
-from codriving.datatypes.outcome import Ending
-from codriving.datatypes.scene import Start
-from codriving.datatypes.trajectory import Track
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.record import Ending, Track
+from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.environment import Environment
 from codriving.geometry.box import TRUE
 from codriving.geometry.path import progress

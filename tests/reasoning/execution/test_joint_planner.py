@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from worlds import Junction, car
 
-from codriving.datatypes.scene_description import TrackedVehicle
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.situation import TrackedVehicle
+from codriving.datatypes.world import Kind
 from codriving.reasoning.execution.joint_planner import drives_ahead, planning_order
 
 NAMES = [f"CAV{k}" for k in range(1, 8)]

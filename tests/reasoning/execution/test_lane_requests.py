@@ -9,14 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.scene import Start
-from codriving.datatypes.vehicle import Kind
+from codriving.datatypes.world import Action, Kind, Start
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.reasoning.execution.lane_requests import LaneRequests, incentive
-from codriving.reasoning.ordering.protocol import Ordering
-from codriving.reasoning.ordering.request import Request, best_subset, in_order
+from codriving.reasoning.ordering.protocol import Ordering, Request, best_subset, in_order
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
 
 COOL_DOWN = 2.0

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
 
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.geometry.box import TRUE
-from codriving.reasoning.execution.executor import Drive
 from codriving.reasoning.execution.layered import layers_of
+from codriving.reasoning.execution.planned import Drive
 
 ROUTES = tuple(
     f"{a}-{b}" for a in ("south", "west", "north", "east") for b in ("south", "west", "north", "east") if a != b

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
 
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
 from codriving.geometry.box import TRUE, corners, overlap
-from codriving.reasoning.execution.executor import Drive
+from codriving.reasoning.execution.planned import Drive
 from codriving.reasoning.ordering.protocol import Ordering
 
 ROUTES = tuple(

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
 
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.geometry.box import PLANNING, TRUE, corners, overlap
 from codriving.geometry.zone import ConflictZone
-from codriving.reasoning.execution.executor import Executor
+from codriving.reasoning.execution.planned import Executor
 from codriving.reasoning.execution.violations import SIZES, Meeting, first_true, meets, passes_too_early
 
 PAIRS = (

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from codriving.datatypes.order import Precedence
-from codriving.reasoning.ordering.agreement import without_cycles
+from codriving.reasoning.ordering.coordinator import without_cycles
 
 NAMES = "abcdef"
 TIMES = st.fixed_dictionaries({name: st.floats(0.0, 20.0) for name in NAMES})

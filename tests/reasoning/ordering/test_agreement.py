@@ -10,7 +10,7 @@ from worlds import Junction, Thoughts, car
 
 from codriving.datatypes.order import PassingOrder
 from codriving.environment.environment import Environment
-from codriving.reasoning.ordering.agreement import agreement
+from codriving.reasoning.ordering.coordinator import agreement
 from codriving.reasoning.ordering.problem import Problem, pose
 from codriving.reasoning.ordering.schedule import repaired, timed
 

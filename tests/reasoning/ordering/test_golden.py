@@ -9,7 +9,7 @@ from worlds import Junction, Thoughts
 
 from codriving.reasoning.ordering.negotiation import OwnOrders
 from codriving.reasoning.ordering.problem import pose
-from codriving.reasoning.sharing.cda import OwnOrder
+from codriving.reasoning.sharing.sharing import OwnOrder
 
 
 def problem(thoughts: Thoughts) -> str:

@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from codriving.datatypes.order import PassingOrder, Precedence
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
+from codriving.datatypes.order import ApproachingVehicle, Instance, PassingOrder, Precedence
 from codriving.reasoning.ordering.coordinator import cost, improve
 from codriving.reasoning.ordering.schedule import start_time
 

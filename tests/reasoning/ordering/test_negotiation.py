@@ -7,7 +7,7 @@ from worlds import Car, Junction, Thoughts, car
 
 from codriving.datatypes.order import PassingOrder
 from codriving.reasoning.ordering.negotiation import OwnOrders
-from codriving.reasoning.sharing.cda import OwnOrder
+from codriving.reasoning.sharing.sharing import OwnOrder
 
 READINGS: tuple[OwnOrder, ...] = ("own_view", "same_rule", "independent")
 

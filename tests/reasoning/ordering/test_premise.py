@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from codriving.datatypes.ordering_problem import ApproachingVehicle, Instance
+from codriving.datatypes.order import ApproachingVehicle, Instance
 from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
 
 

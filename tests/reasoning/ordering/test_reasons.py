@@ -7,7 +7,7 @@ from instances import instance
 
 from codriving.reasoning.ordering.coordinator import reason_between
 from codriving.reasoning.ordering.premise import premise
-from codriving.reasoning.ordering.request import Action, Request, best_subset, in_order
+from codriving.reasoning.ordering.protocol import Action, Request, best_subset, in_order
 from codriving.reasoning.ordering.tickets import Ticket, by_slot, by_ticket, fixed
 
 

@@ -3,7 +3,7 @@
 import pytest
 from instances import instance
 
-from codriving.reasoning.ordering.slots import carried_over, earliest_slot, sequence
+from codriving.reasoning.ordering.schedule import carried_over, earliest_slot, sequence
 from codriving.reasoning.ordering.tickets import Ticket, in_turn
 
 Pairs = dict[tuple[str, str], float]

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.world import Action, DrivingModel
 from codriving.reasoning.prediction.forecast import BRAKE, GO, Forecast, likely_distances
 from codriving.reasoning.prediction.rollout import rollout
 

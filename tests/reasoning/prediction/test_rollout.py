@@ -9,8 +9,7 @@ from highway_env.vehicle.controller import MDPVehicle
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.driving_model import DrivingModel
+from codriving.datatypes.world import Action, DrivingModel
 from codriving.reasoning.prediction.rollout import Plan, canonical, rollout, travelled
 
 STEPS = 60

@@ -6,8 +6,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
+from codriving.datatypes.world import Action
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
 from codriving.reasoning.safety.assessment import ThreeLayers, progress

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Junction, car, order_of
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.situation import ActionAssessment
+from codriving.datatypes.world import Action
 from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers, least_dangerous, progress
 from codriving.reasoning.safety.safety_input import LONGITUDINAL
 

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Junction, car, order_of, standing
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.conflict import Relation
+from codriving.datatypes.order import Relation
+from codriving.datatypes.world import Action
 from codriving.geometry.box import TRUE
 from codriving.reasoning.prediction.clearance import first_overlap
 from codriving.reasoning.safety.adjacent_lane import check_adjacent

@@ -7,7 +7,7 @@ import pytest
 from golden import Section, removals, sections, setting
 from worlds import Junction
 
-from codriving.datatypes.action import Action
+from codriving.datatypes.world import Action
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
 from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.safety_input import SafetyInput

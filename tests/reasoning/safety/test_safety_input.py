@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 from worlds import Junction, car, order_of
 
-from codriving.datatypes.action import Action
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.scene_description import Role
-from codriving.reasoning.safety.safety_input import SafetyInput, lane_after
+from codriving.datatypes.situation import Role
+from codriving.datatypes.world import Action
+from codriving.reasoning.safety.safety_input import SafetyInput
 
 LEFT, RIGHT = Action.LANE_LEFT, Action.LANE_RIGHT
 
@@ -29,7 +29,8 @@ def test_the_lane_beside_and_who_is_on_it(highway: Junction) -> None:
     for action in (LEFT, RIGHT):
         there = given.beside(action)
         assert there is not None
-        assert there.scene.intent.target_lane == lane_after(given.scene, action)
+        start, end, index = given.scene.intent.target_lane
+        assert there.scene.intent.target_lane == (start, end, index + (1 if action is RIGHT else -1))
         seen[there.scene.intent.route] = {n.id: n.role for n in there.scene.neighbours if n.role is not Role.OTHER}
     assert seen == {"lane-0": {"HDV1": Role.LEADING}, "lane-2": {"HDV3": Role.REARING}}
 

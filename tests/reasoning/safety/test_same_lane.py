@@ -6,8 +6,8 @@ from itertools import pairwise
 import pytest
 from worlds import Junction, car
 
-from codriving.datatypes.action import Action
-from codriving.datatypes.scene_description import Role
+from codriving.datatypes.situation import Role
+from codriving.datatypes.world import Action
 from codriving.reasoning.safety.assessment import ThreeLayers
 from codriving.reasoning.safety.safety_input import SafetyInput
 from codriving.reasoning.safety.same_lane import check_ahead, check_behind, forced_braking
