@@ -9,6 +9,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from functools import partial
 from io import StringIO
 from pathlib import Path
+from select import select
 
 import pytest
 import toy_models
@@ -274,9 +275,10 @@ def test_ctrl_c_stops_at_once_while_servers_are_waited_for(tmp_path: Path, refer
     try:
         # Three threads drive: once all of them wait, the four episodes before are finished.
         for _ in range(3):
+            assert select([hears], [], [], 60)[0], "waited in vain for three episodes that wait at the same time"
             assert os.read(hears, 1) == b"w", "the batch ended before three episodes waited at the same time"
         os.killpg(process.pid, signal.SIGINT)
-        out, err = process.communicate()
+        out, err = process.communicate(timeout=60)
     finally:
         process.kill()
         process.communicate()

@@ -119,6 +119,8 @@ def test_a_cell_is_labelled_by_its_objects_and_an_object_without_a_name_is_refus
     assert make_cell(config).metrics == "toy"
     assert make_cell(config).labels == Labels("toy", *("steady", "full", "rules"))
     assert make_cell(config).folder == folder_name(LABELS)
+    with pytest.raises(ConfigError, match="method: ToyMethod needs an attribute 'name' of type str for the tables"):
+        make_cell({**config, "method": {"_target_": "toy_drive.ToyMethod", "name": ""}})
     with pytest.raises(ConfigError, match=r"method must be Method, but toy_drive\.ToyScenario is none"):
         make_cell({**config, "method": config["scenario"]})
 

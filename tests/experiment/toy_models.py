@@ -1,6 +1,7 @@
 """Toy language models and methods that ask them; also a batch of its own: ``toy_models.py OUTPUT SAYS HOLDS``."""
 
 import os
+import signal
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -177,6 +178,8 @@ def main(output: Path, says: int, holds: int) -> int:
 
 
 if __name__ == "__main__":
+    # What a shell puts into the background ignores SIGINT, and so does all that is started from there.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     # Under its own name, by which the configs call it.
     import toy_models
 

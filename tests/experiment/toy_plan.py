@@ -1,5 +1,6 @@
 """A plan of toy episodes, and the command line driven by it: ``python toy_plan.py OUTPUT WORKERS [GATE]``."""
 
+import signal
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -39,6 +40,8 @@ def toy_plan(
 
 
 if __name__ == "__main__":
+    # What a shell puts into the background ignores SIGINT, and so does all that is started from there.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     output, workers, *rest = sys.argv[1:]
     gate = Path(rest[0]) if rest else None
     plan = toy_plan(Path(output), int(workers))
