@@ -54,6 +54,11 @@ class Cell:
         """Settings of its metric, by dotted key."""
         return settings_of_metric(self.resolved.get("metrics", {}))
 
+    @property
+    def driving_swept(self) -> dict[str, str]:
+        """What was swept and changes what is driven."""
+        return {key: value for key, value in self.swept.items() if key.partition(".")[0] != "metrics"}
+
     @cached_property
     def fingerprint(self) -> str:
         """What tells what is driven from all others; metrics take no part."""
@@ -70,7 +75,7 @@ class Cell:
             variant=self.labels.variant,
             reasoner=self.labels.reasoner,
             fingerprint=self.fingerprint,
-            swept={key: value for key, value in self.swept.items() if key.partition(".")[0] != "metrics"},
+            swept=self.driving_swept,
             settings=settings_of(self.resolved),
             choices={group: name for group, name in self.choices.items() if group in (*CHOICES, "cda")},
             files=self.files,

@@ -63,9 +63,7 @@ def run_check(overrides: Sequence[str], config_dir: Path | None = None) -> int:
 
 def _settings(llm: Mapping[str, Any]) -> dict[str, Any]:
     """The model itself has to answer, and it is asked in any case."""
-    changed = {"cache": "off", "ask_plain": True}
-    if llm.get("cache") == REPLAY:
-        del changed["cache"]
+    changed = {"ask_plain": True} if llm.get("cache") == REPLAY else {"ask_plain": True, "cache": "off"}
     return {key: changed.get(key, value) for key, value in llm.items()}
 
 

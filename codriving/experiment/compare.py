@@ -120,9 +120,8 @@ def _methods(table: str, added: Sequence[str], config_dir: Path | None) -> list[
 
 def setting(resolved: Mapping[str, Any]) -> str:
     """Mark the setting of a cell: cells with the same mark differ in the method alone."""
-    return json.dumps(
-        {key: value for key, value in resolved.items() if key not in ("method", "plugins")}, sort_keys=True
-    )
+    kept = {key: value for key, value in resolved.items() if key not in ("method", "plugins")}
+    return json.dumps(kept, sort_keys=True)
 
 
 def make_comparison(table: str, driven: Driven) -> Outputs:

@@ -148,7 +148,9 @@ def drive(
         # Before the folder is made: a model that cannot be reached leaves nothing behind.
         Asked(plan.cells).preflight()
     asked = manifest_of(plan)
-    with RunFolder(_path(plan), asked, {cell.folder: cell.config_text for cell in plan.driven}) as folder:
+    path = plan.output / plan.experiment
+    path = path / plan.run if plan.run else new_run_path(path, datetime.now())
+    with RunFolder(path, asked, {cell.folder: cell.config_text for cell in plan.driven}) as folder:
         # A cell that is there already keeps its folder, whatever it would be called in this run.
         names = dict(zip((cell.folder for cell in plan.driven), folder.manifest.rows, strict=True))
         cells = [replace(cell, folder=names[cell.folder]) for cell in plan.driven]
@@ -159,8 +161,7 @@ def drive(
         missing = [unit for unit in units if unit not in records]
         film = FilmEpisode(folder.path, {cell.folder: cell.resolved for cell in cells}) if plan.render else None
         unfilmed = [unit for unit in units if film and unit in records and film.lacks(unit)]
-        incomplete = {unit.cell for unit in missing}
-        models = Asked(cell for cell in cells if cell.folder in incomplete)
+        models = Asked(cell for cell in cells if any(unit.cell == cell.folder for unit in missing))
         if not is_new:
             models.preflight()
         resolved = {cell.folder: growing(cell.resolved, folder.path, cell.folder) for cell in cells}
@@ -174,20 +175,19 @@ def drive(
         todo = missing + unfilmed
         try:
             with show_progress(Counter(unit.cell for unit in todo), models.usage if models.models else None) as update:
-                for share in _shares(missing, unfilmed, plan, models):
+                for part, launcher, workers in _places(missing, unfilmed, plan, models):
                     failures = FailuresInARow(models.names, models.patience)
-                    with closing(share.launcher.launch(share.units, job, share.workers, preload)) as reports:
+                    with closing(launcher.launch(part, job, workers, preload)) as reports:
                         for report in reports:
                             if report.ending is Ending.ERROR:
                                 failed.append(report)
                             failures.note(report)
                             update(report.unit.cell, report.ending is Ending.ERROR)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, ModelError) as stop:
             finished = len(_records(folder, cells, plan.seeds, records))
+            if isinstance(stop, ModelError):
+                raise HaltedError(stop, folder.path, finished, len(units)) from stop
             raise Interrupted(folder.path, finished, len(units)) from None
-        except ModelError as error:
-            finished = len(_records(folder, cells, plan.seeds, records))
-            raise HaltedError(error, folder.path, finished, len(units)) from error
         finally:
             folder.clean()
         everything = _records(folder, cells, plan.seeds, records, errors=True)
@@ -199,7 +199,11 @@ def drive(
             for cell in cells
         }
         rows = [by_folder[cell.folder] for cell in shown]
-        driven = Driven(shown, rows, _timings(folder, rows, shown), folder.path)
+        timings = [
+            [read_timing(folder.episode(cell.folder, record.seed)) for record in row]
+            for cell, row in zip(shown, rows, strict=True)
+        ]
+        driven = Driven(shown, rows, timings, folder.path)
         outputs = make_outputs(driven)
         tables = _write(plan, driven, outputs)
         kept = len(units) - len(missing)
@@ -217,21 +221,10 @@ def drive(
         )
 
 
-@dataclass(frozen=True, slots=True)
-class _Share:
-    """A part of a batch that is driven in one place.
-
-    Attributes:
-        workers: A number, or ``auto`` for one a core.
-    """
-
-    units: Sequence[Unit]
-    launcher: Launcher
-    workers: int | str
-
-
-def _shares(missing: Sequence[Unit], unfilmed: Sequence[Unit], plan: Plan, models: Asked) -> Iterator[_Share]:
-    """Say what is driven where.
+def _places(
+    missing: Sequence[Unit], unfilmed: Sequence[Unit], plan: Plan, models: Asked
+) -> Iterator[tuple[Sequence[Unit], Launcher, int | str]]:
+    """Say what is driven where, and by how many workers.
 
     Episodes whose method asks no language model are driven as the plan says. Those that ask one wait for its server
     nearly all the time, and share one client with its limits: they are driven in threads of this process, as many at
@@ -240,16 +233,15 @@ def _shares(missing: Sequence[Unit], unfilmed: Sequence[Unit], plan: Plan, model
     """
     in_order = {cell.folder for cell in plan.cells if learns(cell.resolved)} & {unit.cell for unit in missing}
     independent = [unit for unit in missing if unit.cell not in in_order]
+    computed = [unit for unit in independent if unit.cell not in models.models]
     waiting = [unit for unit in independent if unit.cell in models.models]
     threads: Launcher = Threads() if isinstance(plan.launcher, Processes) else plan.launcher
-    shares = (
-        _Share([unit for unit in missing if unit.cell in in_order], Serial(), 1),
-        _Share(
-            [*(unit for unit in independent if unit.cell not in models.models), *unfilmed], plan.launcher, plan.workers
-        ),
-        _Share(waiting, threads, side_by_side(plan.workers, models.concurrency)),
-    )
-    return (share for share in shares if share.units)
+    if in_order:
+        yield [unit for unit in missing if unit.cell in in_order], Serial(), 1
+    if computed or unfilmed:
+        yield [*computed, *unfilmed], plan.launcher, plan.workers
+    if waiting:
+        yield waiting, threads, side_by_side(plan.workers, models.concurrency)
 
 
 def side_by_side(workers: int | str, concurrency: int) -> int:
@@ -289,11 +281,6 @@ class FailuresInARow:
             )
 
 
-def _path(plan: Plan) -> Path:
-    experiment = plan.output / plan.experiment
-    return experiment / plan.run if plan.run else new_run_path(experiment, datetime.now())
-
-
 def manifest_of(plan: Plan) -> Manifest:
     """Describe what is to be run, and with what."""
     return Manifest(
@@ -329,13 +316,6 @@ def _records(
     return found
 
 
-def _timings(
-    folder: RunFolder, rows: Sequence[Sequence[EpisodeRecord]], cells: Sequence[Cell]
-) -> list[list[Timing | None]]:
-    pairs = zip(cells, rows, strict=True)
-    return [[read_timing(folder.episode(cell.folder, record.seed)) for record in records] for cell, records in pairs]
-
-
 def _write(plan: Plan, driven: Driven, outputs: Outputs) -> RunTables:
     """Write the tables of every run, and what the command adds."""
     each = list(zip(driven.cells, driven.records, driven.timings, strict=True))
@@ -344,12 +324,11 @@ def _write(plan: Plan, driven: Driven, outputs: Outputs) -> RunTables:
         for cell, records, timings in each
     ]
     tables = run_tables(results, read_paper(experiments_dir()), driven.metrics, plan.notes)
+    # What was driven once has cost time once, by however many metrics it was scored.
+    once = {cell.folder: (cell, records, timings) for cell, records, timings in each}
     timed = [
         TimedEpisode(record, timing, cell.swept)
-        # What was driven once has cost time once, by however many metrics it was scored.
-        for cell, records, timings in {
-            cell.folder: (cell, records, timings) for cell, records, timings in each
-        }.values()
+        for cell, records, timings in once.values()
         for record, timing in zip(records, timings, strict=True)
     ]
     try:

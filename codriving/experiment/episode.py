@@ -118,10 +118,14 @@ def run_episode(
     except Exception as error:
         scores = {}
         outcome = _failure(error, log.time)
-        _note_unfinished(method, log)
         # Where a server's failure was noticed helps no one, and what led to it may quote what the server said.
         trace = f"{outcome.message}\n" if isinstance(error, ModelUnavailableError) else traceback.format_exc()
-        trajectory = _salvage(environment) if log.begun else None
+        if log.begun:
+            # What was asked in the step that broke off has been paid for, what was driven shows the cause.
+            with suppress(Exception):
+                log.add(*method.unfinished_step(log.time))
+            with suppress(Exception):
+                trajectory = environment.trajectory()
     return EpisodeResult(
         _record(labels, seed, outcome, scores, trajectory, len(log.seconds), dict(sorted(log.counts.items()))),
         trajectory,
@@ -174,18 +178,3 @@ def _failure(error: BaseException, time: float) -> Outcome:
     text = " ".join("".join(c for c in str(error) if c.isprintable() or c.isspace()).split())
     message = f"{type(error).__name__}: {text}" if text else type(error).__name__
     return Outcome(ending=Ending.ERROR, time=time, arrivals={}, message=message)
-
-
-def _note_unfinished(method: Method, log: _EpisodeLog) -> None:
-    """Note what was asked in the step that broke off: it has been paid for."""
-    if log.begun:
-        with suppress(Exception):
-            log.add(*method.unfinished_step(log.time))
-
-
-def _salvage(environment: Simulator) -> Trajectory | None:
-    """What was driven before it went wrong, to look for the cause; the broken world may refuse."""
-    try:
-        return environment.trajectory()
-    except Exception:
-        return None

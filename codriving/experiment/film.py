@@ -47,9 +47,7 @@ class FilmEpisode(AfterEpisode):
             Its ending; None if it has not been driven, or ended in an error.
         """
         folder = self._place(unit)
-        if not (folder / RECORD).exists():
-            return None
-        ending = read_record(folder).outcome.ending
+        ending = read_record(folder).outcome.ending if (folder / RECORD).exists() else Ending.ERROR
         return None if ending is Ending.ERROR else ending
 
     def finish(self, unit: Unit) -> None:
@@ -64,10 +62,8 @@ class FilmEpisode(AfterEpisode):
             with whole_file(folder / FILM, beside=folder.parent) as partial:
                 show.write(partial, "mp4", _RATE, 1.0)
             (folder / FILM_ERROR).unlink(missing_ok=True)
-        except (UserError, OSError) as error:
-            self.abandon(unit, error)
         except Exception as error:
-            self.abandon(unit, error, traceback.format_exc())
+            self.abandon(unit, error, "" if isinstance(error, UserError | OSError) else traceback.format_exc())
 
     def abandon(self, unit: Unit, error: Exception, trace: str = "") -> None:
         """Note why there is no film."""

@@ -11,7 +11,7 @@ from codriving.config.overrides import parse
 from codriving.config.sweep import Point, expand
 from codriving.errors import ConfigError
 from codriving.experiment.drive import Driven, HaltedError, Interrupted, Outputs, drive
-from codriving.experiment.memory_build import FIRST_SEED, refuse_forgetful
+from codriving.experiment.memory_build import FIRST_SEED, MOST, refuse_forgetful, split_interactions
 from codriving.experiment.plan import make_plan
 from codriving.experiment.remembering import memory_file
 from codriving.experiment.run import print_configs, report, resume_command, stopped
@@ -21,20 +21,14 @@ from codriving.reports.paper import read_learning
 from codriving.reports.printed import markdown_text
 from codriving.reports.results import CellResults
 
-INTERACTIONS = "interactions"
 SIZES = (0, 2, 5, 10, 20)
 """Interactions after which is tested, unless the user says otherwise."""
-
-MOST = 10_000
 
 KEY = "memory.interactions"
 """The key that is swept."""
 
 LEVELS = "cda=full,intent_sharing,status_sharing"
 """CDA levels, unless the user names some: everything, nothing negotiated, and only states shared."""
-
-RECALLED = ("memory.shots", "memory.least_similarity")
-"""Settings of the memory that hold while it is built and while it is tested."""
 
 
 def run_learn(overrides: Sequence[str], config_dir: Path | None = None, show_only: bool = False) -> int:
@@ -128,19 +122,11 @@ def learned(driven: Driven, settings: int) -> Outputs:
     """
     paper = read_learning(experiments_dir())
     each = len(driven.cells) // settings
-    cells = [
-        LearningRow(
-            CellResults(
-                records,
-                {k: v for k, v in cell.swept.items() if k not in (KEY, "scenario", "cda")},
-                metric=cell.score_name,
-            ),
-            interactions=int(cell.resolved["memory"]["interactions"]),
-            setting=index // each,
-            shots=int(cell.resolved["memory"]["shots"]),
-        )
-        for index, (cell, records) in enumerate(zip(driven.cells, driven.records, strict=True))
-    ]
+    cells = []
+    for index, (cell, records) in enumerate(zip(driven.cells, driven.records, strict=True)):
+        other = {key: value for key, value in cell.swept.items() if key not in (KEY, "scenario", "cda")}
+        results, memory = CellResults(records, other, metric=cell.score_name), cell.resolved["memory"]
+        cells.append(LearningRow(results, int(memory["interactions"]), index // each, int(memory["shots"])))
     rows = learning_rows(cells, paper)
     swept = tuple(dict.fromkeys(key for row in rows for key in row.cell.swept))
     table = learning_table(rows, swept)
@@ -152,14 +138,12 @@ def learned(driven: Driven, settings: int) -> Outputs:
 
 def _sizes(overrides: Sequence[str]) -> tuple[list[int], list[str]]:
     """Take ``interactions=`` out of the tokens."""
-    own = [t for t in overrides if t.lstrip("+").partition("=")[0] == INTERACTIONS]
-    others = [t for t in overrides if t not in own]
-    if not own:
+    given, others = split_interactions(overrides)
+    if not given:
         return list(SIZES), others
-    texts = own[-1].partition("=")[2].split(",")
+    texts = given[-1].split(",")
     if not all(text.isdigit() and int(text) <= MOST for text in texts):
         raise ConfigError(
-            f"interactions must be whole numbers from 0 to {MOST}, for instance interactions=0,2,5, got "
-            f"{own[-1].partition('=')[2]!r}"
+            f"interactions must be whole numbers from 0 to {MOST}, for instance interactions=0,2,5, got {given[-1]!r}"
         )
     return sorted({int(text) for text in texts}), others

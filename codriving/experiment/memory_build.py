@@ -36,14 +36,14 @@ def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> li
     Raises:
         ConfigError: If a token cannot be used, or a seed belongs to the tables.
     """
-    keys = {token: parse(token).key_or_group if not _is_count(token) else INTERACTIONS for token in overrides}
+    given, others = split_interactions(overrides)
+    keys = {token: parse(token).key_or_group for token in others}
     named = set(keys.values())
     if "episodes" in named:
         raise ConfigError("codriving memory build takes interactions=N; each interaction is one episode")
     count = 20
-    for token in (token for token, key in keys.items() if key == INTERACTIONS):
-        count = interactions_of(token.partition("=")[2])
-    others = [token for token, key in keys.items() if key != INTERACTIONS]
+    for text in given:
+        count = interactions_of(text)
     if any(key == "memory" and token.partition("=")[2] != "online" for token, key in keys.items()):
         raise ConfigError("codriving memory build learns with memory=online; other choices recall and learn nothing")
     base = ["memory=online", f"episodes={count}"]
@@ -57,6 +57,12 @@ def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> li
             "what was learnt on them would be tested on them"
         )
     return points
+
+
+def split_interactions(overrides: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Give the values of ``interactions=``, and the other tokens."""
+    own = [token for token in overrides if token.lstrip("+").partition("=")[0] == INTERACTIONS]
+    return [token.partition("=")[2] for token in own], [token for token in overrides if token not in own]
 
 
 def interactions_of(text: str) -> int:
@@ -97,10 +103,6 @@ def refuse_forgetful(plan: Plan) -> None:
     for cell in plan.cells:
         if not learns(cell.resolved):
             raise ConfigError(f"method {cell.labels.method!r} has no memory to build; choose one that has")
-
-
-def _is_count(token: str) -> bool:
-    return token.partition("=")[0].lstrip("+") == INTERACTIONS
 
 
 BUILD = Command("memory build", build_points, refuse_forgetful, built)

@@ -31,12 +31,9 @@ def folder_name(labels: Labels, swept: Mapping[str, str] | None = None, reasoner
     """
     words = [labels.scenario, labels.method, labels.variant, *([labels.reasoner] if reasoner else [])]
     plain = [re.sub(r"[^A-Za-z0-9._]+", "_", word).lstrip(".") for word in words if word]
-    pairs = [f"{key}={_value(value)}" for key, value in (swept or {}).items()]
+    values = {key: re.sub(r"[^A-Za-z0-9._+-]+", "_", text).strip("_") for key, text in (swept or {}).items()}
+    pairs = [f"{key}={value or '_'}" for key, value in values.items()]
     return "-".join([*plain, *pairs]).rstrip(".")
-
-
-def _value(text: str) -> str:
-    return re.sub(r"[^A-Za-z0-9._+-]+", "_", text).strip("_") or "_"
 
 
 def distinct(cells: Sequence["Cell"]) -> tuple["Cell", ...]:
@@ -49,12 +46,7 @@ def distinct(cells: Sequence["Cell"]) -> tuple["Cell", ...]:
     alike: dict[str, list[int]] = {}
     for index, cell in enumerate(told):
         alike.setdefault(cell.fingerprint, []).append(index)
-    driven = [
-        replace(
-            told[group[0]], swept={k: v for k, v in told[group[0]].swept.items() if k.partition(".")[0] != "metrics"}
-        )
-        for group in alike.values()
-    ]
+    driven = [told[group[0]] for group in alike.values()]
     for group, folder in zip(alike.values(), _folders(driven), strict=True):
         names = names_of_scores([(told[index].metrics, told[index].metric_settings) for index in group])
         for index, name in zip(group, names, strict=True):
@@ -70,10 +62,8 @@ def _same(cell: "Cell") -> tuple[str, str]:
 def _folders(cells: Sequence["Cell"]) -> list[str]:
     """Name each, with no more in the name than it takes to tell it from the others."""
     marks = [cell.fingerprint[:8] for cell in cells]
-    names = _apart(
-        [folder_name(cell.labels, cell.swept) for cell in cells],
-        [folder_name(cell.labels, cell.swept, reasoner=True) for cell in cells],
-    )
+    plain, longer = ([folder_name(c.labels, c.driving_swept, reasoner) for c in cells] for reasoner in (False, True))
+    names = _apart(plain, longer)
     short = [
         name if len(name) <= LONGEST else f"{name[: LONGEST - len(mark) - 1]}-{mark}"
         for name, mark in zip(names, marks, strict=True)
@@ -128,7 +118,9 @@ def shown_apart(cells: Sequence[tuple[Labels, Mapping[str, str]]]) -> list[dict[
     """
     keys = list(dict.fromkeys(key for _, swept in cells for key in swept))
     kept = [key for key in keys if _needs_column(key, cells)]
-    return [{_head(key): swept[key] for key in kept if key in swept} for _, swept in cells]
+    # A choice of scenario may have the name of another one: two files for one class.
+    heads = {key: f"{key}_choice" if key in _LABELS else key for key in kept}
+    return [{head: swept[key] for key, head in heads.items() if key in swept} for _, swept in cells]
 
 
 def _needs_column(key: str, cells: Sequence[tuple[Labels, Mapping[str, str]]]) -> bool:
@@ -141,8 +133,3 @@ def _needs_column(key: str, cells: Sequence[tuple[Labels, Mapping[str, str]]]) -
     for labels, swept in cells:
         values[getattr(labels, label)].add(swept.get(key))
     return any(len(several) > 1 for several in values.values())
-
-
-def _head(key: str) -> str:
-    """A choice of scenario may have the name of another one: two files for one class."""
-    return f"{key}_choice" if key in _LABELS else key

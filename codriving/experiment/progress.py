@@ -41,37 +41,28 @@ def show_progress(
     if not stream.isatty() or not count.total:
         yield partial(_print_line, count, stream, note)
         return
+    from rich import progress
     from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        ProgressColumn,
-        Task,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-    from rich.progress import Progress as Bar
     from rich.text import Text
 
-    class _Note(ProgressColumn):
+    class _Note(progress.ProgressColumn):
         """Read anew each time that the bar is drawn, so that it moves between two episodes too."""
 
-        def render(self, task: Task) -> Text:
+        def render(self, task: progress.Task) -> Text:
             return Text(note() if note else "")
 
     columns = (
-        TextColumn("episodes"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[failed]} failed"),
-        *([TextColumn("{task.fields[cells]}")] if count.cells else []),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        progress.TextColumn("episodes"),
+        progress.BarColumn(),
+        progress.MofNCompleteColumn(),
+        progress.TextColumn("{task.fields[failed]} failed"),
+        *([progress.TextColumn("{task.fields[cells]}")] if count.cells else []),
+        progress.TimeElapsedColumn(),
+        progress.TextColumn("left"),
+        progress.TimeRemainingColumn(),
         *([_Note()] if note else []),
     )
-    with Bar(*columns, console=Console(file=stream)) as bar:
+    with progress.Progress(*columns, console=Console(file=stream)) as bar:
         task = bar.add_task("episodes", total=count.total, failed=0, cells=count.cells)
 
         def move_bar(cell: str, failed: bool) -> None:

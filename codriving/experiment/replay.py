@@ -79,8 +79,7 @@ def replay(run: Path, options: ReplayOptions) -> str:
 
 def _kind(options: ReplayOptions) -> str:
     """The format, from the option or from the name of the file; ``png`` for a single picture."""
-    named = options.out is not None and not options.out.is_dir()
-    suffix = options.out.suffix.lower().removeprefix(".") if options.out and named else ""
+    suffix = options.out.suffix.lower().removeprefix(".") if options.out and not options.out.is_dir() else ""
     if options.frame is not None:
         for name, value in (("--format", options.format), ("--speed", options.speed), ("--fps", options.fps)):
             if value is not None:

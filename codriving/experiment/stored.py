@@ -9,7 +9,6 @@ from codriving.config.build import TARGET, build
 from codriving.config.choices import choices
 from codriving.config.compose import compose
 from codriving.datatypes.parts import Scenario
-from codriving.datatypes.record import EpisodeRecord, Trajectory
 from codriving.datatypes.road import Road
 from codriving.errors import RunFolderError
 from codriving.runs.episode_folder import EPISODES, read_decisions, read_record
@@ -86,22 +85,12 @@ def read_film(folder: Path, road: Road, scale: float = 1.0) -> "EpisodeFilm":
     """
     from codriving.animation.film import EpisodeFilm
 
-    record, trajectory = read_driven(folder)
-    return EpisodeFilm(road, trajectory, read_decisions(folder), record, scale)
-
-
-def read_driven(folder: Path) -> tuple[EpisodeRecord, Trajectory]:
-    """Read the record of an episode and what was driven.
-
-    Raises:
-        RunFolderError: If nothing was driven, or a file is damaged.
-    """
     record = read_record(folder)
     trajectory = read_trajectory(folder, record)
     if trajectory is None:
         why = f"it ended in an error ({record.outcome.message})" if record.outcome.message else "nothing was driven"
         raise RunFolderError(f"{folder} has no {TRAJECTORY}, so there is nothing to show: {why}")
-    return record, trajectory
+    return EpisodeFilm(road, trajectory, read_decisions(folder), record, scale)
 
 
 def road_of(cell: CellEntry, config_dir: Path | None = None) -> Road:

@@ -36,7 +36,8 @@ class Threads(Launcher):
                 if job.after:
                     job.after.finish(report.unit)
                 yield report
-            batch.join()
+            for thread in batch.threads:
+                thread.join()
         finally:
             batch.stop()
 
@@ -54,7 +55,7 @@ class _Batch:
         self._waiting = deque(units)
         self._news: SimpleQueue[Report | BaseException] = SimpleQueue()
         self._building, self._saving, self._stopped = Lock(), Lock(), Event()
-        self._threads: list[Thread] = []
+        self.threads: list[Thread] = []
 
     def start(self, threads: int) -> None:
         """Begin; a process that ends does not wait for them."""
@@ -62,7 +63,7 @@ class _Batch:
         for number in range(min(threads, self.units)):
             worker = Worker(own, self._go_on)
             thread = Thread(target=self._work, args=(worker,), daemon=True, name=f"codriving-episode-{number}")
-            self._threads.append(thread)
+            self.threads.append(thread)
             thread.start()
 
     def next_report(self) -> Report:
@@ -75,11 +76,6 @@ class _Batch:
             if isinstance(news, BaseException):
                 raise news
             return news
-
-    def join(self) -> None:
-        """Wait for the threads once every report is there."""
-        for thread in self._threads:
-            thread.join()
 
     def stop(self) -> None:
         """Let nothing more be saved; what is being saved is saved whole."""

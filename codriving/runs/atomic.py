@@ -31,17 +31,8 @@ def write_text(path: Path, text: str) -> None:
     Raises:
         OSError: If the file cannot be written; nothing is left behind.
     """
-    partial = _partial(path)
-    try:
-        with partial.open("w", encoding="utf-8", newline="") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        partial.replace(path)
-        _sync(path.parent)
-    except BaseException:
-        partial.unlink(missing_ok=True)
-        raise
+    with whole_file(path) as partial:
+        partial.write_text(text, encoding="utf-8", newline="")
 
 
 @contextmanager
@@ -57,9 +48,8 @@ def whole_file(path: Path, beside: Path | None = None) -> Iterator[Path]:
         _sync(partial)
         partial.replace(path)
         _sync(path.parent)
-    except BaseException:
+    finally:
         partial.unlink(missing_ok=True)
-        raise
 
 
 @contextmanager
@@ -77,17 +67,14 @@ def whole_folder(path: Path) -> Iterator[Path]:
         for item in partial.iterdir():
             _sync(item)
         _sync(partial)
+        former = _partial(path)
         if path.exists():
-            former = _partial(path)
             path.rename(former)
-            partial.rename(path)
-            shutil.rmtree(former, ignore_errors=True)
-        else:
-            partial.rename(path)
+        partial.rename(path)
+        shutil.rmtree(former, ignore_errors=True)
         _sync(path.parent)
-    except BaseException:
+    finally:
         shutil.rmtree(partial, ignore_errors=True)
-        raise
 
 
 def sweep(folder: Path) -> None:

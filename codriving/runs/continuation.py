@@ -1,6 +1,6 @@
 """Whether a run may go on in a folder, and what that then holds: it grows by episodes and cells, never shrinks."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -51,11 +51,15 @@ def other_behaviour(folder: Path, there: Manifest) -> RunFolderError:
 
 def changed_versions(there: Manifest, here: Manifest) -> tuple[str, ...]:
     """Compare what a run began with and what it goes on with."""
-    before = {**there.versions, "commit": (there.commit or "none")}
-    now = {**here.versions, "commit": (here.commit or "none")}
-    names = sorted(before.keys() | now.keys())
-    pairs = [(name, before.get(name, "none"), now.get(name, "none")) for name in names]
-    return tuple(f"{name} {was} -> {is_}" for name, was, is_ in pairs if was != is_)
+    before, now = ({**one.versions, "commit": one.commit or "none"} for one in (there, here))
+    return tuple(f"{name} {was} -> {is_}" for name, was, is_ in _changes(before, now, "none"))
+
+
+def _changes(before: Mapping[str, str], now: Mapping[str, str], absent: str) -> Iterator[tuple[str, str, str]]:
+    """Each key whose value differs, with both values."""
+    for key in sorted(before.keys() | now.keys()):
+        if before.get(key) != now.get(key):
+            yield key, before.get(key, absent), now.get(key, absent)
 
 
 def _refuse_changed(folder: Path, there: Sequence[CellEntry], cell: CellEntry) -> None:
@@ -75,9 +79,8 @@ def _free(cell: CellEntry, taken: set[str]) -> str:
 
 def _difference(there: Sequence[CellEntry], new: CellEntry) -> str:
     """The keys in which a cell differs from the one that is most like it, with both values."""
-    nearest = min((_differences(old, new) for old in there), key=len)
     # Only a masked value can differ in the fingerprint and not here.
-    shown = nearest or ["a value that is not written down"]
+    shown = min((_differences(old, new) for old in there), key=len) or ["a value that is not written down"]
     more = f" and {len(shown) - 5} more keys" if len(shown) > 5 else ""
     return ", ".join(shown[:5]) + more
 
@@ -87,9 +90,7 @@ def _differences(old: CellEntry, new: CellEntry) -> list[str]:
     if not old.choices:
         # Of release 0.1 there are no more names than these, and no files.
         now = {key: value for key, value in now.items() if key in was or key in new.settings}
-    keys = sorted(was.keys() | now.keys())
-    pairs = {key: (was.get(key, "absent"), now.get(key, "absent")) for key in keys}
-    return [f"{key} was {before}, is now {after}" for key, (before, after) in pairs.items() if before != after]
+    return [f"{key} was {before}, is now {after}" for key, before, after in _changes(was, now, "absent")]
 
 
 def _told(cell: CellEntry) -> dict[str, str]:

@@ -87,10 +87,8 @@ def write_episode(
     """
     if secrets:
         # A server may echo a key in an error or in an answer.
-        message = str(scrubbed(record.outcome.message, secrets))
-        record = replace(record, outcome=replace(record.outcome, message=message))
-        decisions, transcript = _without(secrets, decisions), _without(secrets, transcript)
-        traceback = str(scrubbed(traceback, secrets))
+        record = replace(record, outcome=replace(record.outcome, message=scrubbed(record.outcome.message, secrets)))
+        decisions, transcript, traceback = scrubbed((decisions, transcript, traceback), secrets)
     files = {RECORD: encode(record), DECISIONS: lines_text(DECISIONS, decisions), TIMING: encode(timing)}
     if transcript:
         files[TRANSCRIPT] = lines_text(TRANSCRIPT, transcript)
@@ -109,10 +107,6 @@ def write_episode(
         ) from error
 
 
-def _without(secrets: Sequence[str], lines: Sequence[Mapping[str, object]]) -> list[Mapping[str, object]]:
-    return [{name: scrubbed(value, secrets) for name, value in line.items()} for line in lines]
-
-
 def read_record(folder: Path) -> EpisodeRecord:
     """Read the record of one episode.
 
@@ -121,18 +115,15 @@ def read_record(folder: Path) -> EpisodeRecord:
     """
     path = folder / RECORD
     try:
-        return decode(EpisodeRecord, _with_scores(read_episode_text(path)))
+        text = read_episode_text(path)
+        # Release 0.1 wrote a single score, and not of which metric.
+        if '\n  "score": ' in text:
+            fields = json.loads(text)
+            score = fields.pop("score")
+            text = json.dumps({**fields, "scores": {} if score is None else {UNNAMED: score}})
+        return decode(EpisodeRecord, text)
     except ValueError as error:
         raise damaged(path, str(error)) from error
-
-
-def _with_scores(text: str) -> str:
-    """Give a record as it is written today; release 0.1 wrote a single score, and not of which metric."""
-    if '\n  "score": ' not in text:
-        return text
-    fields = json.loads(text)
-    score = fields.pop("score")
-    return json.dumps({**fields, "scores": {} if score is None else {UNNAMED: score}})
 
 
 def read_decisions(folder: Path) -> tuple[dict[str, Any], ...]:

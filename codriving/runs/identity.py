@@ -90,10 +90,9 @@ class CellEntry:
 def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out of a resolved config what does not change what is driven, the names of classes, and repetitions."""
     values = {key: _plain(node, resolved) for key, node in resolved.items() if key not in WITHOUT_EFFECT}
-    dropped = {"llm": HOW_A_MODEL_IS_ASKED, MEMORY: (SNAPSHOT, "file", "embedding_deadline")}
-    memory = values.get(MEMORY)
-    if not isinstance(memory, Mapping) or memory.get(SNAPSHOT, AUTO) == AUTO:
-        del dropped[MEMORY]
+    dropped: dict[str, Sequence[str]] = {"llm": HOW_A_MODEL_IS_ASKED}
+    if snapshot_of(resolved):
+        dropped[MEMORY] = (SNAPSHOT, "file", "embedding_deadline")
     for key, names in dropped.items():
         if isinstance(node := values.get(key), Mapping):
             values[key] = {name: value for name, value in node.items() if name not in names}

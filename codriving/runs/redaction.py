@@ -4,6 +4,7 @@ import json
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
 
 MASK = "<redacted>"
 _SECRET = re.compile(r"key|token|secret|password|credential", re.IGNORECASE)
@@ -40,14 +41,12 @@ def variables_in(settings: object) -> tuple[str, ...]:
 
 
 def _variables(node: object) -> Iterator[str]:
-    if isinstance(node, Mapping):
-        for name, value in node.items():
-            if isinstance(value, str) and value and _NAME_OF_VARIABLE.search(str(name)):
-                yield value
-            else:
-                yield from _variables(value)
-    elif isinstance(node, list | tuple):
-        for value in node:
+    if isinstance(node, list | tuple):
+        node = dict(enumerate(node))
+    for name, value in node.items() if isinstance(node, Mapping) else ():
+        if isinstance(value, str) and value and _NAME_OF_VARIABLE.search(str(name)):
+            yield value
+        else:
             yield from _variables(value)
 
 
@@ -57,7 +56,7 @@ def secrets_of(variables: Iterable[str]) -> tuple[str, ...]:
     return tuple(sorted((value for value in values if len(value) >= SHORTEST), key=len, reverse=True))
 
 
-def scrubbed(value: object, secrets: Iterable[str]) -> object:
+def scrubbed(value: Any, secrets: Iterable[str]) -> Any:  # noqa: ANN401 - any plain value
     """Take secrets out of every text of plain values, wherever they came from."""
     if isinstance(value, str):
         for secret in secrets:

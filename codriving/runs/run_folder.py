@@ -78,11 +78,10 @@ class RunFolder:
         # What release 0.1 has finished stays to the byte; what it has begun is told by choices and files from now on.
         if there is not None and replace(manifest, cells=there.cells) == there and self._complete(manifest):
             return manifest
-        texts = [configs[name] for name in asked.rows]
         (self.path / CONFIGS).mkdir(exist_ok=True)
-        for name, text in zip(manifest.rows, texts, strict=True):
-            write_text(self.path / CONFIGS / f"{name}.yaml", text)
-        write_text(self.path / CONFIG, texts[0])
+        for name, asked_as in zip(manifest.rows, asked.rows, strict=True):
+            write_text(self.path / CONFIGS / f"{name}.yaml", configs[asked_as])
+        write_text(self.path / CONFIG, configs[asked.rows[0]])
         # Last, for it says that the folder is a run's: a kill before this leaves nothing to misread.
         write_text(self.path / MANIFEST, encode(manifest))
         return manifest
@@ -143,15 +142,11 @@ class RunFolder:
             count += len(there - asked if cell.folder in self.manifest.rows else there)
         return count
 
-    def close(self) -> None:
-        """Let others write."""
-        self._lock.close()
-
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.close()
+        self._lock.close()
 
 
 def unwritable(path: Path, error: OSError) -> RunFolderError:

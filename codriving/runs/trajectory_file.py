@@ -25,10 +25,7 @@ def trajectory_text(trajectory: Trajectory) -> str:
     for track in trajectory.tracks:
         for step, row in enumerate(_track_rows(track, trajectory.step), start=track.first_step):
             rows[step].append(row)
-    lines = [",".join(COLUMNS)]
-    for step in sorted(rows):
-        lines.extend(rows[step])
-    return "\n".join(lines) + "\n"
+    return "\n".join([",".join(COLUMNS), *(row for step in sorted(rows) for row in rows[step])]) + "\n"
 
 
 def _track_rows(track: Track, step: float) -> list[str]:
@@ -58,9 +55,8 @@ def read_trajectory(folder: Path, record: EpisodeRecord) -> Trajectory | None:
     path = folder / TRAJECTORY
     if not path.exists():
         return None
-    text = read_episode_text(path)
     try:
-        head, *rows = csv.reader(text.splitlines())
+        head, *rows = csv.reader(read_episode_text(path).splitlines())
         if tuple(head) != COLUMNS:
             raise ValueError(f"its columns are not {', '.join(COLUMNS)}")
         return _trajectory([dict(zip(COLUMNS, row, strict=True)) for row in rows], record)
@@ -83,23 +79,12 @@ def _trajectory(rows: Sequence[Mapping[str, str]], record: EpisodeRecord) -> Tra
         if name not in members:
             raise ValueError(f"{name} is not in the record")
         numbers = np.array([[float(row[column]) for column in COLUMNS[3:8]] for row in own])
-        x, y, heading, speed, acceleration = numbers.T
         first, last = (round(float(row["time"]) / step) for row in (own[0], own[-1]))
         if last - first != len(own) - 1 or not np.isfinite(numbers).all():
             raise ValueError(f"the rows of {name} are not complete")
+        x, y, heading, speed, acceleration = numbers.T
+        kind, member, actions = Kind(own[0]["kind"]), members[name], tuple(row["action"] for row in own)
         tracks.append(
-            Track(
-                id=name,
-                kind=Kind(own[0]["kind"]),
-                route=members[name].route,
-                first_step=first,
-                x=x,
-                y=y,
-                heading=heading,
-                speed=speed,
-                acceleration=acceleration,
-                action=tuple(row["action"] for row in own),
-                arrived=members[name].arrived,
-            )
+            Track(name, kind, member.route, first, x, y, heading, speed, acceleration, actions, member.arrived)
         )
     return Trajectory(step, tuple(tracks))
