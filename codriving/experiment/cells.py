@@ -62,8 +62,7 @@ class Cell:
     @cached_property
     def fingerprint(self) -> str:
         """What tells what is driven from all others; metrics take no part."""
-        labels = self.labels
-        names = (labels.scenario, labels.method, labels.variant, labels.reasoner)
+        names = (self.labels.scenario, self.labels.method, self.labels.variant, self.labels.reasoner)
         return fingerprint(names, self.choices, self.resolved, self.files)
 
     def entry(self) -> CellEntry:

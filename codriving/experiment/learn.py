@@ -59,16 +59,14 @@ def run_learn(overrides: Sequence[str], config_dir: Path | None = None, show_onl
         print(f"Learning: {builds.episodes} interactions in each of {len(builds.cells)} settings.", file=sys.stderr)
         learnt = drive(builds)
         if learnt.failed:
-            report(learnt, again)
-            return 1
+            return report(learnt, again)
         files = [memory_file(learnt.folder, cell.folder) for cell in builds.cells]
         tests = make_plan(frozen_points(points, files, sizes, run), config_dir)
         print(f"Testing: {tests.episodes} episodes in each of {len(tests.cells)} cells.", file=sys.stderr)
         finished = drive(tests, lambda driven: learned(driven, len(points)))
     except (Interrupted, HaltedError) as stop:
         return stopped(stop, again)
-    report(finished, again)
-    return 1 if finished.failed or finished.unfilmed else 0
+    return report(finished, again)
 
 
 def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:
@@ -84,9 +82,7 @@ def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tup
     if "memory" in keys:
         raise ConfigError("codriving learn sets memory itself; memory.shots and memory.least_similarity can be given")
     named = {key.partition(".")[0] for key in keys}
-    base = [token for token in ("scenario=all", LEVELS) if token.partition("=")[0] not in named]
-    if "seed" not in keys:
-        base.append("seed=0")
+    base = [token for token in ("scenario=all", LEVELS, "seed=0") if token.partition("=")[0] not in named]
     return expand([*base, *overrides], config_dir)
 
 

@@ -84,9 +84,8 @@ def built(driven: Driven) -> Outputs:
     """
     rows = []
     for cell in driven.cells:
-        file = memory_file(driven.folder, cell.folder)
         named = (cell.resolved.get("memory") or {}).get("file")
-        reading = read_memory(file if named is None else Path(named))
+        reading = read_memory(memory_file(driven.folder, cell.folder) if named is None else Path(named))
         labels = cell.labels
         name = f"{labels.method} {labels.variant}".strip()
         rows.append(BuiltMemory(labels.scenario, name, labels.reasoner, cell.swept, reading))

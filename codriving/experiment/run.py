@@ -87,8 +87,7 @@ def run_command(
         finished = drive(plan, command.make_outputs)
     except (Interrupted, HaltedError) as stop:
         return stopped(stop, resume_command(command.name, overrides, config_dir, stop.folder.name))
-    report(finished, resume_command(command.name, overrides, config_dir, finished.folder.name))
-    return 1 if finished.failed or finished.unfilmed else 0
+    return report(finished, resume_command(command.name, overrides, config_dir, finished.folder.name))
 
 
 def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> int:
@@ -181,8 +180,12 @@ def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None,
     return shlex.join(["codriving", *name.split(), *kept, f"run={run}", *folder])
 
 
-def report(finished: Finished, again: str) -> None:
-    """Print what a finished run has to say; the last line tells its folder."""
+def report(finished: Finished, again: str) -> int:
+    """Print what a finished run has to say; the last line tells its folder.
+
+    Returns:
+        Exit code: 0, or 1 if episodes ended in an error or could not be filmed.
+    """
     if not finished.driven and not finished.filmed:
         print(f"Nothing to do: all {finished.kept} episodes of this run are finished already.")
     for index, printed in enumerate(finished.printed):
@@ -208,3 +211,4 @@ def report(finished: Finished, again: str) -> None:
     if finished.left_out:
         print(f"{finished.left_out} more episodes in this run folder were not asked for and are left out of the table.")
     print(f"Run folder: {finished.folder}")
+    return 1 if finished.failed or finished.unfilmed else 0
