@@ -63,7 +63,7 @@ RECORDS = st.builds(
 )
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 @given(RECORDS)
 def test_what_is_read_is_what_was_written(record: EpisodeRecord) -> None:
     text = encode(record)
