@@ -8,6 +8,7 @@ from highway_env.vehicle.objects import RoadObject
 from codriving.datatypes.record import Collision
 from codriving.environment.traffic.route_following import RouteFollower
 from codriving.geometry.box import corners, overlap
+from codriving.geometry.curve import FloatArray
 
 PUSHED = 3.0
 """How far highway-env pushes two crashed cars apart at most [m]."""
@@ -46,8 +47,7 @@ def find_block_collisions(
             if abs(vehicle.position[0] - obstacle.position[0]) > vehicle.diagonal + obstacle.diagonal:
                 continue
             if _overlap(vehicle, obstacle) if by_footprint else vehicle.crashed and obstacle.crashed:
-                record = Collision(time, vehicle.id, f"block{k}", f"{vehicle.kind}-block")
-                found.append(((vehicle,), record))
+                found.append(((vehicle,), Collision(time, vehicle.id, f"block{k}", f"{vehicle.kind}-block")))
     return found
 
 
@@ -96,19 +96,15 @@ def _centre(vehicle: RouteFollower, back: float) -> Point:
     return x - way * math.cos(vehicle.heading), y - way * math.sin(vehicle.heading)
 
 
-def _box(vehicle: RouteFollower, back: float) -> list[Point]:
-    x, y = _centre(vehicle, back)
-    return [(px, py) for px, py in corners(x, y, vehicle.heading, vehicle.LENGTH, vehicle.WIDTH).tolist()]
+def _box(vehicle: RouteFollower, back: float) -> FloatArray:
+    return corners(*_centre(vehicle, back), vehicle.heading, vehicle.LENGTH, vehicle.WIDTH)
 
 
 def _since_touch(one: RouteFollower, other: RouteFollower, dt: float) -> float:
     """Return how long ago the two began to overlap [s]; 0 if their velocities do not say."""
 
     def overlapped(back: float) -> bool:
-        boxes = (
-            corners(*_centre(vehicle, back), vehicle.heading, vehicle.LENGTH, vehicle.WIDTH) for vehicle in (one, other)
-        )
-        return overlap(*boxes)
+        return overlap(_box(one, back), _box(other, back))
 
     if overlapped(dt):
         return 0.0
@@ -124,8 +120,7 @@ def _since_touch(one: RouteFollower, other: RouteFollower, dt: float) -> float:
 
 def _contact(one: RouteFollower, other: RouteFollower, back: float) -> Point:
     """Return the middle of the ground that both cover."""
-    polygon = _box(one, back)
-    box = _box(other, back)
+    polygon, box = ([(x, y) for x, y in _box(vehicle, back).tolist()] for vehicle in (one, other))
     for k in range(4):
         polygon = _cut(polygon, box[k], box[(k + 1) % 4])
     if not polygon:

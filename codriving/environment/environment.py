@@ -31,18 +31,11 @@ class Environment(Simulator):
     ) -> None:
         self.scenario, self.control, self.drivers, self.corrections = scenario, control, drivers, corrections
         pace = scenario.pace
-        self.driving_model = DrivingModel(
-            target_speeds=pace.target_speeds,
-            speed_gain=control.speed,
-            step=1 / pace.simulation_frequency,
-            decision_interval=1 / pace.decision_frequency,
-            detection_range=pace.detection_range,
-        )
+        step, interval = 1 / pace.simulation_frequency, 1 / pace.decision_frequency
+        self.driving_model = DrivingModel(pace.target_speeds, control.speed, step, interval, pace.detection_range)
         self.road_map = road_map(scenario.road)
         self._network = build_network(scenario.road)
-        self._route_paths: dict[str, RoutePath] = {
-            route.id: route_path(self.road_map, route.id) for route in scenario.road.routes
-        }
+        self._route_paths = {route.id: route_path(self.road_map, route.id) for route in scenario.road.routes}
         self._world: WorldState | None = None
         self._outcome: Outcome | None = None
 
@@ -120,8 +113,7 @@ class Environment(Simulator):
             raise EpisodeError(f"one action for each of {sorted(available)} is needed, got {sorted(actions)}")
         for name, action in actions.items():
             if action not in available[name]:
-                can = ", ".join(available[name])
-                raise EpisodeError(f"{name} cannot do {action} here; it can do {can}")
+                raise EpisodeError(f"{name} cannot do {action} here; it can do {', '.join(available[name])}")
 
 
 def spawn(

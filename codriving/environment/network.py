@@ -98,9 +98,8 @@ def connected(network: RoadNetwork, index: LaneIndex, planned: Sequence[str]) ->
     """
     start, end, _ = index
     lane = network.get_lane(index)
-    branches = network.graph.get(end, {})
     found = []
-    for to, lanes in branches.items():
+    for to, lanes in network.graph.get(end, {}).items():
         if not planned or to in planned:
             found += [(other, lane.length) for other in lanes if continues(lane, other)]
     for ends in network.graph.values():

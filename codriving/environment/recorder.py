@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from codriving.datatypes.record import Track, Trajectory
-from codriving.datatypes.road import LaneId
 from codriving.datatypes.world import Intent, Kind, VehicleState, WorldState
 from codriving.environment.cav import ConnectedVehicle
-from codriving.environment.traffic.route_following import RouteFollower
+from codriving.environment.traffic.route_following import RouteFollower, plain
 from codriving.environment.traffic.traffic import Traffic
 
 
@@ -40,25 +39,11 @@ class Recorder:
     def trajectory(self, step: float, arrivals: dict[str, float]) -> Trajectory:
         """Return what was recorded with a simulation step [s], and when vehicles arrived [s]."""
         tracks = []
-        for name in sorted(self.logs):
-            log = self.logs[name]
+        for name, log in sorted(self.logs.items()):
             x, y, heading, speed, accelerations = np.array(log.rows).T
-            tracks.append(
-                Track(
-                    id=name,
-                    kind=log.kind,
-                    route=log.route,
-                    first_step=log.first_step,
-                    x=x,
-                    y=y,
-                    heading=heading,
-                    speed=speed,
-                    acceleration=accelerations,
-                    action=tuple(log.actions),
-                    arrived=arrivals.get(name),
-                )
-            )
-        return Trajectory(step=step, tracks=tuple(tracks))
+            motion = (x, y, heading, speed, accelerations, tuple(log.actions))
+            tracks.append(Track(name, log.kind, log.route, log.first_step, *motion, arrivals.get(name)))
+        return Trajectory(step, tuple(tracks))
 
 
 def acceleration(vehicle: RouteFollower) -> float:
@@ -68,33 +53,15 @@ def acceleration(vehicle: RouteFollower) -> float:
 
 def state_of(vehicle: RouteFollower) -> VehicleState:
     """Copy the physical state of one vehicle."""
-    return VehicleState(
-        id=vehicle.id,
-        kind=vehicle.kind,
-        x=float(vehicle.position[0]),
-        y=float(vehicle.position[1]),
-        heading=float(vehicle.heading),
-        speed=float(vehicle.speed),
-        acceleration=acceleration(vehicle),
-        lane=_plain(vehicle.lane_index),
-        length=vehicle.LENGTH,
-        width=vehicle.WIDTH,
-    )
+    x, y, heading, speed = (float(v) for v in (*vehicle.position, vehicle.heading, vehicle.speed))
+    lane, size = plain(vehicle.lane_index), (vehicle.LENGTH, vehicle.WIDTH)
+    return VehicleState(vehicle.id, vehicle.kind, x, y, heading, speed, acceleration(vehicle), lane, *size)
 
 
 def snapshot(traffic: Traffic, time: float, step: int) -> WorldState:
     """Copy what a method may know of the world; nothing of the simulator leaves with it."""
     vehicles = sorted(traffic.vehicles, key=lambda v: v.id)
     cavs = [v for v in vehicles if isinstance(v, ConnectedVehicle)]
-    return WorldState(
-        time=time,
-        step=step,
-        vehicles=tuple(state_of(v) for v in vehicles),
-        intents={v.id: Intent(v.route_path.route.id, float(v.target_speed), _plain(v.target_lane_index)) for v in cavs},
-        available={v.id: v.available() for v in cavs},
-    )
-
-
-def _plain(lane: LaneId) -> LaneId:
-    """A lane id without numpy's integers, which highway-env leaves after a lane change."""
-    return lane[0], lane[1], int(lane[2])
+    intents = {v.id: Intent(v.route_path.route.id, float(v.target_speed), plain(v.target_lane_index)) for v in cavs}
+    states, available = tuple(state_of(v) for v in vehicles), {v.id: v.available() for v in cavs}
+    return WorldState(time, step, states, intents, available)

@@ -32,9 +32,7 @@ class ControlGains:
 
     def apply(self, vehicle: ControlledVehicle) -> None:
         """Set the gains on one vehicle; its class stays as it is."""
-        vehicle.KP_A = self.speed
-        vehicle.KP_HEADING = self.heading
-        vehicle.KP_LATERAL = self.lateral
+        vehicle.KP_A, vehicle.KP_HEADING, vehicle.KP_LATERAL = self.speed, self.heading, self.lateral
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,11 +108,8 @@ class DriverProfile:
             to_class: Set them on the class instead, as highway-env's intersection does (a fault kept for comparison).
         """
         target = type(driver) if to_class else driver
-        target.COMFORT_ACC_MAX = self.acceleration
-        target.COMFORT_ACC_MIN = -self.deceleration
-        target.ACC_MAX = self.limit
-        target.DISTANCE_WANTED = self.jam_distance
-        target.TIME_WANTED = self.headway
-        target.POLITENESS = self.politeness
+        target.COMFORT_ACC_MAX, target.COMFORT_ACC_MIN = self.acceleration, -self.deceleration
+        target.ACC_MAX, target.POLITENESS = self.limit, self.politeness
+        target.DISTANCE_WANTED, target.TIME_WANTED = self.jam_distance, self.headway
         target.LANE_CHANGE_MIN_ACC_GAIN = self.gain_threshold
         target.LANE_CHANGE_MAX_BRAKING_IMPOSED = self.safe_braking

@@ -44,7 +44,7 @@ class Termination:
         if gone:
             traffic.vehicles = [v for v in traffic.vehicles if v not in gone]
         if collision is not None:
-            return self._end(Ending.COLLISION, time, collision=collision)
+            return self._end(Ending.COLLISION, time, collision)
         if lost:
             return self._end(Ending.OFF_ROAD, time, off_road=lost)
         if not self._waiting:
@@ -73,14 +73,8 @@ class Termination:
     def _end(
         self, ending: Ending, time: float, collision: Collision | None = None, off_road: tuple[str, ...] = ()
     ) -> Outcome:
-        return Outcome(
-            ending=ending,
-            time=time,
-            arrivals=dict(sorted(self.arrivals.items())),
-            collision=collision,
-            bystander_collisions=tuple(self._bystanders),
-            off_road=off_road,
-        )
+        arrivals = dict(sorted(self.arrivals.items()))
+        return Outcome(ending, time, arrivals, collision, tuple(self._bystanders), off_road)
 
 
 def _is_off_road(vehicle: RouteFollower) -> bool:

@@ -53,15 +53,12 @@ def overlaps(corners_a: FloatArray, corners_b: FloatArray) -> BoolArray:
         corners_a: Corner points (..., 4, 2) [m].
         corners_b: Corner points (..., 4, 2) [m], broadcast against `corners_a`.
     """
-    sides_a = corners_a[..., 1:3, :] - corners_a[..., 0:2, :]
-    sides_b = corners_b[..., 1:3, :] - corners_b[..., 0:2, :]
-    sides_a, sides_b = np.broadcast_arrays(sides_a, sides_b)
-    axes = np.concatenate((sides_a, sides_b), axis=-2)
+    sides = (c[..., 1:3, :] - c[..., 0:2, :] for c in (corners_a, corners_b))
+    axes = np.concatenate(np.broadcast_arrays(*sides), axis=-2)
     a = np.einsum("...kc,...pc->...kp", axes, corners_a)
     b = np.einsum("...kc,...pc->...kp", axes, corners_b)
     apart = (a.max(-1) <= b.min(-1)) | (b.max(-1) <= a.min(-1))
-    result: BoolArray = ~apart.any(-1)
-    return result
+    return np.asarray(~apart.any(-1))
 
 
 def separation(dx: FloatArray, dy: FloatArray, cos: FloatArray, sin: FloatArray, footprint: Footprint) -> FloatArray:

@@ -55,13 +55,11 @@ def bridge(start: Point, heading: float, end: Point, end_heading: float) -> Curv
 
     def point(u: FloatArray) -> FloatArray:
         w = u[:, None]
-        value: FloatArray = p + (3 * w**2 - 2 * w**3) * (q - p) + (w**3 - 2 * w**2 + w) * m + (w**3 - w**2) * n
-        return value
+        return np.asarray(p + (3 * w**2 - 2 * w**3) * (q - p) + (w**3 - 2 * w**2 + w) * m + (w**3 - w**2) * n)
 
     def slope(u: FloatArray) -> FloatArray:
         w = u[:, None]
-        value: FloatArray = 6 * (w - w**2) * (q - p) + (3 * w**2 - 4 * w + 1) * m + (3 * w**2 - 2 * w) * n
-        return value
+        return np.asarray(6 * (w - w**2) * (q - p) + (3 * w**2 - 4 * w + 1) * m + (3 * w**2 - 2 * w) * n)
 
     u = np.linspace(0.0, 1.0, max(16, math.ceil(2 * chord / _FINE)))
     arc = _integrate(u, np.hypot(*slope(u).T))
@@ -86,8 +84,7 @@ def taper(left: Curve, entered: Curve, length: float) -> Curve:
         along = 1 - share * (1 - u)
         weight = ((1 - np.cos(np.pi * u)) / 2)[:, None]
         one, other = left.at(along * left.length)[0], entered.at(along * entered.length)[0]
-        value: FloatArray = (1 - weight) * one + weight * other
-        return value
+        return np.asarray((1 - weight) * one + weight * other)
 
     u = np.linspace(0.0, 1.0, max(16, math.ceil(2 * share * left.length / _FINE)))
     points = point(u)

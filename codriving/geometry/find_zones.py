@@ -67,21 +67,13 @@ def _zone(path_i: Path, path_j: Path, cells: Cells, footprint: Footprint) -> Con
     coincidence = classify(path_i, path_j, cells)
     merge_i, merge_j = coincidence.merge or (None, None)
     split_i, split_j = coincidence.split or (None, None)
-    return ConflictZone(
-        relation=coincidence.relation,
-        entry_i=float(over_j.low.min()),
-        exit_i=float(over_j.high.max()),
-        entry_j=float(over_i.low.min()),
-        exit_j=float(over_i.high.max()),
-        point_i=float(cells.i[nearest] * path_i.spacing) if merge_i is None else merge_i,
-        point_j=float(cells.j[nearest] * path_j.spacing) if merge_j is None else merge_j,
-        merge_i=merge_i,
-        merge_j=merge_j,
-        split_i=split_i,
-        split_j=split_j,
-        over_i=over_i,
-        over_j=over_j,
+    entry_i, exit_i, entry_j, exit_j = (
+        float(s) for s in (over_j.low.min(), over_j.high.max(), over_i.low.min(), over_i.high.max())
     )
+    point_i = float(cells.i[nearest] * path_i.spacing) if merge_i is None else merge_i
+    point_j = float(cells.j[nearest] * path_j.spacing) if merge_j is None else merge_j
+    places = (entry_i, exit_i, entry_j, exit_j, point_i, point_j)
+    return ConflictZone(coincidence.relation, *places, merge_i, merge_j, split_i, split_j, over_i, over_j)
 
 
 def _band(path_i: Path, path_j: Path, cells: Cells, footprint: Footprint) -> Band:
@@ -89,12 +81,9 @@ def _band(path_i: Path, path_j: Path, cells: Cells, footprint: Footprint) -> Ban
     first = np.concatenate(([0], np.flatnonzero(np.diff(cells.j)) + 1))
     last = np.concatenate((first[1:], [len(cells.i)])) - 1
     rows = cells.j[first]
-    return Band(
-        start=float(rows[0] * path_j.spacing),
-        spacing=path_j.spacing,
-        low=_limit(path_i, path_j, cells.i[first], rows, -1, footprint),
-        high=_limit(path_i, path_j, cells.i[last], rows, 1, footprint),
-    )
+    low = _limit(path_i, path_j, cells.i[first], rows, -1, footprint)
+    high = _limit(path_i, path_j, cells.i[last], rows, 1, footprint)
+    return Band(float(rows[0] * path_j.spacing), path_j.spacing, low, high)
 
 
 def _limit(path_i: Path, path_j: Path, i: IntArray, j: IntArray, step: int, footprint: Footprint) -> FloatArray:
@@ -104,8 +93,7 @@ def _limit(path_i: Path, path_j: Path, i: IntArray, j: IntArray, step: int, foot
     outer = cell_separation(path_i, path_j, Cells(beyond, j), footprint)
     # At the end of the path there is nothing beyond: the last point itself is the limit.
     share = np.where(beyond == i, 0.0, inner / np.where(beyond == i, 1.0, inner - outer))
-    limit: FloatArray = (i + step * share) * path_i.spacing
-    return limit
+    return np.asarray((i + step * share) * path_i.spacing)
 
 
 def classify(path_i: Path, path_j: Path, zone: Cells) -> Coincidence:

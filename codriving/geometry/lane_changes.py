@@ -52,8 +52,7 @@ class LaneChanges:
         key = (route_id, lane)
         if key not in self._beside:
             found = []
-            for index in (lane[2] - 1, lane[2] + 1):
-                side = (lane[0], lane[1], index)
+            for side in ((lane[0], lane[1], lane[2] - 1), (lane[0], lane[1], lane[2] + 1)):
                 options = [
                     (_changes(r.lanes[r.lanes.index(side) :]), _changes(r.lanes), r.id)
                     for r in self.routes.values()

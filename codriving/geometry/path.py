@@ -57,10 +57,8 @@ class Path:
         x, y = self._x, self._y
         overshoot = s - inside
         heading = np.where(overshoot < 0, self.headings[0], self.headings[-1])
-        return (
-            x[k] + t * (x[k + 1] - x[k]) + overshoot * np.cos(heading),
-            y[k] + t * (y[k + 1] - y[k]) + overshoot * np.sin(heading),
-        )
+        beyond_x, beyond_y = overshoot * np.cos(heading), overshoot * np.sin(heading)
+        return x[k] + t * (x[k + 1] - x[k]) + beyond_x, y[k] + t * (y[k + 1] - y[k]) + beyond_y
 
     def place(self, s: float) -> tuple[float, float, float]:
         """Return x and y [m] and heading [rad] at one arc length [m], as `position` and `heading` do, without numpy."""
@@ -159,5 +157,4 @@ def progress(path: Path, x: FloatArray, y: FloatArray, heading: FloatArray) -> F
     along = ux[nearest] * (x - px[nearest]) + uy[nearest] * (y - py[nearest])
     inner = (nearest > 0) & (nearest < len(px) - 1)
     along = np.where(inner, np.clip(along, -path.spacing / 2, path.spacing / 2), along)
-    result: FloatArray = np.maximum.accumulate(nearest * path.spacing + along)
-    return result
+    return np.asarray(np.maximum.accumulate(nearest * path.spacing + along))

@@ -39,10 +39,8 @@ def check_road(road: Road) -> None:
             raise ScenarioError(f"route {route.id!r} of road {road.name!r} has no lanes; give it at least one")
         for lane_id in route.lanes:
             if lane_id not in lanes:
-                raise ScenarioError(
-                    f"route {route.id!r} of road {road.name!r} uses lane {lane_id}, which does not exist; "
-                    f"add the lane or correct the route"
-                )
+                unknown = f"uses lane {lane_id}, which does not exist; add the lane or correct the route"
+                raise ScenarioError(f"route {route.id!r} of road {road.name!r} {unknown}")
         for one, two, three in zip(route.lanes, route.lanes[1:], route.lanes[2:], strict=False):
             if beside(one, two) and beside(two, three):
                 raise ScenarioError(
@@ -66,21 +64,19 @@ def _unique(road: Road, what: str, ids: Iterable[object]) -> None:
 
 
 def _check_lane(road: Road, lane: Lane) -> None:
+    where = f"lane {lane.id} of road {road.name!r}"
     if isinstance(lane.shape, Arc) and not lane.shape.radius > 0:
-        raise ScenarioError(f"lane {lane.id} of road {road.name!r} must have a radius > 0 m, got {lane.shape.radius:g}")
+        raise ScenarioError(f"{where} must have a radius > 0 m, got {lane.shape.radius:g}")
     if not isinstance(lane.shape, Arc) and lane.shape.start == lane.shape.end:
-        raise ScenarioError(
-            f"lane {lane.id} of road {road.name!r} starts and ends at {lane.shape.start}; give it a length"
-        )
+        raise ScenarioError(f"{where} starts and ends at {lane.shape.start}; give it a length")
     if isinstance(lane.shape, Arc) and not lane_curve(lane.shape).length > 0:
         raise ScenarioError(
-            f"lane {lane.id} of road {road.name!r} turns against its direction; "
-            f"end_phase must be greater than start_phase if clockwise, else smaller"
+            f"{where} turns against its direction; end_phase must be greater than start_phase if clockwise, "
+            "else smaller"
         )
     if not lane.width > 0 or not lane.speed_limit > 0:
         raise ScenarioError(
-            f"lane {lane.id} of road {road.name!r} must have a width and a speed limit > 0, "
-            f"got {lane.width:g} m and {lane.speed_limit:g} m/s"
+            f"{where} must have a width and a speed limit > 0, got {lane.width:g} m and {lane.speed_limit:g} m/s"
         )
 
 

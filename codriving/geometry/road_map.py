@@ -34,18 +34,12 @@ class RoadMap:
         self.paths: Mapping[str, Path] = {
             route.id: route_path([self.lanes[lane] for lane in route.lanes], route.taper) for route in road.routes
         }
-        self._starts = {
-            (route.id, lane): start
-            for route in road.routes
-            for lane, start in zip(
-                route.lanes, lane_starts([self.lanes[k] for k in route.lanes], route.taper), strict=True
-            )
-        }
         # Lanes of each route from its end to its start, to find the one at a place.
-        self._backwards = {
-            route.id: tuple((lane, self._starts[route.id, lane]) for lane in reversed(route.lanes))
-            for route in road.routes
-        }
+        self._backwards: dict[str, tuple[tuple[LaneId, float], ...]] = {}
+        for route in road.routes:
+            starts = lane_starts([self.lanes[lane] for lane in route.lanes], route.taper)
+            self._backwards[route.id] = tuple(zip(reversed(route.lanes), reversed(starts), strict=True))
+        self._starts = {(name, lane): start for name, back in self._backwards.items() for lane, start in back}
         self.changes = LaneChanges(self.lanes, self.routes, self._starts)
         self.nearby = Nearby(self.lanes, self.routes, self.paths, self._starts)
         self._projected: dict[tuple[str, float, float], tuple[float, float]] = {}

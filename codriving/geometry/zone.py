@@ -138,18 +138,13 @@ class ConflictZone:
 
     def mirrored(self) -> "ConflictZone":
         """Return the same zone seen from route j."""
-        return ConflictZone(
-            self.relation,
-            *(self.entry_j, self.exit_j, self.entry_i, self.exit_i),
-            *(self.point_j, self.point_i),
-            *(self.merge_j, self.merge_i, self.split_j, self.split_i),
-            *(self.over_j, self.over_i),
-        )
+        places = (self.entry_j, self.exit_j, self.entry_i, self.exit_i, self.point_j, self.point_i)
+        shared = (self.merge_j, self.merge_i, self.split_j, self.split_i)
+        return ConflictZone(self.relation, *places, *shared, self.over_j, self.over_i)
 
 
 def following_zone(path: Path, footprint: Footprint) -> ConflictZone:
     """Return the zone of two vehicles on the same route, which stay a body length apart all along."""
     band = FollowingBand(footprint.length)
-    return ConflictZone(
-        Relation.FOLLOWING, 0.0, path.length, 0.0, path.length, 0.0, 0.0, None, None, None, None, band, band
-    )
+    places = (0.0, path.length, 0.0, path.length, 0.0, 0.0)
+    return ConflictZone(Relation.FOLLOWING, *places, None, None, None, None, band, band)

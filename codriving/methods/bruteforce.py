@@ -1,6 +1,6 @@
 """The best passing order of all, by branch and bound: the reference that no search can beat."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from codriving.datatypes.order import Instance
 from codriving.errors import EpisodeError
@@ -19,20 +19,9 @@ class BruteForce(SearchedOrder):
 
     Args:
         hysteresis: J that another order must save to be taken, 0 to 10 [s].
-
-    Raises:
-        ConfigError: If a value is out of range.
     """
 
     name = "bruteforce"
-
-    def __init__(
-        self,
-        hysteresis: float = 0.3,
-        evacuation_weight: float = 0.0,
-        fairness: Mapping[str, float] | None = None,
-    ) -> None:
-        super().__init__(hysteresis, evacuation_weight, fairness)
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
         """Return the best order.
@@ -41,10 +30,8 @@ class BruteForce(SearchedOrder):
             EpisodeError: If more than ten vehicles are to be ordered.
         """
         if len(instance.vehicles) > MOST:
-            raise EpisodeError(
-                f"bruteforce orders at most {MOST} vehicles, got {len(instance.vehicles)}; "
-                "take method=mcts or fewer vehicles"
-            )
+            many = f"at most {MOST} vehicles, got {len(instance.vehicles)}"
+            raise EpisodeError(f"bruteforce orders {many}; take method=mcts or fewer vehicles")
         return super().order(instance, planner)
 
     def search(self, problem: Coded, seeds: Sequence[Sequence[str]]) -> Found:

@@ -1,20 +1,18 @@
 """CoDrivingLLM: the paper's method, with its CDA level, its reasoner and its memory put into the slots."""
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 
-from codriving.datatypes.parts import Account, CaseMemory, Method, Model
+from codriving.datatypes.parts import Account, CaseMemory, Model
 from codriving.datatypes.record import Outcome
-from codriving.datatypes.road import Road
 from codriving.datatypes.situation import Decision, ReasonedDeliberation, Situation
 from codriving.datatypes.world import DrivingModel, WorldState
-from codriving.errors import ConfigError
+from codriving.errors import require_range
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.experience_log import ConflictLog, learn
-from codriving.methods.language_model.ports import ports
-from codriving.methods.language_model.prompted_model import check_model, prompt_files, prompted
+from codriving.methods.language_model.prompted_model import ModelMethod, PromptedModel
 from codriving.methods.pipeline import Pipeline
-from codriving.reasoning.decision.rules import Decider, decide_one
+from codriving.reasoning.decision.rules import Decider, RuleDecider, decide_one
+from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator
 from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
 from codriving.reasoning.perception import Perception
 from codriving.reasoning.prediction.forecast import Forecast
@@ -25,7 +23,7 @@ from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, 
 from codriving.reasoning.sharing.tracking import Tracking
 
 
-class CoDriving(Method):
+class CoDriving(ModelMethod):
     """The framework of the paper.
 
     Args:
@@ -36,31 +34,24 @@ class CoDriving(Method):
         ConfigError: If the margin is out of range.
     """
 
-    name = "codriving"
+    name, asked, reflects = "codriving", ("negotiate", "decide"), "reflect"
 
     def __init__(self, cda: CdaLevel, llm: Model, memory: CaseMemory | None, margin: float) -> None:
-        if not 0 <= margin <= 5:
-            raise ConfigError(f"margin must be 0 to 5 s, got {margin:g}")
-        check_model(llm, memory)
-        self.cda, self.llm, self.memory, self.margin = cda, llm, memory, margin
-        self.variant, self.reasoner = cda.variant, llm.name
-        self.remembers = memory.label if memory is not None else ""
-
-    def files(self, road: Road) -> Mapping[str, Path]:
-        return prompt_files(self.llm, self.memory, ("negotiate", "decide"), "reflect")
+        require_range("margin", margin, 0, 5, " s")
+        super().__init__(llm, memory)
+        self.cda, self.margin, self.variant = cda, margin, cda.variant
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Fill the slots for a new episode."""
-        forecast = Forecast(model, (*CONTINUATIONS, *PLANS))
-        self._model = prompted(self.llm)
+        super().reset(road_map, model, seed)
         coordinator, decider = ports(self._model, self.llm.ask_plain, self.cda.binding, self.cda.intent_sharing)
         self._pipeline = Pipeline(
             perception=Perception(
-                road_map=road_map,
-                forecast=forecast,
-                tracking=Tracking(road_map),
-                state_sharing=SharedStates() if self.cda.state_sharing else SensedStates(),
-                intent_sharing=SHARED_INTENTS if self.cda.intent_sharing else HIDDEN_INTENTS,
+                road_map,
+                Forecast(model, (*CONTINUATIONS, *PLANS)),
+                Tracking(road_map),
+                SharedStates() if self.cda.state_sharing else SensedStates(),
+                SHARED_INTENTS if self.cda.intent_sharing else HIDDEN_INTENTS,
             ),
             negotiation=AgreedOrder(coordinator) if self.cda.negotiation else OwnOrders(self.cda.own_order, seed),
             safety=ThreeLayers() if self.cda.safety_check else NoCheck(),
@@ -69,10 +60,8 @@ class CoDriving(Method):
             memory=self.memory,
             ledger=self._model.ledger if self._model is not None else None,
         )
-        self._road_map, self._seed = road_map, seed
+        self._road_map = road_map
         self._log = ConflictLog(road_map, model) if self.memory is not None and self.memory.learns else None
-        if self.memory is not None:
-            self.memory.begin(seed)
 
     def act(self, world: WorldState) -> ReasonedDeliberation:
         deliberation = self._pipeline.act(world)
@@ -97,9 +86,6 @@ class CoDriving(Method):
         learnt = learn(self.memory, self, self._road_map.road.name, self._seed, experiences)
         return {**account[0], **learnt}, account[1]
 
-    def unfinished_step(self, time: float) -> Account:
-        return self._model.ledger.close_step(time) if self._model is not None else ({}, [])
-
 
 class _ForOne(Decider):
     """Asks the decider for the CAV with the most conflicts alone; the rules decide for the others."""
@@ -111,3 +97,20 @@ class _ForOne(Decider):
         """Return one decision a situation, in the same order."""
         chosen = max(situations, key=lambda s: (len(s.allowed) > 1, len(s.conflicts)))
         return [self.decider.decide([s])[0] if s is chosen else decide_one(s) for s in situations]
+
+
+def ports(
+    model: PromptedModel | None, ask_plain: bool, binding: bool, sees_conflicts: bool
+) -> tuple[Coordinator, Decider]:
+    """Return what negotiates and what decides.
+
+    Args:
+        model: The language model; None for the built-in rules.
+    """
+    if model is None:
+        return RuleCoordinator(binding), RuleDecider()
+    # pydantic is needed only if a model is asked.
+    from codriving.methods.language_model.model_coordinator import ModelCoordinator
+    from codriving.methods.language_model.model_decider import CheckedDecider
+
+    return ModelCoordinator(model, binding), CheckedDecider(model, ask_plain, sees_conflicts)

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from codriving.datatypes.order import ApproachingVehicle, Instance
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request, best_subset
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
 from codriving.reasoning.ordering.schedule import repaired, timed
 from codriving.reasoning.ordering.tickets import reasons
 
@@ -64,10 +64,6 @@ class Auction(OrderRule):
 
         why = reasons(instance, self._agreed, reason)
         return Ordering(self._agreed, timed(instance, self._agreed), why, {"kept": int(kept)})
-
-    def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Grant the requests that do not overlap and gain most together."""
-        return best_subset(requests)
 
     def _wait(self, instance: Instance) -> dict[str, float]:
         """Return how long each vehicle has been waiting [s]."""

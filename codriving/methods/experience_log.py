@@ -85,20 +85,18 @@ class ConflictLog(ExperienceLog):
             collision = self._own_collision(name, outcome.collision)
             history = DecisionHistory(tuple(self._steps[name]), self._model.decision_interval, collision)
             for k, one in enumerate(logged):
-                action = one.decision.action
-                effect = effect_of(history, k)
+                action, effect = one.decision.action, effect_of(history, k)
                 verdict = verdict_of(effect, action)
                 if verdict is not Verdict.NEUTRAL:
-                    described = describe(one.situation)
-                    found.append(Experience(described, action, verdict, effect, LESSONS[verdict], one.step, name))
+                    described, lesson = describe(one.situation), LESSONS[verdict]
+                    found.append(Experience(described, action, verdict, effect, lesson, one.step, name))
         return found
 
     def _look(self, world: WorldState, decided: Mapping[str, tuple[Situation, Action]]) -> None:
         if self._begun is None:
             self._begun = world.time
         views = self._sharing.detections(world, self._model)
-        scenes = describe_scenes(world, views, world.intents, self._tracking)
-        for name, scene in scenes.items():
+        for name, scene in describe_scenes(world, views, world.intents, self._tracking).items():
             situation, action = decided.get(name, (None, None))
             step = HistoryStep(
                 ego=scene.ego,
@@ -114,8 +112,7 @@ class ConflictLog(ExperienceLog):
         if collision is None or name not in (collision.striker, collision.struck) or self._begun is None:
             return None
         strikes = name == collision.striker
-        other = collision.struck if strikes else collision.striker
-        return OwnCollision(collision.time - self._begun, other, strikes)
+        return OwnCollision(collision.time - self._begun, collision.struck if strikes else collision.striker, strikes)
 
 
 def recall(memory: CaseMemory | None, situations: Sequence[Situation], most: int | None = None) -> list[Situation]:
@@ -138,6 +135,5 @@ def learn(
     Returns:
         Counters by column.
     """
-    interaction = Interaction(scenario, seed, method.name, method.variant, method.reasoner)
-    new = memory.learn(interaction, experiences)
+    new = memory.learn(Interaction(scenario, seed, method.name, method.variant, method.reasoner), experiences)
     return {"experiences": len(experiences), "experiences_new": new}

@@ -36,7 +36,6 @@ class SpanningTree(OrderRule):
         require_range("hysteresis", hysteresis, 0, 10, " s")
         self.tickets, self.drift, self.hysteresis = TicketBook(control_radius), drift, hysteresis
         self.objective = Objective()
-        self.variant: str = ""
         self.reset(0)
 
     def reset(self, seed: int) -> None:

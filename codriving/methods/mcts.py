@@ -16,9 +16,6 @@ class MonteCarloTreeSearch(SearchedOrder):
 
     Args:
         hysteresis: J that another order must save to be taken, 0 to 10 [s].
-
-    Raises:
-        ConfigError: If a value is out of range.
     """
 
     name = "mcts"

@@ -7,7 +7,7 @@ from math import inf, isfinite
 
 from codriving.datatypes.order import Instance
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request, best_subset
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
 from codriving.reasoning.ordering.schedule import (
     LONGEST_WAIT,
     Objective,
@@ -50,10 +50,9 @@ class SearchedOrder(OrderRule):
         ConfigError: If a value is out of range.
     """
 
-    name: str
-    variant: str
-
-    def __init__(self, hysteresis: float, evacuation_weight: float, fairness: Mapping[str, float] | None) -> None:
+    def __init__(
+        self, hysteresis: float = 0.3, evacuation_weight: float = 0.0, fairness: Mapping[str, float] | None = None
+    ) -> None:
         require_range("hysteresis", hysteresis, 0, 10, " s")
         self.hysteresis, self.objective = hysteresis, Objective(evacuation_weight, fairness)
         self.tickets = TicketBook()
@@ -96,10 +95,6 @@ class SearchedOrder(OrderRule):
     @abstractmethod
     def search(self, problem: "Coded", seeds: Sequence[Sequence[str]]) -> Found:
         """Return the best order that is found."""
-
-    def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Grant the requests that do not overlap and gain most together."""
-        return best_subset(requests)
 
 
 @dataclass(slots=True)
@@ -166,8 +161,7 @@ class Coded:
 
     def place(self, prefix: Prefix, number: int) -> None:
         """Let a vehicle be the next one of an order."""
-        earliest = prefix.earliest
-        time = self.start(prefix, number)
+        earliest, time = prefix.earliest, self.start(prefix, number)
         prefix.order.append(number)
         prefix.waiting.remove(number)
         prefix.mask ^= 1 << number

@@ -75,21 +75,15 @@ def _situation(moment: Moment, name: str, agreed: PassingOrder, drive: Drive, ch
     """Write down what a decision rests on, in the form in which every method's decisions are recorded."""
     taken = change.action if change is not None else drive.actions[name]
     progress = drive.progress.get(name, {})
+    assessments = tuple(_assessment(action, progress.get(action), taken) for action in moment.available[name])
     conflicts = moment.conflicts[name]
-    return Situation(
-        scene=moment.scenes[name],
-        conflicts=conflicts,
-        order=agreed,
-        clear_times=(0.0,) * len(conflicts),
-        assessments=tuple(_assessment(action, progress.get(action), taken) for action in moment.available[name]),
-    )
+    return Situation(moment.scenes[name], conflicts, agreed, (0.0,) * len(conflicts), assessments)
 
 
 def _assessment(action: Action, gain: float | None, taken: Action) -> ActionAssessment:
-    if action not in LONGITUDINAL:
-        why = () if action is taken else ("not asked for, not safe, or granted to somebody else",)
-    elif gain is None:
+    why: tuple[str, ...] = ()
+    if action not in LONGITUDINAL and action is not taken:
+        why = ("not asked for, not safe, or granted to somebody else",)
+    elif action in LONGITUDINAL and gain is None:
         why = ("no plan of the library that begins with it keeps the order and clear of everybody",)
-    else:
-        why = ()
     return ActionAssessment(action, not why or action is taken, why, (), gain)

@@ -1,22 +1,12 @@
 """PIDM: the Intelligent Driver Model, for which the vehicle that is expected first at a junction drives ahead."""
 
+from dataclasses import dataclass
 from math import cos, inf
 
 from codriving.datatypes.order import Precedence
 from codriving.datatypes.world import Action
-from codriving.errors import require_range
-from codriving.methods.single_vehicle.encounters import (
-    FRONT,
-    Encounter,
-    Patience,
-    crossing_angle,
-    encounters,
-    goes_first,
-    leaders,
-    may_start,
-)
-from codriving.methods.single_vehicle.lane_choice import LaneChoice
-from codriving.methods.single_vehicle.method import Choice, Driver
+from codriving.methods.single_vehicle.encounters import FRONT, Encounter, WaitingDriver, crossing_angle, leaders
+from codriving.methods.single_vehicle.method import Choice
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.idm import IntelligentDriver
@@ -45,7 +35,8 @@ LIMITS = {
 """Least and largest value of each setting."""
 
 
-class ProjectedIdm(Driver):
+@dataclass(kw_only=True, eq=False, repr=False)
+class ProjectedIdm(WaitingDriver):
     """A driver who follows real leaders, and those whom it projects onto its lane (after Kreutz and Eggert, 2021).
 
     Args:
@@ -62,43 +53,25 @@ class ProjectedIdm(Driver):
         clear: Time that a vehicle which moves towards that zone must be away from it beyond what the start takes [s].
         window: Time over which what an action leads to is compared with what is wished [s].
         brake_at: Braking beyond which the answer is always SLOWER [m/s2].
-
-    Raises:
-        ConfigError: If a setting is out of range.
     """
 
     name = "pidm"
     variant = ""
+    ranges = LIMITS
 
-    def __init__(
-        self,
-        acceleration: float,
-        deceleration: float,
-        hardest: float,
-        gap: float,
-        headway: float,
-        projection: float,
-        stop_gap: float,
-        tie: float,
-        firm: float,
-        patience: float,
-        clear: float,
-        window: float,
-        brake_at: float,
-        lanes: LaneChoice,
-    ) -> None:
-        for key, value in [(key, value) for key, value in locals().items() if key in LIMITS]:
-            require_range(key, value, *LIMITS[key])
-        self.idm = IntelligentDriver(gap, headway, acceleration, deceleration, hardest)
-        self.projection, self.stop_gap, self.tie, self.firm = projection, stop_gap, tie, firm
-        self.patience, self.clear, self.window, self.brake_at = patience, clear, window, brake_at
-        self.lanes = lanes
-        self._patience = Patience()
+    acceleration: float
+    deceleration: float
+    hardest: float
+    gap: float
+    headway: float
+    projection: float
+    stop_gap: float
+    window: float
+    brake_at: float
 
-    def reset(self) -> None:
-        """Begin an episode; nothing is remembered from the one before."""
-        self._patience = Patience()
-        self.lanes.reset()
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.idm = IntelligentDriver(self.gap, self.headway, self.acceleration, self.deceleration, self.hardest)
 
     def decide(self, moment: Moment, ego: str) -> Choice:
         """Follow the vehicle that is most in the way, or change lanes if that is better."""
@@ -113,10 +86,6 @@ class ProjectedIdm(Driver):
         action = closest_action(wished, means, self.brake_at)
         reason = f"{why}; IDM wishes {wished:+.1f} m/s2"
         return Choice(action, reason, precedences, refused, {"creeps": int(self.may_start(moment, ego, met, waited))})
-
-    def met(self, moment: Moment, ego: str) -> tuple[Encounter, ...]:
-        """Return where it is open who goes first, most urgent first."""
-        return encounters(moment, ego, self.firm)
 
     def wish(
         self, moment: Moment, ego: str, met: tuple[Encounter, ...], waited: float
@@ -134,22 +103,15 @@ class ProjectedIdm(Driver):
         options = [(self.idm.accelerate(speed, top), "nobody holds it up")]
         for ahead in leaders(scene, moment.road_map):
             options.append((self.idm.accelerate(speed, top, ahead.gap, ahead.speed), f"{ahead.id} is ahead"))
-        creeps = self.may_start(moment, ego, met, waited)
-        precedences: dict[str, Precedence] = {}
-        for e in met:
-            first, why = goes_first(e, moment.road_map, self.tie)
-            if not first and creeps:
-                first, why = True, f"it has waited for {waited:.0f} s and the zone is empty"
-            other = e.conflict.other
-            if first:
-                precedences.setdefault(other, Precedence(ego, other, why))
-                continue
-            if other not in precedences or precedences[other].first == ego:
-                precedences[other] = Precedence(other, ego, why)
-            options.append((self._behind(e, self._line(e, met), moment, ego), f"{other} goes first: {why}"))
+        starts = self.may_start(moment, ego, met, waited)
+        waits = f"it has waited for {waited:.0f} s and the zone is empty" if starts else ""
+        before, precedences = self.yields_to(moment, ego, met, waits)
+        for e, why in before:
+            wished = self._behind(e, self._line(e, met), moment, ego)
+            options.append((wished, f"{e.conflict.other} goes first: {why}"))
         # Of several that wish the same the first one counts, so that no vehicle is named that is not in the way.
         wished, why = min(options, key=lambda option: option[0])
-        return wished, why, tuple(precedences.values())
+        return wished, why, precedences
 
     def _line(self, e: Encounter, met: tuple[Encounter, ...]) -> float:
         """How far away a vehicle waits before a zone: not inside another crossing, where it would be in the way [m]."""
@@ -170,14 +132,6 @@ class ProjectedIdm(Driver):
         lead = e.own_way - e.its_way - 2 * FRONT - self.projection
         following = self.idm.accelerate(speed, moment.forecast.model.top_speed, lead, e.other.speed * along)
         return following if waiting == inf else max(following, waiting)
-
-    def may_start(self, moment: Moment, ego: str, met: tuple[Encounter, ...], waited: float) -> bool:
-        """Whether the CAV has waited long enough, and no vehicle is in the zones ahead or will be before it is through.
-
-        Args:
-            waited: How long it has been standing [s].
-        """
-        return may_start(moment, ego, met, waited, self.patience, self.clear)
 
 
 def mean_accelerations(forecast: Forecast, speed: float, target: float, window: float) -> tuple[float, float, float]:

@@ -38,25 +38,15 @@ class Pipeline:
         orders = self.negotiation.orders(moment)
         lag = round(self.margin / moment.forecast.sample)
         expected = expect_all(moment, orders, lag)
-        situations = [
-            self._situation(safety_input(moment, ego, orders[ego], expected[ego], lag)) for ego in moment.scenes
-        ]
-        situations = recall(self.memory, situations)
+        inputs = [safety_input(moment, ego, orders[ego], expected[ego], lag) for ego in moment.scenes]
+        situations = recall(self.memory, [self._situation(given) for given in inputs])
         decisions = tuple(self.decider.decide(situations))
         counts, lines = self.ledger.close_step(world.time) if self.ledger is not None else ({}, [])
         if self.memory is not None:
-            counts = {
-                **counts,
-                "recalled": sum(len(s.memories) for s in situations),
-                "reconsidered": sum(bool(d.recalled) for d in decisions),
-            }
+            recalled, reconsidered = sum(len(s.memories) for s in situations), sum(bool(d.recalled) for d in decisions)
+            counts = {**counts, "recalled": recalled, "reconsidered": reconsidered}
         return ReasonedDeliberation(world.time, world.step, tuple(situations), decisions, counts, tuple(lines))
 
     def _situation(self, given: SafetyInput) -> Situation:
-        return Situation(
-            scene=given.scene,
-            conflicts=given.conflicts,
-            order=given.order,
-            clear_times=tuple(clear_time(given, c) for c in given.conflicts),
-            assessments=self.safety.assess(given),
-        )
+        clear_times = tuple(clear_time(given, c) for c in given.conflicts)
+        return Situation(given.scene, given.conflicts, given.order, clear_times, self.safety.assess(given))

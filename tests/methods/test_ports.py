@@ -8,9 +8,9 @@ from asked import Scripted, sensible
 from codriving.errors import ConfigError
 from codriving.llm.language_model import Offline
 from codriving.llm.scripted import ScriptedChat
+from codriving.methods.codriving import ports
 from codriving.methods.language_model.model_coordinator import ModelCoordinator
 from codriving.methods.language_model.model_decider import CheckedDecider
-from codriving.methods.language_model.ports import ports
 from codriving.methods.language_model.prompted_model import check_model, prompted
 from codriving.reasoning.decision.rules import RuleDecider
 from codriving.reasoning.ordering.coordinator import RuleCoordinator

@@ -1,14 +1,13 @@
 """The highway: parallel lanes one way, faster CAVs among slower human drivers, a finish to reach."""
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Lane, Line, Road, Route, Straight, Turn
-from codriving.datatypes.world import Kind, Scene, Start
-from codriving.environment.scenarios.pace import Pace
-from codriving.environment.scenarios.placement import Crowd, place
+from codriving.datatypes.world import Kind, Start
+from codriving.environment.scenarios.placement import PlacedScenario
 from codriving.errors import require_range
 
 LANE_WIDTH = 4.0
@@ -24,44 +23,24 @@ def _lines(index: int, lanes: int) -> tuple[Line, Line]:
     return left, Line.CONTINUOUS_LINE if index == lanes - 1 else Line.STRIPED
 
 
-class Highway(Scenario):
+@dataclass(kw_only=True, eq=False, repr=False)
+class Highway(PlacedScenario):
     """Several CAVs and human drivers on parallel lanes; all may change lanes.
-
-    The settings that scenarios share are those of `Crowd` and `Pace`.
 
     Args:
         finish: Distance after which a vehicle has arrived [m].
-
-    Raises:
-        ConfigError: If a setting is out of range.
-        ScenarioError: If so many vehicles cannot be placed.
     """
 
     name = "highway"
 
-    def __init__(
-        self,
-        cavs: int,
-        hdvs: tuple[int, int],
-        lanes: int,
-        finish: float,
-        start: tuple[float, float],
-        cav_speed: tuple[float, float],
-        hdv_speed: tuple[float, float],
-        spacing: float,
-        simulation_frequency: float,
-        decision_frequency: float,
-        time_limit: float,
-        target_speeds: tuple[float, ...],
-        detection_range: float,
-    ) -> None:
-        require_range("lanes", lanes, 1, 6)
-        require_range("finish", finish, 200, 5000, " m")
-        self.crowd = Crowd(cavs, hdvs, start, cav_speed, hdv_speed, spacing)
-        self.crowd.check(10, 40, finish - 100, "100 m before the finish at the latest", SPEED_LIMIT)
-        self.crowd.require_room(lanes, f"{lanes} lanes")
-        self.lanes, self.finish = lanes, finish
-        self.pace = Pace(simulation_frequency, decision_frequency, time_limit, tuple(target_speeds), detection_range)
+    lanes: int
+    finish: float
+
+    def check(self) -> None:
+        require_range("lanes", self.lanes, 1, 6)
+        require_range("finish", self.finish, 200, 5000, " m")
+        self.crowd.check(10, 40, self.finish - 100, "100 m before the finish at the latest", SPEED_LIMIT)
+        self.crowd.require_room(self.lanes, f"{self.lanes} lanes")
 
     @cached_property
     def road(self) -> Road:
@@ -74,15 +53,5 @@ class Highway(Scenario):
             routes.append(Route(f"lane-{k}", (("begin", "end", k),), Turn.STRAIGHT, self.finish, self.finish))
         return Road("highway", tuple(lanes), tuple(routes))
 
-    def scene(self, seed: int) -> Scene:
-        """Draw lane, place and speed of every vehicle.
-
-        Raises:
-            ScenarioError: If the vehicles do not fit.
-        """
-
-        def draw(rng: np.random.Generator, name: str, kind: Kind) -> Start:
-            route = f"lane-{int(rng.integers(self.lanes))}"
-            return self.crowd.start_on(rng, name, kind, route)
-
-        return place(seed, self.crowd, self.road, draw)
+    def draw(self, rng: np.random.Generator, name: str, kind: Kind) -> Start:
+        return self.crowd.start_on(rng, name, kind, f"lane-{int(rng.integers(self.lanes))}")

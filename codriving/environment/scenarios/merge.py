@@ -1,15 +1,14 @@
 """The merge: a main road and a ramp whose vehicles must change onto it before their lane ends."""
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Block, Lane, LaneId, LaneShape, Line, Road, Route, Sine, Straight, Turn
-from codriving.datatypes.world import Kind, Scene, Start
-from codriving.environment.scenarios.pace import Pace
-from codriving.environment.scenarios.placement import Crowd, place
+from codriving.datatypes.world import Kind, Start
+from codriving.environment.scenarios.placement import PlacedScenario
 from codriving.errors import require_range
 
 LANE_WIDTH = 4.0
@@ -26,82 +25,56 @@ PAST_MERGE = 80.0
 """Distance past the end of the ramp lane at which a vehicle has arrived [m]."""
 
 
-class Merge(Scenario):
+@dataclass(kw_only=True, eq=False, repr=False)
+class Merge(PlacedScenario):
     """Several CAVs on the main road and on the ramp, among human drivers.
-
-    The settings that scenarios share are those of `Crowd` and `Pace`.
 
     Args:
         before: Length of the road before the ramp begins to converge [m].
         converge: Length over which it converges [m].
         parallel: Length of the ramp lane beside the main road [m].
         after: Length of the road past the end of the ramp lane [m].
-
-    Raises:
-        ConfigError: If a setting is out of range.
-        ScenarioError: If so many vehicles cannot be placed.
     """
 
     name = "merge"
 
-    def __init__(
-        self,
-        cavs: int,
-        hdvs: tuple[int, int],
-        ramp_hdvs: float,
-        lanes: int,
-        before: float,
-        converge: float,
-        parallel: float,
-        after: float,
-        start: tuple[float, float],
-        cav_speed: tuple[float, float],
-        hdv_speed: tuple[float, float],
-        spacing: float,
-        simulation_frequency: float,
-        decision_frequency: float,
-        time_limit: float,
-        target_speeds: tuple[float, ...],
-        detection_range: float,
-    ) -> None:
-        require_range("ramp_hdvs", ramp_hdvs, 0, 1)
-        require_range("lanes", lanes, 1, 4)
-        require_range("before", before, 60, 1000, " m")
-        require_range("converge", converge, 40, 500, " m")
-        require_range("parallel", parallel, TAPER + 20, 1000, " m")
-        require_range("after", after, PAST_MERGE + 20, 1000, " m")
-        self.crowd = Crowd(cavs, hdvs, start, cav_speed, hdv_speed, spacing)
-        self.crowd.check(10, 20, before - 10, "10 m before the ramp converges at the latest", SPEED_LIMIT)
-        self.crowd.require_room(1, "the ramp", cavs // 2, 0)
-        self.crowd.require_room(lanes, f"{lanes} main lanes", cavs - cavs // 2, 0)
-        self.crowd.require_room(lanes + 1, f"{lanes} main lanes and the ramp")
-        self.ramp_hdvs, self.lanes = ramp_hdvs, lanes
-        self.before, self.converge, self.parallel, self.after = before, converge, parallel, after
-        self.pace = Pace(simulation_frequency, decision_frequency, time_limit, tuple(target_speeds), detection_range)
+    ramp_hdvs: float
+    lanes: int
+    before: float
+    converge: float
+    parallel: float
+    after: float
+
+    def check(self) -> None:
+        require_range("ramp_hdvs", self.ramp_hdvs, 0, 1)
+        require_range("lanes", self.lanes, 1, 4)
+        require_range("before", self.before, 60, 1000, " m")
+        require_range("converge", self.converge, 40, 500, " m")
+        require_range("parallel", self.parallel, TAPER + 20, 1000, " m")
+        require_range("after", self.after, PAST_MERGE + 20, 1000, " m")
+        self.crowd.check(10, 20, self.before - 10, "10 m before the ramp converges at the latest", SPEED_LIMIT)
+        self.crowd.require_room(1, "the ramp", self.cavs // 2, 0)
+        self.crowd.require_room(self.lanes, f"{self.lanes} main lanes", self.cavs - self.cavs // 2, 0)
+        self.crowd.require_room(self.lanes + 1, f"{self.lanes} main lanes and the ramp")
 
     @cached_property
     def road(self) -> Road:
         """The main lanes, the ramp beside them with highway-env's measures, and a block where its lane ends."""
         opens = self.before + self.converge
         ends = opens + self.parallel
-        far = ends + self.after
+        mains, right, goal = range(self.lanes), self.lanes - 1, ends + PAST_MERGE
         parts = (("a", "b", 0.0, opens), ("b", "c", opens, ends))
-        lanes = [self._main(*part, k) for part in parts for k in self._mains]
+        lanes = [self._main(*part, k) for part in parts for k in mains]
         lanes += self._ramp(opens, ends)
-        lanes += [self._main("c", "d", ends, far, k) for k in self._mains]
-        goal = ends + PAST_MERGE
+        lanes += [self._main("c", "d", ends, ends + self.after, k) for k in mains]
+        way: tuple[LaneId, ...]
         routes = []
-        for k in self._mains:
-            way: tuple[LaneId, ...] = (("a", "b", k), ("b", "c", k), ("c", "d", k))
+        for k in mains:
+            way = (("a", "b", k), ("b", "c", k), ("c", "d", k))
             routes.append(Route(f"main-{k}", way, Turn.STRAIGHT, opens, goal))
-        right = self.lanes - 1
         way = (("j", "k", 0), ("k", "b", 0), ("b", "c", self.lanes), ("b", "c", right), ("c", "d", right))
         routes.append(Route("ramp", way, Turn.STRAIGHT, opens, goal, TAPER))
         return Road("merge", tuple(lanes), tuple(routes), blocks=(Block((ends, self.lanes * LANE_WIDTH)),))
-
-    @property
-    def _mains(self) -> range:
-        return range(self.lanes)
 
     def _main(self, start: str, end: str, x: float, x2: float, k: int) -> Lane:
         left = Line.CONTINUOUS_LINE if k == 0 else Line.NONE
@@ -111,8 +84,8 @@ class Merge(Scenario):
         return Lane((start, end, k), shape, LANE_WIDTH, SPEED_LIMIT, 1, lines)
 
     def _ramp(self, opens: float, ends: float) -> list[Lane]:
-        side = self.lanes * LANE_WIDTH
-        far, near, middle = side + 2 * SWAY, side, side + SWAY
+        near = self.lanes * LANE_WIDTH
+        far, middle = near + 2 * SWAY, near + SWAY
         bend = Sine((self.before, middle), (opens, middle), SWAY, math.pi / self.converge, math.pi / 2)
         cont, none = Line.CONTINUOUS_LINE, Line.NONE
         shapes: list[tuple[LaneId, LaneShape, tuple[Line, Line]]] = [
@@ -122,17 +95,8 @@ class Merge(Scenario):
         ]
         return [Lane(k, s, LANE_WIDTH, SPEED_LIMIT, 0, lines, forbidden=True) for k, s, lines in shapes]
 
-    def scene(self, seed: int) -> Scene:
-        """Draw lane, place and speed of every vehicle.
-
-        Raises:
-            ScenarioError: If the vehicles do not fit.
-        """
-        from_ramp = {f"CAV{k + 1}" for k in range(self.crowd.cavs - self.crowd.cavs // 2, self.crowd.cavs)}
-
-        def draw(rng: np.random.Generator, name: str, kind: Kind) -> Start:
-            on_ramp = name in from_ramp if kind is Kind.CAV else float(rng.random()) < self.ramp_hdvs
-            route = "ramp" if on_ramp else f"main-{int(rng.integers(self.lanes))}"
-            return self.crowd.start_on(rng, name, kind, route)
-
-        return place(seed, self.crowd, self.road, draw)
+    def draw(self, rng: np.random.Generator, name: str, kind: Kind) -> Start:
+        from_ramp = {f"CAV{k + 1}" for k in range(self.cavs - self.cavs // 2, self.cavs)}
+        on_ramp = name in from_ramp if kind is Kind.CAV else float(rng.random()) < self.ramp_hdvs
+        route = "ramp" if on_ramp else f"main-{int(rng.integers(self.lanes))}"
+        return self.crowd.start_on(rng, name, kind, route)

@@ -1,13 +1,16 @@
 """Who drives and where they start: seeded rejection sampling that leaves all room to brake."""
 
 import math
+from abc import abstractmethod
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Road
 from codriving.datatypes.world import Kind, Scene, Start
+from codriving.environment.scenarios.pace import Pace
 from codriving.errors import ScenarioError, require_interval, require_range
 
 DRAWS_PER_VEHICLE = 200
@@ -160,3 +163,52 @@ def leaves_room(
         if distance < max(spacing, LENGTH + braking_gap(behind.speed, ahead.speed)):
             return False
     return True
+
+
+@dataclass(kw_only=True, eq=False, repr=False)
+class PlacedScenario(Scenario):
+    """A scenario with the settings of `Crowd` and `Pace`, whose vehicles are drawn one by one.
+
+    Raises:
+        ConfigError: If a setting is out of range.
+        ScenarioError: If so many vehicles cannot be placed.
+    """
+
+    cavs: int
+    hdvs: tuple[int, int]
+    start: tuple[float, float]
+    cav_speed: tuple[float, float]
+    hdv_speed: tuple[float, float]
+    spacing: float
+    simulation_frequency: float
+    decision_frequency: float
+    time_limit: float
+    target_speeds: tuple[float, ...]
+    detection_range: float
+
+    def __post_init__(self) -> None:
+        self.crowd = Crowd(self.cavs, self.hdvs, self.start, self.cav_speed, self.hdv_speed, self.spacing)
+        self.check()
+        self.pace = Pace(
+            self.simulation_frequency,
+            self.decision_frequency,
+            self.time_limit,
+            tuple(self.target_speeds),
+            self.detection_range,
+        )
+
+    @abstractmethod
+    def check(self) -> None:
+        """Refuse settings that are out of range, and more vehicles than there is room for."""
+
+    @abstractmethod
+    def draw(self, rng: np.random.Generator, name: str, kind: Kind) -> Start:
+        """Draw where one vehicle starts."""
+
+    def scene(self, seed: int) -> Scene:
+        """Draw a start for every vehicle.
+
+        Raises:
+            ScenarioError: If the vehicles do not fit.
+        """
+        return place(seed, self.crowd, self.road, self.draw)

@@ -1,15 +1,14 @@
 """The roundabout: one ring lane, four legs that meet it tangentially, one lane in each direction."""
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Arc, Lane, LaneId, LaneShape, Line, Point, Road, Route, Straight, Turn
 from codriving.datatypes.world import Kind, Scene, Start
-from codriving.environment.scenarios.pace import Pace
-from codriving.environment.scenarios.placement import Crowd, place
+from codriving.environment.scenarios.placement import PlacedScenario, place
 from codriving.environment.scenarios.shapes import turned
 from codriving.errors import require, require_range
 from codriving.geometry.box import PLANNING
@@ -119,59 +118,39 @@ class Ring:
         return Arc((0.0, 0.0), self.radius, start, end, clockwise=False)
 
 
-class Roundabout(Scenario):
+@dataclass(kw_only=True, eq=False, repr=False)
+class Roundabout(PlacedScenario):
     """Several CAVs among human drivers, some of whom are on the ring already.
-
-    The settings that scenarios share are those of `Crowd` and `Pace`.
 
     Args:
         radius: Radius of the centre line of the ring [m].
         entry_radius: Radius of the arcs between the legs and the ring [m].
         leg_length: Length of the straight part of each leg [m].
         exit_distance: Distance down the exit, from the ring, at which a vehicle has arrived [m].
-
-    Raises:
-        ConfigError: If a setting is out of range.
-        ScenarioError: If so many vehicles cannot be placed.
     """
 
     name = "roundabout"
 
-    def __init__(
-        self,
-        cavs: int,
-        hdvs: tuple[int, int],
-        on_ring: float,
-        radius: float,
-        entry_radius: float,
-        leg_length: float,
-        start: tuple[float, float],
-        cav_speed: tuple[float, float],
-        hdv_speed: tuple[float, float],
-        spacing: float,
-        exit_distance: float,
-        simulation_frequency: float,
-        decision_frequency: float,
-        time_limit: float,
-        target_speeds: tuple[float, ...],
-        detection_range: float,
-    ) -> None:
-        require_range("on_ring", on_ring, 0, 1)
-        require_range("radius", radius, 12, 60, " m")
-        require_range("entry_radius", entry_radius, 10, 40, " m")
-        require_range("leg_length", leg_length, 40, 500, " m")
-        self._ring = Ring(radius, entry_radius, leg_length)
+    on_ring: float
+    radius: float
+    entry_radius: float
+    leg_length: float
+    exit_distance: float
+
+    def check(self) -> None:
+        require_range("on_ring", self.on_ring, 0, 1)
+        require_range("radius", self.radius, 12, 60, " m")
+        require_range("entry_radius", self.entry_radius, 10, 40, " m")
+        require_range("leg_length", self.leg_length, 40, 500, " m")
+        self._ring = Ring(self.radius, self.entry_radius, self.leg_length)
         require(
             self._ring.on_ring(1) >= TOGETHER,
-            f"entry_radius {entry_radius:g} m is too large for a ring of radius {radius:g} m: entries and exits "
-            "would overlap; use a smaller entry_radius or a larger radius",
+            f"entry_radius {self.entry_radius:g} m is too large for a ring of radius {self.radius:g} m: entries and "
+            "exits would overlap; use a smaller entry_radius or a larger radius",
         )
-        require_range("exit_distance", exit_distance, 5, self._ring.bend + leg_length - 10, " m")
-        self.crowd = Crowd(cavs, hdvs, start, cav_speed, hdv_speed, spacing)
-        self.crowd.check(12, 12, leg_length - 15, "15 m before the end of the leg at the latest", SPEED_LIMIT)
-        self.crowd.require_room(len(LEGS), f"{len(LEGS)} legs", hdvs=None if on_ring < 1 else 0)
-        self.on_ring, self.exit_distance = on_ring, exit_distance
-        self.pace = Pace(simulation_frequency, decision_frequency, time_limit, tuple(target_speeds), detection_range)
+        require_range("exit_distance", self.exit_distance, 5, self._ring.bend + self.leg_length - 10, " m")
+        self.crowd.check(12, 12, self.leg_length - 15, "15 m before the end of the leg at the latest", SPEED_LIMIT)
+        self.crowd.require_room(len(LEGS), f"{len(LEGS)} legs", hdvs=None if self.on_ring < 1 else 0)
 
     @cached_property
     def road(self) -> Road:
@@ -179,24 +158,19 @@ class Roundabout(Scenario):
         return Road("roundabout", self._ring.lanes(), self._ring.routes(self.exit_distance), True)
 
     def scene(self, seed: int) -> Scene:
-        """Draw leg, destination, place and speed of every vehicle, and which are on the ring already.
-
-        Raises:
-            ScenarioError: If the vehicles do not fit.
-        """
-        routes, ring = self.road.routes, self._ring
-        before = ring.leg_length + ring.bend
-
-        def draw(rng: np.random.Generator, name: str, kind: Kind) -> Start:
-            route = routes[int(rng.integers(len(routes)))]
-            circles = kind is Kind.HDV and float(rng.random()) < self.on_ring
-            reach = (before, before + ring.on_ring(TURNS[route.turn])) if circles else None
-            return self.crowd.start_on(rng, name, kind, route.id, reach)
+        before = self.leg_length + self._ring.bend
 
         def spot(start: Start) -> tuple[str, float]:
             leg = start.route.split("-")[0]
             if start.position < before:
                 return leg, start.position
-            return "ring", LEGS.index(leg) * ring.around / 4 + start.position - before
+            return "ring", LEGS.index(leg) * self._ring.around / 4 + start.position - before
 
-        return place(seed, self.crowd, self.road, draw, spot, {"ring": ring.around})
+        return place(seed, self.crowd, self.road, self.draw, spot, {"ring": self._ring.around})
+
+    def draw(self, rng: np.random.Generator, name: str, kind: Kind) -> Start:
+        routes, before = self.road.routes, self.leg_length + self._ring.bend
+        route = routes[int(rng.integers(len(routes)))]
+        circles = kind is Kind.HDV and float(rng.random()) < self.on_ring
+        reach = (before, before + self._ring.on_ring(TURNS[route.turn])) if circles else None
+        return self.crowd.start_on(rng, name, kind, route.id, reach)

@@ -76,12 +76,9 @@ class HumanDriver(RouteFollower, IDMVehicle):
         if leader is not None and not (changing and self._leaves(leader)):
             # IDM counts from centre to centre; a body that crosses is met at its near side.
             wanted.append(self.gap_behind(leader) / max(gap + self.LENGTH, 0.01))
-        if (
-            not changing
-            and self.lane_index == self.route_path.ending
-            and self.route_path.lane_end < self.s + self.sight
-        ):
-            room = self.route_path.lane_end - self.s - self.LENGTH / 2
+        lane_end = self.route_path.lane_end
+        if not changing and self.lane_index == self.route_path.ending and lane_end < self.s + self.sight:
+            room = lane_end - self.s - self.LENGTH / 2
             wanted.append(self._gap_at(self.speed) / max(room + self.LENGTH, 0.01))
         if self.waits_at is not None:
             wanted.append(self._gap_at(self.speed) / max(self.waits_at - self.s + self.LENGTH / 2, 0.01))
@@ -105,8 +102,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
 
     def free_acceleration(self) -> float:
         """Return IDM's acceleration on a free road [m/s2]: a (1 - (v / v_0)^delta)."""
-        wish = min(max(self.target_speed, 0), self.lane.speed_limit)
-        wish = wish if wish > STANDSTILL else STANDSTILL
+        wish = max(min(max(self.target_speed, 0), self.lane.speed_limit), STANDSTILL)
         return float(self.COMFORT_ACC_MAX * (1 - np.power(max(self.speed, 0) / wish, self.DELTA)))
 
     def _leaves(self, leader: RoadObject) -> bool:
@@ -182,19 +178,15 @@ def _gap(driver: RouteFollower, other: RoadObject, x: float, y: float, k: int) -
     cos, sin = float(np.cos(heading)), float(np.sin(heading))
     across = abs(dy * cos - dx * sin - driver.shift)
     ahead = k * route_path.spacing + (dx * cos + dy * sin) - driver.s
-    if ahead <= 0 or across > _widest(driver, other):
-        return math.inf
     half, side = other.LENGTH / 2, other.WIDTH / 2
+    # However the body is turned, farther to the side than this it could not be in the way.
+    if ahead <= 0 or across > driver.WIDTH / 2 + half + side + BODY_MARGIN:
+        return math.inf
     turn = other.heading - heading
     c, s = abs(float(np.cos(turn))), abs(float(np.sin(turn)))
     if across > driver.WIDTH / 2 + (s * half + c * side) + BODY_MARGIN:
         return math.inf
     return float(ahead - (c * half + s * side) - driver.LENGTH / 2)
-
-
-def _widest(driver: RouteFollower, other: RoadObject) -> float:
-    """Largest lateral distance at which a body could be in the way, however it is turned [m]."""
-    return float(driver.WIDTH / 2 + other.LENGTH / 2 + other.WIDTH / 2 + BODY_MARGIN)
 
 
 def _row(row: float, end: int) -> int:

@@ -1,5 +1,6 @@
 """Which vehicles meet at the junction, and which can still wait before it."""
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -92,7 +93,7 @@ def occupied_ahead(road_map: RoadMap, driver: RouteFollower, others: Iterable[Ro
         Arc length of the driver's centre at which it must stand [m], or None.
     """
     stop = driver.s + driver.speed**2 / (2 * driver.ACC_MAX)
-    nearest: float | None = None
+    nearest = math.inf
     for other in others:
         if other is driver:
             continue
@@ -100,11 +101,6 @@ def occupied_ahead(road_map: RoadMap, driver: RouteFollower, others: Iterable[Ro
             if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
                 continue
             inside = zone.entry_j < other.s < (zone.exit_j if zone.merge_j is None else zone.merge_j)
-            if (
-                inside
-                and stop < zone.entry_i + OVERSHOOT
-                and zone.entry_i < driver.s + SIGHT
-                and (nearest is None or zone.entry_i < nearest)
-            ):
+            if inside and stop < zone.entry_i + OVERSHOOT and zone.entry_i < min(driver.s + SIGHT, nearest):
                 nearest = zone.entry_i
-    return nearest
+    return nearest if nearest < math.inf else None

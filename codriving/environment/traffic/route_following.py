@@ -69,8 +69,8 @@ class RoutePath:
 
     def changes_after(self, s: float) -> int:
         """Return how many lane changes the route still needs after an arc length [m]."""
-        lanes = self.route.lanes
-        return sum(1 for k, (a, b) in enumerate(pairwise(lanes), start=1) if beside(a, b) and self.starts[k] > s)
+        pairs = zip(pairwise(self.route.lanes), self.starts[1:], strict=True)
+        return sum(beside(*pair) and start > s for pair, start in pairs)
 
     def plan(self, s: float) -> list[LaneId]:
         """Return the lanes still to be driven after an arc length [m]; at a lane change, the lane beside only."""
@@ -114,12 +114,10 @@ def route_path(road_map: RoadMap, route: str) -> RoutePath:
         )
     starts = tuple(road_map.lane_start(route, lane) for lane in found.lanes)
     x, y = path.points.T.copy()
-    points = tuple(zip(x.tolist(), y.tolist(), strict=True))
-    left = [k for k, (a, b) in enumerate(pairwise(found.lanes), start=1) if beside(a, b)]
-    lane_end = starts[left[0]] + found.taper / 2 if left else math.inf
-    ending = found.lanes[left[0] - 1] if left else None
-    headings = tuple(path.headings.tolist())
-    return RoutePath(found, path, starts, x, y, points, headings, path.spacing, _cells(x, y), lane_end, ending)
+    points, headings = tuple(zip(x.tolist(), y.tolist(), strict=True)), tuple(path.headings.tolist())
+    changes = zip(pairwise(found.lanes), starts[1:], strict=True)
+    left = next(((s + found.taper / 2, lane) for (lane, other), s in changes if beside(lane, other)), (math.inf, None))
+    return RoutePath(found, path, starts, x, y, points, headings, path.spacing, _cells(x, y), *left)
 
 
 def _cells(x: NDArray[np.float64], y: NDArray[np.float64]) -> frozenset[tuple[int, int]]:
@@ -127,6 +125,11 @@ def _cells(x: NDArray[np.float64], y: NDArray[np.float64]) -> frozenset[tuple[in
     around = range(-math.ceil(NEARBY / CELL), math.ceil(NEARBY / CELL) + 1)
     passed = set(zip((x // CELL).astype(int).tolist(), (y // CELL).astype(int).tolist(), strict=True))
     return frozenset((i + di, j + dj) for i, j in passed for di in around for dj in around)
+
+
+def plain(lane: LaneId) -> LaneId:
+    """Return a lane id without numpy's integers, which highway-env leaves after a lane change."""
+    return lane[0], lane[1], int(lane[2])
 
 
 class RouteFollower(PlainMotion):
@@ -188,13 +191,8 @@ class RouteFollower(PlainMotion):
         Of the routes along that lane which end where the present one does, one that needs the fewest further changes,
         and had the fewest before.
         """
-        target = (self.target_lane_index[0], self.target_lane_index[1], int(self.target_lane_index[2]))
-        present = self.route_path.lane_at(self.s)
-        leaves = (
-            self.route_path.ending is not None
-            and target != self.route_path.ending
-            and self.s < self.route_path.lane_end
-        )
+        target, present, ending = plain(self.target_lane_index), self.route_path.lane_at(self.s), self.route_path.ending
+        leaves = ending is not None and target != ending and self.s < self.route_path.lane_end
         if not (beside(target, present) or (target == present and leaves)):
             return
         x, y = self.position.tolist()

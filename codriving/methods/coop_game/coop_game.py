@@ -1,16 +1,120 @@
 """The cooperative game: streams agree on the levels that are worth most to all together (Fang et al., 2024)."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice
 
 from codriving.datatypes.order import Instance
 from codriving.errors import require, require_range
-from codriving.methods.coop_game.coalition import Agreement, Coalition
-from codriving.methods.coop_game.levels import Levels, Streams, find_streams, levels_of
+from codriving.methods.coop_game.levels import Allocation, OwnLevels, Streams, find_streams, is_free, levels_of
 from codriving.methods.coop_game.payoff import Goal, Payoff, Scale
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request, best_subset
-from codriving.reasoning.ordering.schedule import timed
+from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering, OrderRule
+from codriving.reasoning.ordering.schedule import Objective, repaired, timed
 from codriving.reasoning.ordering.tickets import TicketBook, by_ticket, reasons
+
+TOLERANCE = 1e-9
+"""Values that differ by less are equal."""
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """An order and what it is worth."""
+
+    instance: Instance
+    order: tuple[str, ...]
+    levels: Allocation
+    plan: JointPlan
+    payoffs: dict[str, float]
+
+    @cached_property
+    def value(self) -> float:
+        """What it is worth to all together; -inf if a vehicle has no plan that keeps clear of the others."""
+        return sum(self.payoffs.values()) if self.plan.feasible else float("-inf")
+
+    @cached_property
+    def delay(self) -> float:
+        """Time that all lose together, as scheduled [s]."""
+        return Objective().value(self.instance, timed(self.instance, self.order))
+
+    def better_than(self, other: "Agreement") -> bool:
+        """Whether it is worth more; if both are worth the same, whether less time is lost, or the levels are lower.
+
+        What all can keep is better than anything else; of two that some cannot keep, the one with fewer of these.
+        """
+        if not self.plan.feasible or not other.plan.feasible:
+            return self.plan.feasible or (not other.plan.feasible and self.plan.stuck < other.plan.stuck)
+        if abs(self.value - other.value) > TOLERANCE * max(1.0, abs(other.value)):
+            return self.value > other.value
+        return (self.delay, self.levels) < (other.delay, other.levels)
+
+    def worse_off(self, other: "Agreement") -> list[str]:
+        """Return the vehicles that would rather have another agreement, by id."""
+        return [n for n, was in sorted(other.payoffs.items()) if self.payoffs.get(n, was) < was - TOLERANCE]
+
+
+class Coalition:
+    """Evaluates orders, each of them once."""
+
+    def __init__(
+        self,
+        instance: Instance,
+        planner: JointPlanner,
+        payoff: Payoff,
+        streams: Streams,
+        arrived: Sequence[str],
+        limit: int,
+    ) -> None:
+        self.instance, self.planner, self.payoff = instance, planner, payoff
+        self.streams, self.arrived, self.limit = streams, tuple(arrived), limit
+        self._free = [(a, b) for k, a in enumerate(arrived) for b in arrived[:k] if is_free(instance, a, b)]
+        self._known: dict[tuple[bool, ...], Agreement] = {}
+
+    @property
+    def evaluated(self) -> tuple[Agreement, ...]:
+        """All agreements that have been evaluated, in that order."""
+        return tuple(self._known.values())
+
+    def evaluate(self, ranking: Sequence[str], levels: Allocation = ()) -> Agreement | None:
+        """Evaluate a ranking of all vehicles.
+
+        Orders in which the same vehicle of each pair goes first, wherever that is open, are one order.
+
+        Returns:
+            The agreement; None if it is a new one and the limit is reached.
+        """
+        order = tuple(repaired(self.instance, ranking))
+        place = {name: k for k, name in enumerate(order)}
+        key = tuple([place[a] < place[b] for a, b in self._free])
+        if key not in self._known:
+            if len(self._known) >= self.limit:
+                return None
+            plan = self.planner.plan(order)
+            payoffs = self.payoff.of(self.instance, plan, self.planner) if plan.feasible else {}
+            self._known[key] = Agreement(self.instance, order, levels, plan, payoffs)
+        return self._known[key]
+
+    def allocate(self, levels: Allocation) -> Agreement | None:
+        """Evaluate an allocation of levels; None if it is a new one and the limit is reached."""
+        return self.evaluate(self.streams.ranked(levels, self.arrived), levels)
+
+    def ascend(self, starts: Sequence[Allocation], levels: OwnLevels) -> None:
+        """Give each stream in turn the level that is best for all, until nothing improves or the limit is reached."""
+        current: Agreement | None = None
+        for start in starts:
+            found = self.allocate(start)
+            if found is not None and (current is None or found.better_than(current)):
+                current, allocation = found, start
+        improved = current is not None
+        while improved and current is not None:
+            improved = False
+            for stream in range(len(self.streams.names)):
+                for moved in levels.moves(allocation, stream):
+                    found = self.allocate(moved)
+                    if found is None:
+                        return
+                    if found.better_than(current):
+                        current, allocation, improved = found, moved, True
 
 
 class CoopGame(OrderRule):
@@ -27,9 +131,6 @@ class CoopGame(OrderRule):
         reference_acceleration: Acceleration that costs the whole weight of comfort, 0.1 to 20 [m/s2].
         risk_time: Gap in time at which the risk has fallen to 1/e, 0.1 to 10 [s].
         control_radius: Distance to the reference point from which on a vehicle holds a ticket, 1 to 1000 [m].
-
-    Raises:
-        ConfigError: If a setting is out of range.
     """
 
     name = "coop_game"
@@ -54,15 +155,14 @@ class CoopGame(OrderRule):
         require_range("levels", 1 if levels is None else levels, 1, 20)
         require_range("evaluations", evaluations, 2, 10000)
         require_range("hysteresis", hysteresis, 0, 10, " s")
-        require_range("efficiency", efficiency, 0, 100)
-        require_range("comfort", comfort, 0, 100)
-        require_range("safety", safety, 0, 100)
+        weights = {"efficiency": efficiency, "comfort": comfort, "safety": safety}
+        for name, weight in weights.items():
+            require_range(name, weight, 0, 100)
         require_range("reference_acceleration", reference_acceleration, 0.1, 20, " m/s2")
         require_range("risk_time", risk_time, 0.1, 10, " s")
-        some = efficiency + comfort + safety != 0
-        require(some, "efficiency, comfort and safety must not all be 0, got 0, 0 and 0")
+        require(sum(weights.values()) != 0, "efficiency, comfort and safety must not all be 0, got 0, 0 and 0")
         self.payoff = Payoff(
-            Goal(objective), Scale(scale), efficiency, comfort, safety, reference_acceleration, risk_time
+            Goal(objective), Scale(scale), **weights, reference_acceleration=reference_acceleration, risk_time=risk_time
         )
         self.levels, self.evaluations, self.hysteresis, self.rational = levels, evaluations, hysteresis, rational
         self.tickets = TicketBook(control_radius)
@@ -104,16 +204,12 @@ class CoopGame(OrderRule):
         }
         return self._ordering(instance, streams, chosen, counts)
 
-    def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Grant the requests that do not overlap and gain most together."""
-        return best_subset(requests)
-
     def _as_before(self, arrived: Sequence[str]) -> list[str]:
         """Rank all as in the step before, and new ones behind them as they came."""
         there = [name for name in self._agreed if name in arrived]
         return there + [name for name in arrived if name not in there]
 
-    def _search(self, coalition: Coalition, levels: Levels) -> bool:
+    def _search(self, coalition: Coalition, levels: OwnLevels) -> bool:
         """Evaluate all allocations if they are few enough, else climb; return whether it was all."""
         some = list(islice(levels.allocations(), self.evaluations + 1))
         if len(some) <= self.evaluations:
@@ -146,8 +242,9 @@ class CoopGame(OrderRule):
 
         def reason(one: str, other: str) -> str:
             if level and level[one] < level[other]:
-                levels = f"level {level[one]}, that of {other} on {level[other]}"
-                return f"all gain most with the stream of {one} on {levels}"
+                return (
+                    f"all gain most with the stream of {one} on level {level[one]}, that of {other} on {level[other]}"
+                )
             if agreed:
                 return f"all gain most if {one} goes before {other}"
             return by_ticket(one, other, self.tickets.held)

@@ -103,15 +103,16 @@ class OwnLevels:
             yield layered(ranks, self.conflicts)
 
 
-class FewLevels:
+class FewLevels(OwnLevels):
     """Levels end at a highest one, as the source has it: streams in conflict may have to share one."""
 
     def __init__(self, streams: int, conflicts: Collection[Edge], highest: int) -> None:
-        self.streams, self.conflicts, self.highest = streams, tuple(sorted(conflicts)), highest
+        super().__init__(streams, conflicts)
+        self.highest = highest
 
     def of(self, ranks: Sequence[float]) -> Allocation:
         """Return the allocation in which streams go by rank; those beyond the highest level share it."""
-        return tuple(min(level, self.highest) for level in layered(ranks, self.conflicts))
+        return tuple(min(level, self.highest) for level in super().of(ranks))
 
     def allocations(self) -> Iterator[Allocation]:
         """Yield every allocation that differs in which of two in conflict goes first, or whether they share a level."""
@@ -130,10 +131,7 @@ class FewLevels:
             yield (*allocation[:stream], level, *allocation[stream + 1 :])
 
 
-Levels = OwnLevels | FewLevels
-
-
-def levels_of(streams: int, conflicts: Collection[Edge], highest: int | None) -> Levels:
+def levels_of(streams: int, conflicts: Collection[Edge], highest: int | None) -> OwnLevels:
     """Return the levels that streams may have.
 
     Args:

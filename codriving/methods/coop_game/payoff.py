@@ -69,7 +69,9 @@ class Payoff:
         Args:
             ahead: Time by which all are taken to be farther along their plans [s].
         """
-        scale = self._scale(instance)
+        kinds = {vehicle.turning for vehicle in instance.vehicles.values()}
+        # Distances are only changed where some turn and others do not.
+        scale = self.scale if len(kinds) == 2 else Scale.NONE
         found = {}
         for name, vehicle in instance.vehicles.items():
             left = self._left(vehicle, plan, ahead)
@@ -89,11 +91,6 @@ class Payoff:
         """
         later = self.of(instance, plan, planner, time)
         return sum(later[name] - payoffs[name] for name in later) / len(later)
-
-    def _scale(self, instance: Instance) -> Scale:
-        """Distances are only changed where some turn and others do not."""
-        kinds = {vehicle.turning for vehicle in instance.vehicles.values()}
-        return self.scale if len(kinds) == 2 else Scale.NONE
 
     def _left(self, vehicle: ApproachingVehicle, plan: JointPlan, ahead: float) -> float:
         """Mean distance to the destination within the horizon [m]."""

@@ -2,17 +2,15 @@
 
 from collections.abc import Sequence
 
-from codriving.datatypes.order import Instance
 from codriving.datatypes.situation import TrackedVehicle
 from codriving.datatypes.world import Action
 from codriving.errors import require_range
 from codriving.methods.coop_game_fuzzy.joint_choice import MOST, Costs, Joint, settle, shapley
 from codriving.methods.coop_game_fuzzy.joint_costs import Weights, joint_costs
+from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.ordered import Ordered
 from codriving.reasoning.execution.planned import Drive, Executor, humans_expected
-from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering, OrderRule, Request, best_subset
-from codriving.reasoning.ordering.schedule import timed
-from codriving.reasoning.ordering.tickets import TicketBook, by_ticket, reasons
+from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering, Request, best_subset
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.rollout import Plan
@@ -25,14 +23,8 @@ OPTIONS = (Action.FASTER, Action.IDLE, Action.SLOWER)
 LONGEST = 20
 """Decisions for which an action can be held."""
 
-LIBRARY: tuple[Plan, ...] = tuple(
-    dict.fromkeys(
-        (
-            *((*(action,) * held, Action.FASTER) for held in range(1, LONGEST + 1) for action in OPTIONS),
-            *(then_stop(action) for action in OPTIONS),
-        )
-    )
-)
+_HELD = [(*(action,) * held, Action.FASTER) for held in range(1, LONGEST + 1) for action in OPTIONS]
+LIBRARY: tuple[Plan, ...] = tuple(dict.fromkeys((*_HELD, *(then_stop(action) for action in OPTIONS))))
 """Every plan that is used: an action held for a while, and then going; and an action, and then stopping."""
 
 
@@ -46,9 +38,6 @@ class CoopGameFuzzy(Ordered):
         hold: Time for which an action is held before all go, 0.2 to 4 [s].
         horizon: Time within which risk, loss of speed and acceleration count, 1 to 10 [s].
         control_radius: Distance to the reference point from which on a vehicle holds a ticket, 1 to 1000 [m].
-
-    Raises:
-        ConfigError: If a setting is out of range.
     """
 
     def __init__(
@@ -65,10 +54,9 @@ class CoopGameFuzzy(Ordered):
         control_radius: float,
     ) -> None:
         require_range("gap", gap, 0, 5, " s")
-        require_range("participation", participation, 0, 1)
-        require_range("risk", risk, 0, 1)
-        require_range("efficiency", efficiency, 0, 1)
-        require_range("comfort", comfort, 0, 1)
+        shares_of_one = {"participation": participation, "risk": risk, "efficiency": efficiency, "comfort": comfort}
+        for name, value in shares_of_one.items():
+            require_range(name, value, 0, 1)
         require_range("reference_acceleration", reference_acceleration, 0.1, 20, " m/s2")
         require_range("hold", hold, 0.2, 4, " s")
         require_range("horizon", horizon, 1, 10, " s")
@@ -76,26 +64,12 @@ class CoopGameFuzzy(Ordered):
         super().__init__(Arrival(control_radius), JointActions(gap, participation, weights, hold, horizon, shares))
 
 
-class Arrival(OrderRule):
+class Arrival(FirstComeFirstServed):
     """The order of tickets, by which no CAV drives; lane changes are granted by what they gain."""
 
-    name, variant = "coop_game", ""
-
-    def __init__(self, control_radius: float) -> None:
-        self.tickets = TicketBook(control_radius)
-
-    def reset(self, seed: int) -> None:
-        """Begin an episode: no vehicle holds a ticket."""
-        self.tickets.reset()
-
-    def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-        """Return the order of tickets, as far as what is physically fixed allows."""
-        ranking, held = self.tickets.ranking(instance), self.tickets.held
-        why = reasons(instance, ranking, lambda one, other: by_ticket(one, other, held))
-        return Ordering(tuple(ranking), timed(instance, ranking), why)
+    name = "coop_game"
 
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Grant the requests that do not overlap and gain most together."""
         return best_subset(requests)
 
 
@@ -121,7 +95,8 @@ class JointActions(Executor):
         vehicles = {name: known[name] for name, known in sorted(moment.vehicles.items())}
         if not vehicles:
             return Drive({}, {}, {}, {})
-        plans = self._plans(moment)
+        held = min(max(round(self.hold / moment.forecast.model.decision_interval), 1), LONGEST)
+        plans: list[Plan] = [(*(action,) * held, Action.FASTER) for action in OPTIONS]
         travels = {v.id: moment.forecast.travel(v.speed, v.target, plans) for v in vehicles.values()}
         samples = round(self.horizon / moment.forecast.sample) + 1
         costs = joint_costs(moment, vehicles, travels, samples, self.weights)
@@ -148,10 +123,6 @@ class JointActions(Executor):
             return found
         stops = moment.forecast.travel(v.speed, v.target, [then_stop(action) for action in OPTIONS])[:, -1]
         return [k for k in found if stops[k] <= change.room - LANE_END_GAP] or found[-1:]
-
-    def _plans(self, moment: Moment) -> list[Plan]:
-        held = min(max(round(self.hold / moment.forecast.model.decision_interval), 1), LONGEST)
-        return [(*(action,) * held, Action.FASTER) for action in OPTIONS]
 
     def _shares(
         self, costs: Costs, allowed: Sequence[Sequence[int]], joint: Joint, names: list[str]

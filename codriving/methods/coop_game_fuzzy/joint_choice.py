@@ -58,9 +58,8 @@ def settle(costs: Costs, options: Sequence[Sequence[int]], participation: float)
     if len(options) > ENUMERATED:
         found = [_arrive(costs, options, participation, start) for start in _starts(options)]
     else:
-        found = list(product(*options))
-        stable = [joint for joint in found if _is_stable(costs, options, participation, joint)]
-        found = stable or found
+        every = list(product(*options))
+        found = [joint for joint in every if _is_stable(costs, options, participation, joint)] or every
     totals = costs.of(found).sum(axis=1)
     return min(zip(totals.round(9).tolist(), found, strict=True))[1]
 
@@ -70,11 +69,10 @@ def _variants(joint: Joint, i: int, options: Sequence[int]) -> list[Joint]:
 
 
 def _is_stable(costs: Costs, options: Sequence[Sequence[int]], participation: float, joint: Joint) -> bool:
-    for i, mine in enumerate(options):
-        counts = blended(costs.of([joint, *_variants(joint, i, mine)]), participation)[:, i]
-        if counts.min() < counts[0] - TOLERANCE:
-            return False
-    return True
+    found = (
+        blended(costs.of([joint, *_variants(joint, i, mine)]), participation)[:, i] for i, mine in enumerate(options)
+    )
+    return not any(counts.min() < counts[0] - TOLERANCE for counts in found)
 
 
 def _starts(options: Sequence[Sequence[int]]) -> list[Joint]:
@@ -108,11 +106,8 @@ def shapley(players: Sequence[str], worth: Callable[[frozenset[str]], float]) ->
         Share of each player, by id; they add up to the worth of all less that of none.
     """
     n = len(players)
-    known = {
-        frozenset(members): worth(frozenset(members))
-        for size in range(n + 1)
-        for members in combinations(players, size)
-    }
+    members = [frozenset(some) for size in range(n + 1) for some in combinations(players, size)]
+    known = {some: worth(some) for some in members}
     shares = {}
     for player in players:
         others = [p for p in players if p != player]

@@ -71,8 +71,8 @@ class CollisionLog(ExperienceLog):
             before = [one for one in self.decisions.get(ego, []) if one.time <= collision.time]
             last = next((one for one in reversed(before) if one.decision.action is not Action.SLOWER), None)
             if last is not None:
-                later = collision.time - last.time
-                found.append(Mistake(last.situation, last.decision, last.step, other, later, ego == collision.striker))
+                later, strikes = collision.time - last.time, ego == collision.striker
+                found.append(Mistake(last.situation, last.decision, last.step, other, later, strikes))
         return found
 
 

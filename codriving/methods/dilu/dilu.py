@@ -1,35 +1,36 @@
 """DiLu: each CAV on its own describes what it sees, recalls what was like it, reasons, and learns from its mistakes."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from math import ceil
-from pathlib import Path
+from math import ceil, inf
 from typing import TYPE_CHECKING
 
-from codriving.datatypes.parts import Account, CaseMemory, Method, Model
+from codriving.datatypes.order import PassingOrder
+from codriving.datatypes.parts import Account, CaseMemory, Model
 from codriving.datatypes.record import Outcome
-from codriving.datatypes.road import Road
-from codriving.datatypes.situation import Decision, ReasonedDeliberation, Situation
+from codriving.datatypes.road import LaneId
+from codriving.datatypes.situation import ActionAssessment, Decision, ReasonedDeliberation, SceneDescription, Situation
 from codriving.datatypes.world import Action, DrivingModel, WorldState
-from codriving.errors import ConfigError
+from codriving.errors import require_range
 from codriving.geometry.road_map import RoadMap
 from codriving.methods.dilu.collision_log import CollisionLog, Correction, Mistake
-from codriving.methods.dilu.description import describe_alone
 from codriving.methods.dilu.rule import correct_by_rule, decide_by_rule
 from codriving.methods.experience_log import learn, recall
-from codriving.methods.language_model.prompted_model import check_model, prompt_files, prompted
+from codriving.methods.language_model.prompted_model import ModelMethod
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
+from codriving.methods.single_vehicle.lane_choice import look
 from codriving.methods.single_vehicle.method import Driver
-from codriving.reasoning.perception import single_vehicle_perception
+from codriving.reasoning.perception import Moment, single_vehicle_perception
 from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.safety.safety_input import SIDES
 
 if TYPE_CHECKING:
     from codriving.methods.language_model.model_decider import ModelDecider
 
 
-class DiLu(Method):
+class DiLu(ModelMethod):
     """The method; with ``llm=offline`` a rule stands in for its language model, and it is called ``dilu-rule``.
 
     Args:
@@ -41,31 +42,25 @@ class DiLu(Method):
         ConfigError: If a setting is out of range, or a template cannot be used.
     """
 
+    asked, reflects = ("dilu",), "dilu_reflect"
+
     def __init__(self, llm: Model, memory: CaseMemory | None, hold: float, shots: int, rule: Driver) -> None:
-        if not 0.1 <= hold <= 10:
-            raise ConfigError(f"hold must be 0.1 to 10 s, got {hold:g}")
-        if not 1 <= shots <= 50:
-            raise ConfigError(f"shots must be 1 to 50, got {shots}")
-        check_model(llm, memory)
-        self.llm, self.memory, self.hold, self.shots, self.rule = llm, memory, hold, shots, rule
+        require_range("hold", hold, 0.1, 10, " s")
+        require_range("shots", shots, 1, 50)
+        super().__init__(llm, memory)
+        self.hold, self.shots, self.rule = hold, shots, rule
         # What answers without a model is not DiLu.
         self.name = "dilu-rule" if llm.chat() is None else "dilu"
-        self.reasoner = llm.name
-        self.remembers = memory.label if memory is not None else ""
-
-    def files(self, road: Road) -> Mapping[str, Path]:
-        return prompt_files(self.llm, self.memory, ("dilu",), "dilu_reflect")
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode."""
+        super().reset(road_map, model, seed)
         self._steps = max(1, ceil(self.hold / model.decision_interval - 1e-6))
         # A CAV that decides every second predicts what follows from deciding every second.
         held = replace(model, decision_interval=self._steps * model.decision_interval)
         self._perception = single_vehicle_perception(road_map, Forecast(held, CONSTANT))
-        self._model = prompted(self.llm)
         self._held: dict[str, tuple[Situation, Decision]] = {}
         self._decided = 0
-        self._seed = seed
         self._decider: ModelDecider | None = None
         correct: Callable[[Sequence[Mistake]], list[Correction]] = correct_by_rule
         if self._model is None:
@@ -77,8 +72,6 @@ class DiLu(Method):
             self._decider = SightDecider(self._model, road_map, held)
             correct = partial(correct_by_model, self._model, road_map, held)
         self._log = CollisionLog(correct) if self.memory is not None and self.memory.learns else None
-        if self.memory is not None:
-            self.memory.begin(seed)
 
     def act(self, world: WorldState) -> ReasonedDeliberation:
         """Decide for every CAV on the road, one by one; between decisions hold what was decided."""
@@ -102,9 +95,8 @@ class DiLu(Method):
             counts["recalled"] += sum(len(situation.memories) for situation in situations)
             counts["reconsidered"] += sum(bool(decision.recalled) for decision in decisions)
         model_counts, lines = self.unfinished_step(world.time)
-        return ReasonedDeliberation(
-            world.time, world.step, tuple(given), tuple(decisions), {**counts, **model_counts}, tuple(lines)
-        )
+        counted = {**counts, **model_counts}
+        return ReasonedDeliberation(world.time, world.step, tuple(given), tuple(decisions), counted, tuple(lines))
 
     def conclude(self, world: WorldState, outcome: Outcome) -> Account:
         if self._log is None or self.memory is None:
@@ -114,10 +106,31 @@ class DiLu(Method):
         model_counts, lines = self.unfinished_step(world.time)
         return {**model_counts, **learnt}, lines
 
-    def unfinished_step(self, time: float) -> Account:
-        return self._model.ledger.close_step(time) if self._model is not None else ({}, [])
-
 
 def _holds(decision: Decision) -> Decision:
     """Leave targets as the last decision has set them, as highway-env does between two decisions a second apart."""
     return Decision(decision.ego, Action.IDLE, f"holds {decision.action}: {decision.reason}")
+
+
+def describe_alone(moment: Moment, ego: str) -> Situation:
+    """Describe what one CAV sees, without an order and without a check of the actions."""
+    conflicts = moment.conflicts[ego]
+    assessments = tuple(ActionAssessment(action, True, (), (), None) for action in moment.available[ego])
+    # Which vehicle passes when is for the reasoner to find out.
+    return Situation(placed(moment, ego), conflicts, PassingOrder((), ()), (inf,) * len(conflicts), assessments)
+
+
+def placed(moment: Moment, ego: str) -> SceneDescription:
+    """Return the scene in which those next ahead and behind on the lanes beside are put onto these lanes.
+
+    That is read off where they are and what the map says, since other vehicles share no lane with a vehicle on its own.
+    """
+    scene = moment.scenes[ego]
+    lanes: dict[str, LaneId] = {}
+    for action in (a for a in SIDES if a in moment.available[ego]):
+        side = look(moment, ego, action, 0.0)
+        if side is not None:
+            lanes.update({n.id: side.lane for n in (side.ahead, side.behind) if n is not None})
+    if not lanes:
+        return scene
+    return replace(scene, neighbours=tuple(replace(n, lane=lanes.get(n.id)) for n in scene.neighbours))

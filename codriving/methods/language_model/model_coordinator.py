@@ -79,8 +79,7 @@ class ModelCoordinator(Coordinator):
         by_urgency = sorted(conflicts, key=lambda c: (c.dttcp + 0.2 * min(c.ttcp), c.ego, c.other))
         pairs = {f"p{k + 1}": c for k, c in enumerate(by_urgency)}
         names = Names(problem.instance.vehicles)
-        question = self._question(scenes, problem, pairs, names)
-        [answer] = self.model.ask([question])
+        [answer] = self.model.ask([self._question(scenes, problem, pairs, names)])
         if answer.value is None:
             return None
         said = first_of_pairs(cast(OrderReply, answer.value), _shown(pairs, names))
@@ -98,9 +97,8 @@ class ModelCoordinator(Coordinator):
         self, scenes: Mapping[str, SceneDescription], problem: Problem, pairs: OpenPairs, names: Names
     ) -> Question:
         shown = _shown(pairs, names)
-        values = negotiation_view(
-            scenes, problem.instance, list(pairs.items()), self.rules.previous, names, self.rules.binding
-        )
+        listed, rules = list(pairs.items()), self.rules
+        values = negotiation_view(scenes, problem.instance, listed, rules.previous, names, rules.binding)
 
         def check(reply: object) -> str:
             if first_of_pairs(cast(OrderReply, reply), shown):

@@ -1,11 +1,15 @@
 """A language model as methods use it: with its templates, and with the ledger in which its answers are counted."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
-from codriving.datatypes.parts import CaseMemory, Model
+from codriving.datatypes.parts import Account, CaseMemory, Method, Model
+from codriving.datatypes.road import Road
+from codriving.datatypes.world import DrivingModel
 from codriving.errors import ConfigError
+from codriving.geometry.road_map import RoadMap
 from codriving.llm.ledger import Ledger
 from codriving.llm.prompts.render import Prompts, load_prompts, template_files
 from codriving.llm.question import Answer, Chat, Question
@@ -50,13 +54,34 @@ def check_model(llm: Model, memory: CaseMemory | None) -> None:
         raise ConfigError("memory.reflection=llm needs a language model; set llm= to one, or memory.reflection=rules")
 
 
-def prompt_files(llm: Model, memory: CaseMemory | None, asked: Sequence[str], reflect: str) -> dict[str, Path]:
-    """Return the templates with which a model is asked; none where the built-in rules reason.
+class ModelMethod(Method):
+    """A method that reasons by a language model or by rules in its place, and may remember.
 
-    Args:
+    Attributes:
         asked: Purposes of the questions of every episode.
-        reflect: Purpose of the questions on mistakes, if the memory asks any.
+        reflects: Purpose of the questions on mistakes, if the memory asks any.
     """
-    if llm.chat() is None:
-        return {}
-    return template_files(llm.prompts, (*asked, *([reflect] if memory is not None and memory.reflections else [])))
+
+    asked: ClassVar[tuple[str, ...]]
+    reflects: ClassVar[str]
+
+    def __init__(self, llm: Model, memory: CaseMemory | None) -> None:
+        check_model(llm, memory)
+        self.llm, self.memory, self.reasoner = llm, memory, llm.name
+        self.remembers = memory.label if memory is not None else ""
+
+    def files(self, road: Road) -> Mapping[str, Path]:
+        """Return the templates with which a model is asked; none where the built-in rules reason."""
+        if self.llm.chat() is None:
+            return {}
+        reflects = self.memory is not None and self.memory.reflections
+        return template_files(self.llm.prompts, (*self.asked, self.reflects) if reflects else self.asked)
+
+    def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
+        """Begin an episode."""
+        self._model, self._seed = prompted(self.llm), seed
+        if self.memory is not None:
+            self.memory.begin(seed)
+
+    def unfinished_step(self, time: float) -> Account:
+        return self._model.ledger.close_step(time) if self._model is not None else ({}, [])

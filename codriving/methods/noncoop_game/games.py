@@ -26,26 +26,34 @@ KEEP, CHANGE = 0, 1
 
 
 @dataclass(frozen=True, slots=True)
-class PassingGame:
-    """All outcomes of one game: rows are the ego vehicle's accelerations, columns the other's.
+class Game:
+    """All outcomes of a game of two: rows are the ego vehicle's accelerations, columns the other's.
 
     Attributes:
-        progress: Way covered by each acceleration, as a share of what is possible, of both players (2, 4).
-        gaps: Gap in time between the one that leaves a zone and the one that enters it next (4, 4) [s].
+        choices: Accelerations of the ego vehicle (n,) and of the other one (m,) [m/s2].
+        progress: Way covered by each acceleration, as a share of what is possible, of both players (2, n).
+        gaps: Gap in time between the one that leaves a zone and the one that enters it next (n, m) [s].
     """
 
+    choices: tuple[Array, Array]
     progress: Array
     gaps: Array
-    overlaps: Flags  # Whether the two come too close within the horizon (4, 4)
-    own_first: Flags  # Whether the ego vehicle is at the most urgent zone first (4, 4)
+    overlaps: Flags  # Whether the two come too close within the horizon (n, m)
 
     def own(self, temper: Temper) -> Array:
-        """Payoff of the ego vehicle (4, 4)."""
-        return temper.payoff(self.progress[0][:, None], ACCELERATIONS[:, None], self.gaps, self.overlaps)
+        """Payoff of the ego vehicle (n, m)."""
+        return temper.payoff(self.progress[0][:, None], self.choices[0][:, None], self.gaps, self.overlaps)
 
     def other(self, temper: Temper) -> Array:
-        """Payoff of the other one, if it is of a temper (4, 4)."""
-        return temper.payoff(self.progress[1][None, :], ACCELERATIONS[None, :], self.gaps, self.overlaps)
+        """Payoff of the other one, if it is of a temper (n, m)."""
+        return temper.payoff(self.progress[1][None, :], self.choices[1][None, :], self.gaps, self.overlaps)
+
+
+@dataclass(frozen=True, slots=True)
+class PassingGame(Game):
+    """Who passes first."""
+
+    own_first: Flags  # Whether the ego vehicle is at the most urgent zone first (n, m)
 
 
 def passing_game(met: Sequence[Encounter], speed: float, top: float, hold: float, times: Array) -> PassingGame:
@@ -74,8 +82,8 @@ def passing_game(met: Sequence[Encounter], speed: float, top: float, hold: float
         overlaps |= _overlap(e.zone, place + own, there + its)
         if k == 0:
             first = _first(own_in, its_in, own_left, its_left)
-    possible = max(top, 0.1) * float(times[-1])
-    return PassingGame(np.stack((own[:, -1], its[:, -1])) / possible, gaps, overlaps, first)
+    progress = np.stack((own[:, -1], its[:, -1])) / (max(top, 0.1) * float(times[-1]))
+    return PassingGame((ACCELERATIONS, ACCELERATIONS), progress, gaps, overlaps, first)
 
 
 def _ends(zone: ConflictZone) -> tuple[float, float]:
@@ -102,45 +110,29 @@ def _overlap(zone: ConflictZone, own: Array, its: Array) -> Flags:
     return np.asarray(((own[:, None, :] >= begin[None]) & (own[:, None, :] <= end[None])).any(axis=2))
 
 
-class LaneGame:
-    """All outcomes of one lane change: rows are to keep the lane and to change, columns to yield and not to.
+def lane_game(moment: Moment, ego: str, side: Side, idm: IntelligentDriver, hold: float, times: Array) -> Game:
+    """Work out all outcomes of a lane change: rows are to keep the lane and to change, columns to yield and not to.
 
     Args:
         hold: How long an acceleration is held [s].
         times: Times of the horizon, the first of them 0 (k,) [s].
     """
-
-    def __init__(self, moment: Moment, ego: str, side: Side, idm: IntelligentDriver, hold: float, times: Array) -> None:
-        speed, top, behind = moment.scenes[ego].ego.speed, moment.forecast.model.top_speed, side.behind
-        assert behind is not None
-        assert behind.gap is not None
-        here = min(
-            (idm.accelerate(speed, top, x.gap, x.speed) for x in leaders(moment.scenes[ego], moment.road_map)),
-            default=inf,
-        )
-        here = min(here, idm.accelerate(speed, top))
-        ahead = side.ahead
-        there = idm.accelerate(speed, top, None if ahead is None else ahead.gap, ahead.speed if ahead else 0.0)
-        self._own = np.array([here, there])
-        self._its = np.array([YIELDS, STAYS])
-        own, own_last = constant_acceleration(speed, self._own, hold, top, times)
-        its, its_last = constant_acceleration(behind.speed, self._its, hold, top, times)
-        room = behind.gap + own[CHANGE] - its
-        # A gap in time that closes at the end of the horizon counts as what will be left of it a second later.
-        closing = np.minimum(own_last[CHANGE] - its_last, 0.0)
-        gaps = np.maximum(np.minimum(room.min(axis=1), room[:, -1] + closing), 0.0) / np.maximum(its_last, SLOWEST)
-        self._gaps = np.stack((np.full(2, inf), gaps))
-        self._overlaps = np.stack((np.zeros(2, dtype=np.bool_), (room <= 0).any(axis=1)))
-        possible = max(top, 0.1) * float(times[-1])
-        self._progress = np.stack((own[:, -1], its[:, -1])) / possible
-
-    def own(self, temper: Temper) -> Array:
-        """Payoff of the ego vehicle (2, 2)."""
-        return temper.payoff(self._progress[0][:, None], self._own[:, None], self._gaps, self._overlaps)
-
-    def other(self, temper: Temper) -> Array:
-        """Payoff of the follower, if it is of a temper (2, 2)."""
-        return temper.payoff(self._progress[1][None, :], self._its[None, :], self._gaps, self._overlaps)
+    speed, top, ahead, behind = moment.scenes[ego].ego.speed, moment.forecast.model.top_speed, side.ahead, side.behind
+    assert behind is not None
+    assert behind.gap is not None
+    held_up = [idm.accelerate(speed, top, x.gap, x.speed) for x in leaders(moment.scenes[ego], moment.road_map)]
+    here = min([*held_up, idm.accelerate(speed, top)])
+    there = idm.accelerate(speed, top, None if ahead is None else ahead.gap, ahead.speed if ahead else 0.0)
+    choices = np.array([here, there]), np.array([YIELDS, STAYS])
+    own, own_last = constant_acceleration(speed, choices[0], hold, top, times)
+    its, its_last = constant_acceleration(behind.speed, choices[1], hold, top, times)
+    room = behind.gap + own[CHANGE] - its
+    # A gap in time that closes at the end of the horizon counts as what will be left of it a second later.
+    closing = np.minimum(own_last[CHANGE] - its_last, 0.0)
+    gaps = np.maximum(np.minimum(room.min(axis=1), room[:, -1] + closing), 0.0) / np.maximum(its_last, SLOWEST)
+    overlaps = np.stack((np.zeros(2, dtype=np.bool_), (room <= 0).any(axis=1)))
+    progress = np.stack((own[:, -1], its[:, -1])) / (max(top, 0.1) * float(times[-1]))
+    return Game(choices, progress, np.stack((np.full(2, inf), gaps)), overlaps)
 
 
 def constant_acceleration(

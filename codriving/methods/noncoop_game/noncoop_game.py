@@ -6,7 +6,7 @@ import numpy as np
 
 from codriving.datatypes.order import Precedence
 from codriving.errors import ConfigError, require_range
-from codriving.methods.noncoop_game.games import ACCELERATIONS, CHANGE, KEEP, LaneGame, PassingGame, passing_game
+from codriving.methods.noncoop_game.games import ACCELERATIONS, CHANGE, KEEP, PassingGame, lane_game, passing_game
 from codriving.methods.noncoop_game.payoff import Array, Temper, best_answer, expected_action
 from codriving.methods.pidm import ProjectedIdm, closest_action, mean_accelerations
 from codriving.methods.single_vehicle.encounters import Encounter, Patience, goes_first
@@ -54,13 +54,10 @@ class NonCooperativeGame(Driver):
         shares = np.array([temper.share for temper in tempers.values()])
         if abs(float(shares.sum()) - 1) > 1e-6:
             raise ConfigError(f"tempers: their shares must add up to 1, got {float(shares.sum()):g}")
-        for key, value, low, high in (
-            ("sample", sample, 0.05, 1.0),
-            ("horizon", horizon, 1.0, 10.0),
-            ("hold", hold, 0.1, horizon),
-            ("indifference", indifference, 0.0, 100.0),
-        ):
-            require_range(key, value, low, high)
+        require_range("sample", sample, 0.05, 1.0)
+        require_range("horizon", horizon, 1.0, 10.0)
+        require_range("hold", hold, 0.1, horizon)
+        require_range("indifference", indifference, 0.0, 100.0)
         self.tempers, self.own, self.shares = tuple(tempers.values()), tempers[own], shares
         self.hold, self.indifference, self.others = hold, indifference, others
         self.times: Array = np.arange(round(horizon / sample) + 1, dtype=np.float64) * sample
@@ -68,8 +65,7 @@ class NonCooperativeGame(Driver):
 
     def reset(self) -> None:
         """Begin an episode; nothing is remembered from the one before."""
-        self._patience = Patience()
-        self._unmet = UnmetExpectations()
+        self._patience, self._unmet = Patience(), UnmetExpectations()
         self.others.reset()
 
     def decide(self, moment: Moment, ego: str) -> Choice:
@@ -89,9 +85,8 @@ class NonCooperativeGame(Driver):
             precedences = (precedence, *precedences)
             if played <= wished:
                 wished, why = played, said
-        means = mean_accelerations(
-            moment.forecast, own.speed, moment.scenes[ego].intent.target_speed, self.others.window
-        )
+        target = moment.scenes[ego].intent.target_speed
+        means = mean_accelerations(moment.forecast, own.speed, target, self.others.window)
         action = closest_action(wished, means, self.others.brake_at)
         counts = {"games": int(bool(partner) and not crept), "creeps": int(crept)}
         return Choice(action, f"{why}; it wishes {wished:+.1f} m/s2", precedences, refused, counts)
@@ -132,16 +127,14 @@ class NonCooperativeGame(Driver):
         """Say why the game of a lane change ends with keeping the lane; nothing if it ends with the change."""
         if side.behind is None or side.behind.gap is None:
             return ""
-        game = LaneGame(moment, ego, side, idm, self.hold, self.times)
+        game = lane_game(moment, ego, side, idm, self.hold, self.times)
         own = game.own(self.own)
         answers = tuple(
             expected_action(own, game.other(temper), 0.0, lambda row, _: row == KEEP)[0] for temper in self.tempers
         )
         row, expected = best_answer(own, answers, self.shares)
-        if row == CHANGE:
-            return ""
         worth = f"{expected[KEEP]:.1f} on this lane and {expected[CHANGE]:.1f} on that one"
-        return f"the game with {side.behind.id} is worth {worth}"
+        return "" if row == CHANGE else f"the game with {side.behind.id} is worth {worth}"
 
 
 def _steps(answers: tuple[int, ...]) -> str:
@@ -169,9 +162,6 @@ class UnmetExpectations:
             speed: Its speed now [m/s].
         """
         before = self._speeds.get((ego, other))
-        if before is None:
-            return False
-        if speed <= before - BRAKES:
+        if before is not None and speed <= before - BRAKES:
             del self._speeds[ego, other]
-            return False
-        return True
+        return (ego, other) in self._speeds

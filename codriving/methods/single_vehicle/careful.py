@@ -48,6 +48,7 @@ class _Motion:
         return float(self.times[-1]) + (distance - float(self.travelled[-1])) / last if last > 0.1 else float("inf")
 
 
+@dataclass(eq=False, repr=False)
 class Careful(Driver):
     """Tries FASTER, IDLE and SLOWER in this order, each held for a while, and takes the first that is free of danger.
 
@@ -59,19 +60,21 @@ class Careful(Driver):
         headway: Time gap to be kept to the vehicle ahead [s].
         standstill: Distance to be kept to it at a standstill [m].
         margin: Time between one vehicle's leaving a zone and the other's entering it [s].
-
-    Raises:
-        ConfigError: If a setting is out of range.
     """
 
     name = "careful"
     variant = ""
 
-    def __init__(self, look: float, headway: float, standstill: float, margin: float, lanes: LaneChoice) -> None:
-        for key, value in (("look", look), ("headway", headway), ("standstill", standstill), ("margin", margin)):
-            require_range(key, value, *LIMITS[key])
-        self.look, self.headway, self.standstill, self.margin, self.lanes = look, headway, standstill, margin, lanes
-        self._idm = IntelligentDriver(gap=standstill, headway=headway)
+    look: float
+    headway: float
+    standstill: float
+    margin: float
+    lanes: LaneChoice
+
+    def __post_init__(self) -> None:
+        for key, (low, high) in LIMITS.items():
+            require_range(key, getattr(self, key), low, high)
+        self._idm = IntelligentDriver(gap=self.standstill, headway=self.headway)
 
     def reset(self) -> None:
         """Begin an episode; nothing is remembered from the one before."""

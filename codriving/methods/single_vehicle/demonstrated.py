@@ -6,20 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.order import Precedence
 from codriving.datatypes.world import Action
-from codriving.errors import require_range
-from codriving.methods.single_vehicle.encounters import (
-    Encounter,
-    Leader,
-    Patience,
-    encounters,
-    goes_first,
-    leaders,
-    may_start,
-)
-from codriving.methods.single_vehicle.lane_choice import LaneChoice, Side
-from codriving.methods.single_vehicle.method import Choice, Driver
+from codriving.methods.single_vehicle.encounters import Encounter, Leader, WaitingDriver, leaders
+from codriving.methods.single_vehicle.lane_choice import Side
+from codriving.methods.single_vehicle.method import Choice
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import stays_behind
 from codriving.reasoning.prediction.idm import IntelligentDriver
@@ -52,18 +42,8 @@ OPENS = 1e-6
 """A gap that grows by less does not grow: two who drive at the same speed are not told apart by rounding [m]."""
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """What an acceptable action keeps to."""
-
-    horizon: float  # Time over which it is predicted [s]
-    headway: float  # Time gap to the vehicle ahead [s]
-    gap: float  # Distance to the vehicle ahead [m]
-    stop_gap: float  # Distance from a zone at which the vehicle waits [m]
-    after: float  # Time between the other one's leaving a zone and the vehicle's entering it [s]
-
-
-class Demonstrated(Driver):
+@dataclass(kw_only=True, eq=False, repr=False)
+class Demonstrated(WaitingDriver):
     """A driver that takes the first acceptable action (after the reasoning shown in Wen et al., 2024).
 
     Args:
@@ -77,40 +57,22 @@ class Demonstrated(Driver):
         firm: Braking beyond which no vehicle is expected to wait any more [m/s2].
         patience: Time after which a waiting vehicle may start into an empty zone [s].
         clear: Time that a vehicle which moves towards that zone must be away from it beyond what the start takes [s].
-
-    Raises:
-        ConfigError: If a setting is out of range.
     """
 
     name = "demonstrated"
     variant = ""
+    ranges = LIMITS
 
-    def __init__(
-        self,
-        horizon: float,
-        headway: float,
-        merging: float,
-        gap: float,
-        stop_gap: float,
-        after: float,
-        tie: float,
-        firm: float,
-        patience: float,
-        clear: float,
-        lanes: LaneChoice,
-    ) -> None:
-        for key, value in [(key, value) for key, value in locals().items() if key in LIMITS]:
-            require_range(key, value, *LIMITS[key])
-        self.limits = Limits(horizon, headway, gap, stop_gap, after)
-        self.merging, self.tie, self.firm = merging, tie, firm
-        self.patience, self.clear, self.lanes = patience, clear, lanes
-        self._idm = IntelligentDriver(gap=gap)
-        self._patience = Patience()
+    horizon: float
+    headway: float
+    merging: float
+    gap: float
+    stop_gap: float
+    after: float
 
-    def reset(self) -> None:
-        """Begin an episode; nothing is remembered from the one before."""
-        self._patience = Patience()
-        self.lanes.reset()
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._idm = IntelligentDriver(gap=self.gap)
 
     def decide(self, moment: Moment, ego: str) -> Choice:
         """Change lanes if that is wanted and safe, or take the first action along the lane that is acceptable.
@@ -122,11 +84,11 @@ class Demonstrated(Driver):
         change, refused = self.lanes.choose(moment, ego, self._idm, self.refuses)
         if change is not None:
             return Choice(change.action, change.reason, (), refused)
-        met = encounters(moment, ego, self.firm)
-        creeps = may_start(moment, ego, met, waited, self.patience, self.clear)
+        met = self.met(moment, ego)
+        creeps = self.may_start(moment, ego, met, waited)
         # A CAV that has waited long enough lets no other vehicle into an empty zone first.
-        before, precedences = self.first(moment, ego, () if creeps else met)
-        refused = {**refused, **refusals(moment, ego, before, self.limits, PREFERRED)}
+        before, precedences = self.yields_to(moment, ego, () if creeps else met)
+        refused = {**refused, **self._refusals(moment, ego, [e for e, _ in before])}
         counts = {"creeps": int(creeps)}
         action = next((a for a in PREFERRED if a in moment.available[ego] and a not in refused), None)
         if action is None:
@@ -136,25 +98,61 @@ class Demonstrated(Driver):
 
     def refuses(self, moment: Moment, ego: str, side: Side, idm: IntelligentDriver) -> str:
         """Say why a lane change is refused; nothing if it is not."""
-        must = moment.scenes[ego].must_change is not None
-        headway = self.merging if must else self.limits.headway
-        return self.lanes.braked_for(moment, ego, side, idm) or change_refused(moment, ego, side, self.limits, headway)
+        braked, ahead = self.lanes.braked_for(moment, ego, side, idm), side.ahead
+        if braked or ahead is None or ahead.gap is None:
+            return braked
+        headway = self.headway if moment.scenes[ego].must_change is None else self.merging
+        travel, times = self._motions(moment, ego, (Action.IDLE,))
+        leader = Leader(ahead.id, ahead.gap, ahead.speed)
+        close = self._too_close(leader, travel, times, moment.forecast.sample, headway)
+        return f"{ahead.id} ahead there is close" if close.any() else ""
 
-    def first(
-        self, moment: Moment, ego: str, met: tuple[Encounter, ...]
-    ) -> tuple[tuple[Encounter, ...], tuple[Precedence, ...]]:
-        """Return the encounters in which the other one may be there first, and who goes first by that."""
-        before, precedences = [], dict[str, Precedence]()
-        for e in met:
-            own, why = goes_first(e, moment.road_map, self.tie)
-            other = e.conflict.other
-            if own:
-                precedences.setdefault(other, Precedence(ego, other, why))
-                continue
-            before.append(e)
-            if other not in precedences or precedences[other].first == ego:
-                precedences[other] = Precedence(other, ego, why)
-        return tuple(before), tuple(precedences.values())
+    def _refusals(self, moment: Moment, ego: str, before: Sequence[Encounter]) -> dict[Action, str]:
+        """Say which actions are not acceptable, and why.
+
+        An action is acceptable if, taken again and again for the horizon, it keeps the headway to all vehicles ahead,
+        and enters no zone in which another vehicle may be first before it has left the way. All others are expected to
+        keep the speed.
+
+        Returns:
+            The reason by action, without those that are acceptable.
+        """
+        travel, times = self._motions(moment, ego, PREFERRED)
+        sample = moment.forecast.sample
+        refusals = [
+            (f"{leader.id} ahead is close", self._too_close(leader, travel, times, sample, self.headway))
+            for leader in leaders(moment.scenes[ego], moment.road_map)
+        ]
+        refusals += [
+            (f"{e.conflict.other} may be there first", self._in_the_way(e, travel, times, sample)) for e in before
+        ]
+        found: dict[Action, str] = {}
+        for why, refused in refusals:
+            for k in np.flatnonzero(refused).tolist():
+                found.setdefault(PREFERRED[k], why)
+        return found
+
+    def _motions(self, moment: Moment, ego: str, actions: Sequence[Action]) -> tuple[Array, Array]:
+        """The way that each action leads over within the horizon (actions, n) [m], and the times (n,) [s]."""
+        scene, forecast = moment.scenes[ego], moment.forecast
+        last = min(round(self.horizon / forecast.sample), forecast.steps) + 1
+        travel = forecast.travel(scene.ego.speed, scene.intent.target_speed, tuple((a,) for a in actions))
+        return travel[:, :last], forecast.times[:last]
+
+    def _too_close(self, leader: Leader, travel: Array, times: Array, sample: float, headway: float) -> Flags:
+        """Whether each motion comes too close to a vehicle ahead (actions,); one that gets away is not too close."""
+        free = leader.gap + leader.speed * times - travel
+        pace = np.diff(travel, axis=1) / sample
+        close = (free[:, 1:] < headway * pace) & (free[:, 1:] < leader.gap + OPENS)
+        return np.asarray((close | (free[:, 1:] < self.gap)).any(axis=1))
+
+    def _in_the_way(self, e: Encounter, travel: Array, times: Array, sample: float) -> Flags:
+        """Whether each motion enters a zone before the other one has left the way (actions,)."""
+        place, there = e.conflict.places
+        motion = place + travel
+        enters = motion[:, -1] > e.zone.entry_i - self.stop_gap
+        behind = stays_behind(e.zone, motion, there + e.other.speed * times, round(self.after / sample), 0.0)
+        return np.asarray(enters & ~behind)
 
 
 def _reason(action: Action, refused: dict[Action, str], waited: float) -> str:
@@ -164,72 +162,3 @@ def _reason(action: Action, refused: dict[Action, str], waited: float) -> str:
         return "accelerating keeps clear of everybody"
     faster = PREFERRED[PREFERRED.index(action) - 1]
     return f"{action}, since with {faster} {refused[faster]}" if faster in refused else f"{action} keeps clear"
-
-
-def refusals(
-    moment: Moment, ego: str, before: Sequence[Encounter], limits: Limits, actions: Sequence[Action]
-) -> dict[Action, str]:
-    """Say which actions are not acceptable, and why.
-
-    An action is acceptable if, taken again and again for the horizon, it keeps the headway to all vehicles ahead, and
-    enters no zone in which another vehicle may be first before it has left the way. All others are expected to
-    keep the speed.
-
-    Returns:
-        The reason by action, without those that are acceptable.
-    """
-    scene, forecast = moment.scenes[ego], moment.forecast
-    last = min(round(limits.horizon / forecast.sample), forecast.steps) + 1
-    travel = forecast.travel(scene.ego.speed, scene.intent.target_speed, tuple((a,) for a in actions))[:, :last]
-    times = forecast.times[:last]
-    found: dict[Action, str] = {}
-    for leader in leaders(scene, moment.road_map):
-        _note(
-            found,
-            actions,
-            _too_close(leader, travel, times, forecast.sample, limits.headway, limits.gap),
-            f"{leader.id} ahead is close",
-        )
-    for e in before:
-        why = f"{e.conflict.other} may be there first"
-        _note(found, actions, _in_the_way(e, travel, times, forecast.sample, limits), why)
-    return found
-
-
-def change_refused(moment: Moment, ego: str, side: Side, limits: Limits, headway: float) -> str:
-    """Say why a lane change is not acceptable because of the vehicle that is then ahead; nothing if it is.
-
-    Args:
-        headway: Time gap to the vehicle that is then ahead [s].
-    """
-    scene, forecast, ahead = moment.scenes[ego], moment.forecast, side.ahead
-    if ahead is None or ahead.gap is None:
-        return ""
-    last = min(round(limits.horizon / forecast.sample), forecast.steps) + 1
-    travel = forecast.travel(scene.ego.speed, scene.intent.target_speed, ((Action.IDLE,),))[:, :last]
-    leader = Leader(ahead.id, ahead.gap, ahead.speed)
-    close = _too_close(leader, travel, forecast.times[:last], forecast.sample, headway, limits.gap)
-    return f"{ahead.id} ahead there is close" if close.any() else ""
-
-
-def _note(found: dict[Action, str], actions: Sequence[Action], refused: Flags, why: str) -> None:
-    for action, no in zip(actions, refused.tolist(), strict=True):
-        if no:
-            found.setdefault(action, why)
-
-
-def _too_close(leader: Leader, travel: Array, times: Array, sample: float, headway: float, gap: float) -> Flags:
-    """Whether each motion comes too close to a vehicle ahead (actions,); one that gets away is not too close."""
-    free = leader.gap + leader.speed * times - travel
-    pace = np.diff(travel, axis=1) / sample
-    close = (free[:, 1:] < headway * pace) & (free[:, 1:] < leader.gap + OPENS)
-    return np.asarray((close | (free[:, 1:] < gap)).any(axis=1))
-
-
-def _in_the_way(e: Encounter, travel: Array, times: Array, sample: float, limits: Limits) -> Flags:
-    """Whether each motion enters a zone before the other one has left the way (actions,)."""
-    place, there = e.conflict.places
-    motion = place + travel
-    enters = motion[:, -1] > e.zone.entry_i - limits.stop_gap
-    behind = stays_behind(e.zone, motion, there + e.other.speed * times, round(limits.after / sample), 0.0)
-    return np.asarray(enters & ~behind)

@@ -1,14 +1,18 @@
 """The others as a vehicle on its own meets them: leaders, zones where ways meet, and who is expected there first."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin
+from typing import ClassVar
 
-from codriving.datatypes.order import Conflict, Relation
+from codriving.datatypes.order import Conflict, Precedence, Relation
 from codriving.datatypes.situation import Role, SceneDescription, TrackedVehicle
+from codriving.errors import require_range
 from codriving.geometry.box import Footprint
 from codriving.geometry.road_map import RoadMap
 from codriving.geometry.zone import ConflictZone
+from codriving.methods.single_vehicle.lane_choice import LaneChoice
+from codriving.methods.single_vehicle.method import Driver
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.expectation import is_behind
 from codriving.reasoning.sharing.tracking import STANDING
@@ -148,9 +152,7 @@ def comes_from_the_right(c: Conflict, road_map: RoadMap) -> bool | None:
     its = road_map.paths[c.routes[1]].place(road_map.routes[c.routes[1]].entry)[2]
     # The y axis points to the right of the x axis, so that who drives towards negative angles comes from the right.
     across = sin(its - own)
-    if abs(across) < 0.5 or cos(its - own) > 0.9:
-        return None
-    return across < 0
+    return None if abs(across) < 0.5 or cos(its - own) > 0.9 else across < 0
 
 
 def passes_by(e: Encounter, road_map: RoadMap) -> bool:
@@ -177,37 +179,19 @@ def goes_first(e: Encounter, road_map: RoadMap, tie: float) -> tuple[bool, str]:
     if e.inside:
         ahead = (e.zone.point_i - c.places[0], c.ego) <= (e.zone.point_j - c.places[1], c.other)
         return ahead, "both are there, and " + ("it is ahead" if ahead else f"{c.other} is ahead")
-    if e.bound != e.other_bound:
-        return (
-            (OWN, "it cannot stop before it any more") if e.bound else (OTHER, f"{c.other} cannot be expected to stop")
-        )
+    if e.bound and not e.other_bound:
+        return OWN, "it cannot stop before it any more"
+    if e.other_bound and not e.bound:
+        return OTHER, f"{c.other} cannot be expected to stop"
     earlier = c.ttcp[1] - c.ttcp[0]
-    if abs(earlier) > tie:
-        late = f"{abs(earlier):.1f} s"
-        return (
-            (OWN, f"it is there {late} before {c.other}")
-            if earlier > 0
-            else (OTHER, f"{c.other} is there {late} before")
-        )
+    if earlier > tie:
+        return OWN, f"it is there {earlier:.1f} s before {c.other}"
+    if -earlier > tie:
+        return OTHER, f"{c.other} is there {-earlier:.1f} s before"
     right = comes_from_the_right(c, road_map)
     if right is not None:
         return (OTHER, f"{c.other} comes from the right") if right else (OWN, f"{c.other} comes from the left")
     return (c.ego < c.other), "both are there at once, and names decide"
-
-
-def may_start(moment: Moment, ego: str, met: Sequence[Encounter], waited: float, patience: float, clear: float) -> bool:
-    """Whether a vehicle has waited long enough, and no vehicle is in the zones ahead or will be before it is through.
-
-    Args:
-        waited: How long it has been standing [s].
-        patience: How long it has to have been standing [s].
-        clear: Time that others must be away from a zone beyond what the start takes [s].
-    """
-    if not met or waited < patience or not all(_lets_start(e, moment, ego, clear) for e in met):
-        return False
-    # Of those who stand, the one that has waited longest starts first; its start is seen before the next one's turn.
-    before = {e.other.id for e in met if _stood_longer(e.other.standing, e.other.id, waited, ego)}
-    return waited >= patience + TURN * len(before)
 
 
 def _lets_start(e: Encounter, moment: Moment, ego: str, clear: float) -> bool:
@@ -222,9 +206,7 @@ def _lets_start(e: Encounter, moment: Moment, ego: str, clear: float) -> bool:
 
 def _stood_longer(standing: float, other: str, waited: float, ego: str) -> bool:
     """Whether a vehicle that stands is to start before a vehicle that has waited for some time as well."""
-    if standing <= 0:
-        return False
-    return standing > waited + SAME or (standing >= waited - SAME and other < ego)
+    return standing > 0 and (standing > waited + SAME or (standing >= waited - SAME and other < ego))
 
 
 class Patience:
@@ -244,3 +226,66 @@ class Patience:
             self._since.pop(name, None)
             return 0.0
         return time - self._since.setdefault(name, time)
+
+
+@dataclass(kw_only=True, eq=False, repr=False)
+class WaitingDriver(Driver):
+    """A driver who lets those pass who are first, and starts into an empty zone once it has waited long enough.
+
+    Attributes:
+        ranges: Least and largest value of each setting.
+    """
+
+    ranges: ClassVar[Mapping[str, tuple[float, float]]]
+    tie: float
+    firm: float
+    patience: float
+    clear: float
+    lanes: LaneChoice
+
+    def __post_init__(self) -> None:
+        for key, (low, high) in self.ranges.items():
+            require_range(key, getattr(self, key), low, high)
+        self._patience = Patience()
+
+    def reset(self) -> None:
+        """Begin an episode; nothing is remembered from the one before."""
+        self._patience = Patience()
+        self.lanes.reset()
+
+    def met(self, moment: Moment, ego: str) -> tuple[Encounter, ...]:
+        """Return where it is open who goes first, most urgent first."""
+        return encounters(moment, ego, self.firm)
+
+    def may_start(self, moment: Moment, ego: str, met: Sequence[Encounter], waited: float) -> bool:
+        """Whether the CAV has waited long enough, and no vehicle is in the zones ahead or will be before it is through.
+
+        Args:
+            waited: How long it has been standing [s].
+        """
+        if not met or waited < self.patience or not all(_lets_start(e, moment, ego, self.clear) for e in met):
+            return False
+        # Of those who stand, the one that has waited longest starts first; its start is seen before the next one's.
+        before = {e.other.id for e in met if _stood_longer(e.other.standing, e.other.id, waited, ego)}
+        return waited >= self.patience + TURN * len(before)
+
+    def yields_to(
+        self, moment: Moment, ego: str, met: Sequence[Encounter], starts: str = ""
+    ) -> tuple[list[tuple[Encounter, str]], tuple[Precedence, ...]]:
+        """Return the encounters in which the other one may be there first, each with why, and who goes first by that.
+
+        Args:
+            starts: Why the CAV goes first everywhere; empty if it does not.
+        """
+        before: list[tuple[Encounter, str]] = []
+        precedences: dict[str, Precedence] = {}
+        for e in met:
+            first, why = goes_first(e, moment.road_map, self.tie)
+            other = e.conflict.other
+            if first or starts:
+                precedences.setdefault(other, Precedence(ego, other, why if first else starts))
+                continue
+            before.append((e, why))
+            if other not in precedences or precedences[other].first == ego:
+                precedences[other] = Precedence(other, ego, why)
+        return before, tuple(precedences.values())

@@ -35,10 +35,14 @@ class Side:
     far: str
 
 
+LIMITS = {"politeness": 1, "threshold": 5, "safe_braking": 10, "least_gap": 50, "alongside": 50, "cool_down": 60}
+"""Largest value of each setting."""
+
 LetsIn = Callable[[Moment, str, Side, IntelligentDriver], str]
 """Says why a change in front of the new follower is refused; nothing if it is not."""
 
 
+@dataclass(eq=False, repr=False)
 class LaneChoice:
     """Changes lanes by MOBIL (Kesting, Treiber and Helbing, 2007), and where the route asks for it.
 
@@ -48,31 +52,18 @@ class LaneChoice:
         least_gap: Smallest free distance to either neighbour on the new lane [m].
         alongside: Distance along the road within which a vehicle two lanes away could change to the same lane [m].
         cool_down: Time between two lane changes [s].
-
-    Raises:
-        ConfigError: If a setting is out of range.
     """
 
-    def __init__(
-        self,
-        politeness: float,
-        threshold: float,
-        safe_braking: float,
-        least_gap: float,
-        alongside: float,
-        cool_down: float,
-    ) -> None:
-        for key, value, most in (
-            ("politeness", politeness, 1),
-            ("threshold", threshold, 5),
-            ("safe_braking", safe_braking, 10),
-            ("least_gap", least_gap, 50),
-            ("alongside", alongside, 50),
-            ("cool_down", cool_down, 60),
-        ):
-            require_range(key, value, 0, most)
-        self.politeness, self.threshold, self.safe_braking = politeness, threshold, safe_braking
-        self.least_gap, self.alongside, self.cool_down = least_gap, alongside, cool_down
+    politeness: float
+    threshold: float
+    safe_braking: float
+    least_gap: float
+    alongside: float
+    cool_down: float
+
+    def __post_init__(self) -> None:
+        for key, most in LIMITS.items():
+            require_range(key, getattr(self, key), 0, most)
         self._changed: dict[str, float] = {}
 
     def reset(self) -> None:
@@ -99,10 +90,10 @@ class LaneChoice:
             unsafe = self.unsafe(moment, ego, side, idm, must) or (lets_in or self.braked_for)(moment, ego, side, idm)
             if unsafe:
                 refused[action] = unsafe
-            elif must:
-                options.append(Change(action, "the route asks for the lane change, and the gap is large enough", gain))
-            else:
-                options.append(Change(action, f"MOBIL: the lane change gains {gain:.1f} m/s2", gain))
+                continue
+            paid = f"MOBIL: the lane change gains {gain:.1f} m/s2"
+            why = "the route asks for the lane change, and the gap is large enough" if must else paid
+            options.append(Change(action, why, gain))
         if not options:
             return None, refused
         best = max(options, key=lambda change: (change.gain, change.action is Action.LANE_LEFT))
@@ -130,9 +121,8 @@ class LaneChoice:
             return f"{side.far} is alongside on the other side and might change there, too"
         ahead, behind = side.ahead, side.behind
         if ahead is not None and ahead.gap is not None:
-            braking = -idm.accelerate(
-                moment.scenes[ego].ego.speed, moment.forecast.model.top_speed, ahead.gap, ahead.speed
-            )
+            speed, top = moment.scenes[ego].ego.speed, moment.forecast.model.top_speed
+            braking = -idm.accelerate(speed, top, ahead.gap, ahead.speed)
             if ahead.gap < self.least_gap or braking > self.safe_braking:
                 return f"{ahead.id} is {max(ahead.gap, 0.0):.0f} m ahead there"
         if behind is not None and behind.gap is not None and behind.gap < self.least_gap:
@@ -144,9 +134,8 @@ class LaneChoice:
         behind = side.behind
         if behind is None or behind.gap is None:
             return ""
-        braking = -idm.accelerate(
-            behind.speed, moment.forecast.model.top_speed, behind.gap, moment.scenes[ego].ego.speed
-        )
+        top, speed = moment.forecast.model.top_speed, moment.scenes[ego].ego.speed
+        braking = -idm.accelerate(behind.speed, top, behind.gap, speed)
         return f"{behind.id} behind would have to brake at {braking:.1f} m/s2" if braking > self.safe_braking else ""
 
     def gain(self, moment: Moment, ego: str, side: Side, idm: IntelligentDriver) -> float:
@@ -173,10 +162,8 @@ def look(moment: Moment, ego: str, action: Action, alongside: float) -> Side | N
     there = replace(scene, neighbours=with_roles(scene.neighbours, scene.ego, route, place, moment.road_map))
     beyond = (start, end, index + 2 * SIDES[action])
     far = next((name for name, side in changes.routes_beside(route, lane) if side == beyond), None)
-    near = ""
-    if far is not None:
-        for n in scene.neighbours:
-            if any(way == far and abs(at - place) < alongside for way, at in n.routes):
-                near = n.id
-                break
+    alongside_far = (
+        n.id for n in scene.neighbours if any(way == far and abs(at - place) < alongside for way, at in n.routes)
+    )
+    near = next(alongside_far, "")
     return Side(lane, there.next_in(Role.LEADING), there.next_in(Role.REARING), near)

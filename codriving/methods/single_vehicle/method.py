@@ -75,17 +75,9 @@ def account(moment: Moment, ego: str, choice: Choice) -> Situation:
     before = [p.first for p in choice.precedences if p.second == ego]
     after = [p.second for p in choice.precedences if p.first == ego]
     sequence = (*before, ego, *after) if choice.precedences else ()
-    return Situation(
-        scene=scene,
-        conflicts=conflicts,
-        order=PassingOrder(sequence, choice.precedences),
-        clear_times=tuple(
-            max(c.exits[1], 0.0) / max(speeds[c.other], SLOWEST) if c.other in before else 0.0 for c in conflicts
-        ),
-        assessments=tuple(_assessment(action, choice) for action in moment.available[ego]),
+    clear_times = tuple(
+        max(c.exits[1], 0.0) / max(speeds[c.other], SLOWEST) if c.other in before else 0.0 for c in conflicts
     )
-
-
-def _assessment(action: Action, choice: Choice) -> ActionAssessment:
-    why = choice.refused.get(action, "")
-    return ActionAssessment(action, not why, (why,) if why else (), (), None)
+    refused = [(action, choice.refused.get(action, "")) for action in moment.available[ego]]
+    assessments = tuple(ActionAssessment(action, not why, (why,) if why else (), (), None) for action, why in refused)
+    return Situation(scene, conflicts, PassingOrder(sequence, choice.precedences), clear_times, assessments)

@@ -115,6 +115,6 @@ class OrderRule(ABC):
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
         """Return the passing order."""
 
-    @abstractmethod
     def grant(self, requests: Sequence[Request]) -> frozenset[str]:
-        """Return the CAVs that may change lanes now, by id."""
+        """Return the CAVs that may change lanes now, by id: those that do not overlap and gain most together."""
+        return best_subset(requests)

@@ -12,8 +12,7 @@ from codriving.datatypes.record import Collision, Ending, Outcome
 from codriving.datatypes.situation import Decision, Situation
 from codriving.datatypes.world import Action, WorldState
 from codriving.methods.dilu.collision_log import CollisionLog
-from codriving.methods.dilu.description import describe_alone
-from codriving.methods.dilu.dilu import DiLu
+from codriving.methods.dilu.dilu import DiLu, describe_alone
 from codriving.methods.dilu.rule import correct_by_rule
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
 from codriving.reasoning.perception import single_vehicle_perception

@@ -11,7 +11,7 @@ from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.world import Action
 from codriving.errors import ConfigError
-from codriving.methods.noncoop_game.games import ACCELERATIONS, CHANGE, LaneGame, PassingGame, passing_game
+from codriving.methods.noncoop_game.games import ACCELERATIONS, CHANGE, PassingGame, lane_game, passing_game
 from codriving.methods.noncoop_game.payoff import pure_equilibria
 from codriving.methods.single_vehicle.encounters import Encounter
 from codriving.methods.single_vehicle.lane_choice import look
@@ -126,7 +126,7 @@ def test_a_lane_change_before_somebody_who_would_have_to_brake_hard_is_refused(h
         side = look(*view, Action.LANE_LEFT, 8.0)
         assert side is not None
         assert side.behind is not None
-        made = LaneGame(*view, side, driver.others.idm, driver.hold, driver.times)
+        made = lane_game(*view, side, driver.others.idm, driver.hold, driver.times)
         assert np.isfinite(made.own(driver.own)).all()
         assert np.isfinite(made.other(driver.own)).all()
         assert made.own(driver.own).shape == (CHANGE + 1, 2)
