@@ -1,1 +1,1 @@
-"""Who reasons: the built-in rules, or a language model."""
+"""Questions to a language model and its answers: prompts, requests, retries, limits, costs and parsing."""

@@ -1,1 +1,1 @@
-"""Scenarios."""
+"""The roads, and from a seed the vehicles that start on them."""

@@ -1,1 +1,1 @@
-"""Traffic."""
+"""Human drivers: how they follow routes, give way and change lanes."""

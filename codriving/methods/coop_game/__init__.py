@@ -1,1 +1,1 @@
-"""Coop game."""
+"""The cooperative game: streams of vehicles form coalitions that choose the passing order."""

@@ -1,1 +1,1 @@
-"""Coop game fuzzy."""
+"""The fuzzy coalition: all CAVs choose their accelerations together, without an order."""

@@ -1,1 +1,1 @@
-"""Noncoop game."""
+"""The non-cooperative game of a single vehicle against its most urgent partner."""
