@@ -12,7 +12,7 @@ import numpy as np
 
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Verdict
 from codriving.datatypes.world import Action
-from codriving.memory.features import FeatureEmbedder
+from codriving.memory.embedders import FeatureEmbedder
 from codriving.memory.snapshot import open_snapshot
 from codriving.memory.store import MemoryStore
 

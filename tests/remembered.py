@@ -13,7 +13,7 @@ from codriving.datatypes.experience import Description, Effect, Experience, Inte
 from codriving.datatypes.order import Conflict, Relation
 from codriving.datatypes.world import Action, Kind, VehicleState
 from codriving.memory.effect import LESSONS, DecisionHistory, HistoryStep, OwnCollision
-from codriving.memory.features import FeatureEmbedder
+from codriving.memory.embedders import FeatureEmbedder
 from codriving.memory.frozen import FrozenMemory
 from codriving.memory.online import OnlineMemory
 from codriving.memory.store import MemoryStore

@@ -208,7 +208,8 @@ class StoredFrames:
             time: Simulated time [s]; after the end it is as at the end.
         """
         time = min(max(time, 0.0), self.duration)
-        decided = self._decision(time)
+        k = int(np.searchsorted(self._times, time + 1e-6, side="right")) - 1
+        decided = self._decided[k] if k >= 0 else FrameContent(time)
         bodies, thoughts = [], dict(decided.thoughts)
         for track in self._trajectory.tracks:
             row = time / self._trajectory.step - track.first_step
@@ -221,10 +222,6 @@ class StoredFrames:
         arrived = {name: at for name, at in self._outcome.arrivals.items() if at <= time + 1e-6}
         outcome = self._outcome if time >= self.duration - 1e-6 else None
         return replace(decided, time=time, bodies=tuple(bodies), thoughts=thoughts, arrived=arrived, outcome=outcome)
-
-    def _decision(self, time: float) -> FrameContent:
-        k = int(np.searchsorted(self._times, time + 1e-6, side="right")) - 1
-        return self._decided[k] if k >= 0 else FrameContent(time)
 
     def _body(self, track: Track, row: float, routes: Mapping[str, str]) -> DrawnVehicle:
         k = min(max(int(row), 0), max(len(track.x) - 2, 0))

@@ -88,12 +88,9 @@ class LivePicture:
             intent = world.intents.get(v.id) if v.kind is Kind.CAV else None
             route = intent.route if intent else None
             bodies.append(DrawnVehicle(v.id, v.kind, v.x, v.y, v.heading, v.speed, route, v.length, v.width))
-        thoughts = {**told, **decided.thoughts}
         arrived = arrivals if arrivals is not None else self._arrived(world, outcome)
-        moment = replace(
-            decided, time=world.time, bodies=tuple(bodies), thoughts=thoughts, arrived=arrived, outcome=outcome
-        )
-        return self._picture.rgb(moment, self._windows)
+        seen = replace(decided, time=world.time, bodies=tuple(bodies), thoughts={**told, **decided.thoughts})
+        return self._picture.rgb(replace(seen, arrived=arrived, outcome=outcome), self._windows)
 
     def _begin(self, world: WorldState) -> None:
         """Choose a view from which the vehicles that are there and the places that they go to are seen."""

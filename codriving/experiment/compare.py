@@ -16,13 +16,21 @@ from codriving.experiment.cells import Cell
 from codriving.experiment.drive import Driven, Outputs, drive
 from codriving.experiment.plan import make_plan
 from codriving.experiment.run import Command
-from codriving.reports.comparison import METHOD_CHOICE, comparison_rows, comparison_table, print_comparison, print_pairs
+from codriving.reports.comparison import (
+    METHOD_CHOICE,
+    comparison_rows,
+    comparison_table,
+    load_rows,
+    load_table,
+    print_comparison,
+    print_loads,
+    print_pairs,
+)
+from codriving.reports.episodes import cpu_per_decision
 from codriving.reports.figures import load_figure
-from codriving.reports.load import load_rows, load_table, print_loads
 from codriving.reports.paper import read_paper
 from codriving.reports.printed import markdown_text
 from codriving.reports.results import CellResults
-from codriving.reports.timing import cpu_per_decision
 
 if TYPE_CHECKING:
     from pandas import DataFrame

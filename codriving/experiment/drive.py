@@ -24,11 +24,11 @@ from codriving.experiment.scoring import scored
 from codriving.experiment.threads import Threads
 from codriving.experiment.worker import Job, Objects, Report, SaveEpisode, Unit
 from codriving.reports.columns import Table, table
+from codriving.reports.episodes import TimedEpisode, seconds_per_decision, timing_columns
 from codriving.reports.paper import read_paper
 from codriving.reports.printed import PrintedTable
 from codriving.reports.results import CellResults
-from codriving.reports.run_tables import RunTables, run_tables
-from codriving.reports.timing import TimedEpisode, seconds_per_decision, timing_columns
+from codriving.reports.summary import RunTables, run_tables
 from codriving.runs.atomic import whole_file, write_text
 from codriving.runs.continuation import changed_versions
 from codriving.runs.episode_folder import Timing, read_timing

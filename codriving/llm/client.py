@@ -3,7 +3,7 @@
 import asyncio
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import asdict, replace
 from functools import partial
 from typing import Any
@@ -11,14 +11,53 @@ from weakref import WeakValueDictionary
 
 from codriving.llm.attempts import ConcurrencyLimit, Retries, Retry, Sleep
 from codriving.llm.cache import AnswerCache
-from codriving.llm.conversation import converse
 from codriving.llm.faults import CallError, FaultKind, unavailable, unusable
 from codriving.llm.loop import loop
-from codriving.llm.question import Answer, Message, Question
-from codriving.llm.request import KNOWN, TOO_LONG, UNREADABLE, ChatRequest, Forms, Reply, schema_of
+from codriving.llm.parsing import judge, one_line
+from codriving.llm.question import Answer, Call, Message, Question
+from codriving.llm.request import KNOWN, TOO_LONG, UNREADABLE, ChatRequest, Forms, Reply, schema_of, worded
 from codriving.llm.send import Sender
 from codriving.llm.settings import ModelSettings, read_key
 from codriving.llm.spending import Spending, cost_of
+
+Fetch = Callable[[tuple[Message, ...], Question], Awaitable[tuple[Reply, bool]]]
+"""Gives the reply to a conversation, and whether it came from the cache."""
+
+
+async def converse(question: Question, fetch: Fetch) -> Answer:
+    """Ask a question."""
+    calls: list[Call] = []
+    shortened = 0
+    again: tuple[Message, ...] = ()
+    while True:
+        messages = question.messages + again
+        reply, cached = await fetch(messages, question)
+        value, problem = judge(reply, question)
+        call = Call(
+            messages=worded(messages, reply.form, schema_of(question.schema)),
+            text=reply.text,
+            form=reply.form,
+            prompt_tokens=reply.prompt_tokens,
+            completion_tokens=reply.completion_tokens,
+            cost=reply.cost,
+            seconds=reply.seconds,
+            attempts=reply.attempts,
+            cached=cached,
+            problem=problem,
+        )
+        calls.append(call)
+        if reply.finish_reason == TOO_LONG:
+            shorter = question.shorter()
+            if shorter is None:
+                return Answer(None, tuple(calls), problem, shortened)
+            question, shortened = shorter, shortened + 1
+        elif value is not None or again:
+            return Answer(value, tuple(calls), problem, shortened)
+        else:
+            # Some servers insist that user and assistant take turns.
+            wish = f"This answer cannot be used: {problem}. Answer again, with one JSON object of the form asked for."
+            again = (Message("assistant", one_line(reply.text, 2000) or "(no answer)"), Message("user", wish))
+
 
 _GREETING = (Message("system", "You check that a connection works."), Message("user", "Answer with the one word: yes"))
 
@@ -52,9 +91,8 @@ class ModelChat:
         self._cache, self._sender, self._forms = cache, sender or Sender(), forms
         self._worked = False
         self._limit = ConcurrencyLimit(settings.max_concurrency)
-        self._retries = Retries(
-            settings.model, settings.attempts, settings.deadline, lambda retry: self.on_retry(retry), sleep
-        )
+        limits = settings.attempts, settings.deadline
+        self._retries = Retries(settings.model, *limits, lambda retry: self.on_retry(retry), sleep)
         self._under_way: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
@@ -98,9 +136,8 @@ class ModelChat:
 
     async def _ask_all(self, questions: Sequence[Question]) -> list[Answer]:
         # All are waited for even if one fails: the others are paid for and belong into the cache.
-        answers = await asyncio.gather(
-            *(converse(question, self._answer) for question in questions), return_exceptions=True
-        )
+        answering = (converse(question, self._answer) for question in questions)
+        answers = await asyncio.gather(*answering, return_exceptions=True)
         for answer in answers:
             if isinstance(answer, BaseException):
                 raise answer

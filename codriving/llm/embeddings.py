@@ -61,9 +61,8 @@ class EmbeddingModel:
         )
 
     async def _embed(self, texts: list[str]) -> list[list[float]]:
-        key = read_key(
-            self.key_env, self.api_base, "embedding model", "memory.embedding_api_base", "memory.embedding_key_env"
-        )
+        names = ("embedding model", "memory.embedding_api_base", "memory.embedding_key_env")
+        key = read_key(self.key_env, self.api_base, *names)
         await load_litellm()
 
         response, _ = await self._retries.run(

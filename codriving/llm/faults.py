@@ -170,10 +170,8 @@ def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
     variable = settings.api_key_env
     key = variable or "the variable that llm.api_key_env names"
     if fault.kind is FaultKind.KEY and variable is None:
-        return ModelError(
-            f"{where} refuses requests without a key{said}; set llm.api_key_env to the name of the variable that holds "
-            "the key"
-        )
+        cure = "set llm.api_key_env to the name of the variable that holds the key"
+        return ModelError(f"{where} refuses requests without a key{said}; {cure}")
     which = {FaultKind.KEY: f" in {variable}", FaultKind.MODEL: f" {settings.model}"}.get(fault.kind, "")
     cure = {
         FaultKind.KEY: f"set {key} to a valid key",

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from pydantic import BaseModel
 
-from codriving.llm.conversation import converse
+from codriving.llm.client import converse
 from codriving.llm.question import Answer, Message, Question
 from codriving.llm.request import Reply
 

@@ -3,9 +3,13 @@
 import asyncio
 import logging
 import os
+from collections.abc import AsyncIterator, Callable
 from dataclasses import asdict
 from types import ModuleType
 from typing import Any, cast
+from urllib.request import getproxies
+
+import httpx
 
 from codriving.llm.faults import fault_of, without_key
 from codriving.llm.loop import loop
@@ -75,8 +79,6 @@ async def _import() -> ModuleType:
     import litellm
     import openai
 
-    from codriving.llm import connections
-
     litellm.suppress_debug_info = True
     litellm.telemetry = False
     # For embeddings a 0 of the call counts as nothing said; retries have one owner.
@@ -85,7 +87,7 @@ async def _import() -> ModuleType:
         # Their lines may hold addresses with keys; what goes wrong is told by us.
         logging.getLogger(name).setLevel(logging.CRITICAL)
     litellm.disable_aiohttp_transport = True
-    session = connections.client()
+    session = client()
     litellm.aclient_session = session
     loop().at_close(session.aclose)
     # Nothing is sent: LiteLLM makes the reply up. It does so only if that is not empty.
@@ -118,9 +120,8 @@ def provider_of(model: str, api_base: str | None) -> str | None:
 def _reply(response: Any, form: str, key: str | None) -> Reply:  # noqa: ANN401 - LiteLLM's response has no narrow type
     """Normalise a response: any text that is there, and why it ends."""
     usage = getattr(response, "usage", None)
-    tokens: dict[str, Any] = {
-        name: max(0, int(getattr(usage, name, None) or 0)) for name in ("prompt_tokens", "completion_tokens")
-    }
+    names = ("prompt_tokens", "completion_tokens")
+    tokens: dict[str, Any] = {name: max(0, int(getattr(usage, name, None) or 0)) for name in names}
     choices = getattr(response, "choices", None) or ()
     if not choices:
         return Reply("", "", form=form, **tokens)
@@ -141,3 +142,64 @@ def _text(content: object) -> str:
     if isinstance(content, list):
         return "".join(str(part.get("text") or "") for part in content if isinstance(part, dict))
     return content if isinstance(content, str) else ""
+
+
+def client() -> httpx.AsyncClient:
+    """Return a client for any number of requests at once; it has to be closed."""
+    if getproxies():
+        # Which proxy leads where is worked out by the client itself, and only for transports of its own.
+        limits = httpx.Limits(max_connections=None, max_keepalive_connections=100)
+        return httpx.AsyncClient(limits=limits, follow_redirects=True)
+    certificates = httpx.create_ssl_context()
+    transport = Connections(lambda: httpx.AsyncHTTPTransport(verify=certificates))
+    return httpx.AsyncClient(transport=transport, follow_redirects=True)
+
+
+class Connections(httpx.AsyncBaseTransport):
+    """A transport for each request under way; one that is free again is used first by whoever comes next.
+
+    A single transport asks the operating system about every idle connection whenever a request begins and ends. With
+    20 episodes side by side that takes longer than all the rest.
+    """
+
+    def __init__(self, make: Callable[[], httpx.AsyncBaseTransport]) -> None:
+        self._make = make
+        self._every: list[httpx.AsyncBaseTransport] = []
+        self._free: list[httpx.AsyncBaseTransport] = []
+
+    async def handle_async_request(self, request: httpx.Request) -> httpx.Response:
+        """Send a request; its transport is free again when the response is closed."""
+        if not self._free:
+            self._every.append(self._make())
+        transport = self._free.pop() if self._free else self._every[-1]
+        try:
+            response = await transport.handle_async_request(request)
+        except BaseException:
+            self._free.append(transport)
+            raise
+        assert isinstance(response.stream, httpx.AsyncByteStream)
+        response.stream = _Closing(response.stream, lambda: self._free.append(transport))
+        return response
+
+    async def aclose(self) -> None:
+        """Close all connections."""
+        for transport in self._every:
+            await transport.aclose()
+
+
+class _Closing(httpx.AsyncByteStream):
+    """A stream that says, once, that it is closed."""
+
+    def __init__(self, stream: httpx.AsyncByteStream, closed: Callable[[], None]) -> None:
+        self._stream, self._closed = stream, closed
+
+    async def __aiter__(self) -> AsyncIterator[bytes]:
+        async for part in self._stream:
+            yield part
+
+    async def aclose(self) -> None:
+        closed, self._closed = self._closed, lambda: None
+        try:
+            await self._stream.aclose()
+        finally:
+            closed()

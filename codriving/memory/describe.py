@@ -13,9 +13,8 @@ def describe(situation: Situation) -> Description:
     """Describe a situation in words, and by the numbers and kinds that the words are made of."""
     numbers: dict[str, float] = {}
     kinds: dict[str, str] = {}
-    scene = _scene(situation, numbers, kinds)
-    conflict = _conflict(situation, numbers, kinds)
-    order = _order(situation, numbers, kinds)
+    # In this order, which is that of the numbers and kinds in a file.
+    scene, conflict, order = (part(situation, numbers, kinds) for part in (_scene, _conflict, _order))
     return Description(scene, conflict, order, {name: round(x, 3) for name, x in numbers.items()}, kinds)
 
 
@@ -67,8 +66,7 @@ def _nearest(scene: SceneDescription, numbers: dict[str, float]) -> list[str]:
         return []
     far, right = numbers["near_ahead"], numbers["near_right"] = scene.offset(nearest)
     numbers["near_speed"] = nearest.speed
-    side = "right" if right > 0 else "left"
-    where = f"{far:.0f} m ahead and {abs(right):.0f} m to the {side}"
+    where = f"{far:.0f} m ahead and {abs(right):.0f} m to the {'right' if right > 0 else 'left'}"
     return [f"the nearest other vehicle {where} at {nearest.speed:.1f} m/s"]
 
 

@@ -206,8 +206,8 @@ def _deceleration(before: float | None, after: float | None, interval: float) ->
 
 def _own_braking(history: DecisionHistory, k: int) -> float:
     """How hard the CAV had to brake in the step after this one; what it did itself now is no consequence."""
-    speeds = [step.ego.speed if step is not None else None for step in (history.at(k + 1), history.at(k + 2))]
-    return _deceleration(speeds[0], speeds[1], history.interval)
+    before, after = (None if step is None else step.ego.speed for step in (history.at(k + 1), history.at(k + 2)))
+    return _deceleration(before, after, history.interval)
 
 
 def _forced_braking(history: DecisionHistory, k: int, conflict: Conflict | None, change: float) -> float:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.memory.embedder import Vectors
+from codriving.memory.embedders import Vectors
 
 _SPARE = 8
 """Candidates beyond those wanted, among which ties are broken."""

@@ -7,8 +7,7 @@ from pathlib import Path
 
 from codriving.datatypes.experience import Interaction
 from codriving.errors import MemoryFileError
-from codriving.memory.embedder import Embedder
-from codriving.memory.embedders import LITELLM, OWN, WordEmbedder
+from codriving.memory.embedders import LITELLM, OWN, Embedder, WordEmbedder
 from codriving.memory.snapshot import Snapshot, StoredExperience, load
 from codriving.memory.store_file import about, damaged, open_file
 

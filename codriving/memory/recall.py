@@ -35,5 +35,5 @@ class RetrievalMemory(CaseMemory):
         """
         if not self._snapshot or not situations:
             return [()] * len(situations)
-        vectors = self._embedder.embed([describe(situation) for situation in situations])
+        vectors = self._embedder.embed(list(map(describe, situations)))
         return self._snapshot.search(vectors, self._shots, self._least_similarity)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from codriving.datatypes.experience import Description
-from codriving.memory.embedder import Embedder
+from codriving.memory.embedders import Embedder
 from codriving.memory.index import Index
 
 NEAR = 1.0

@@ -13,7 +13,7 @@ from codriving.datatypes.experience import Experience, Memory, Verdict
 from codriving.datatypes.world import Action
 from codriving.errors import MemoryFileError
 from codriving.memory.describe import brief
-from codriving.memory.embedder import Embedder, Vectors
+from codriving.memory.embedders import Embedder, Vectors
 from codriving.memory.index import Index
 from codriving.memory.store_file import COLUMNS, about, check_embedder, damaged, from_row, open_file, vectors_of
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from codriving.datatypes.experience import Experience, Interaction
 from codriving.errors import MemoryFileError
-from codriving.memory.embedder import Embedder, Vectors
+from codriving.memory.embedders import Embedder, Vectors
 from codriving.memory.index import Index
 from codriving.memory.snapshot import Snapshot, load
 from codriving.memory.store_file import (
@@ -160,8 +160,7 @@ class MemoryStore:
         number = next((n for n, similarity in hits if similarity >= self.duplicates and self._kinds[n] == kind), None)
         new = number is None
         if number is None:
-            marks = ", ".join("?" * len(COLUMNS))
-            insert = f"INSERT INTO experiences ({', '.join(COLUMNS)}) VALUES ({marks})"
+            insert = f"INSERT INTO experiences ({', '.join(COLUMNS)}) VALUES ({', '.join('?' * len(COLUMNS))})"
             number = int(connection.execute(insert, to_row(experience, vector)).lastrowid or 0)
             self._index.add([number], vector[None])
             self._kinds[number] = kind

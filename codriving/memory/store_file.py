@@ -13,7 +13,7 @@ from codriving.datatypes.experience import Description, Effect, Experience, Verd
 from codriving.datatypes.world import Action
 from codriving.errors import MemoryFileError
 from codriving.llm import sqlite_file
-from codriving.memory.embedder import Embedder, Vectors
+from codriving.memory.embedders import Embedder, Vectors
 
 LAYOUT = 1
 """Changes when an older version could not read the file any more."""

@@ -24,10 +24,6 @@ class BuiltMemory:
     swept: Mapping[str, str]
     reading: "Reading"
 
-    def experiences(self, effect: str) -> int:
-        """Give how many experiences had an effect."""
-        return sum(number for (found, _), number in self.reading.verdicts.items() if found == effect)
-
 
 def print_built(memories: Sequence[BuiltMemory]) -> PrintedTable:
     """Prepare the table."""
@@ -45,8 +41,11 @@ def print_built(memories: Sequence[BuiltMemory]) -> PrintedTable:
     ]
     title = f"memory - reasoner: {', '.join(dict.fromkeys(reasoner_text(memory.reasoner) for memory in memories))}"
     note = "An experience is kept once, however often it was made. Recall from it with memory=frozen memory.file=FILE."
-    return printed(title, columns, [("", table(columns, memories).rows, ())], [note])
+    return printed(title, table(columns, memories), [""] * len(memories), [note])
 
 
 def _effect(effect: str) -> Column[BuiltMemory]:
-    return Column(effect, lambda memory: memory.experiences(effect), effect)
+    def experiences(memory: BuiltMemory) -> int:
+        return sum(number for (found, _), number in memory.reading.verdicts.items() if found == effect)
+
+    return Column(effect, experiences, effect)

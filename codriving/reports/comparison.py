@@ -1,19 +1,29 @@
-"""``comparison.*``: one row a method and scenario, missing methods included, each against codriving."""
+"""``comparison.*`` and ``load.*``: one row a method and scenario, missing methods included, as both compare them."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 from codriving.metrics.intervals import FEWEST, RESAMPLES
-from codriving.reports.columns import Column, Table, swept_columns, table
+from codriving.reports.columns import Column, Table, Value, swept_columns, table
 from codriving.reports.episodes import number_columns
 from codriving.reports.pairs import PAIRED, PairedCells
 from codriving.reports.paper import Paper, PaperRow
 from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.results import CellResults, named_numbers
 from codriving.reports.summary import BY_KEY, FALLBACK_NOTE, FALLBACKS, MEASURED, NOTE, number_notes, paper_row
-from codriving.reports.wording import STANDS_IN, metrics_text, milliseconds, reasoner_text, stand_in_notes, title
+from codriving.reports.wording import (
+    STANDS_IN,
+    metrics_text,
+    milliseconds,
+    percent,
+    reasoner_text,
+    stand_in_notes,
+    title,
+    two_digits,
+)
 
 REFERENCE = "codriving"
 """The method that all others are compared with."""
@@ -169,15 +179,12 @@ def print_comparison(
     Args:
         screen: Whether it is for the screen, which shows computing times, too.
     """
-    made = comparison_table(rows, swept)
-    groups = (
-        (row.block, [values], [paper_row(row.quoted)] if row.quoted else [])
-        for row, values in zip(rows, made.rows, strict=True)
-    )
+    theirs = {index: paper_row(row.quoted) for index, row in enumerate(rows) if row.quoted}
     reasoners = [row.cell.first.reasoner for row in rows if row.cell]
     heading = title("comparison of methods", [row.scenario for row in rows], reasoners, metrics)
     cells = [(row.method, row.status, row.cell) for row in rows]
-    return printed(heading, made.columns, groups, (NOTE, *number_notes(_cells(rows)), *notes_of(cells, screen)), screen)
+    notes = (NOTE, *number_notes(_cells(rows)), *notes_of(cells, screen))
+    return printed(heading, comparison_table(rows, swept), [row.block for row in rows], notes, theirs, screen)
 
 
 def notes_of(rows: Iterable[tuple[str, str, CellResults | None]], screen: bool) -> list[str]:
@@ -209,22 +216,20 @@ def print_pairs(rows: Sequence[Compared], metrics: str, swept: Sequence[str] = (
         The table, with a note on every method that is better than codriving in something; None where there is no
         other method.
     """
+    found = [row for row in rows if row.pairs]
+    if not found:
+        return None
     columns: list[Column[Any]] = [
         *status_columns(len({row.scenario for row in rows}) > 1),
         *swept_columns(swept),
         *(column.of(lambda r: r.pairs) for column in PAIRED),
     ]
-    found = [row for row in rows if row.pairs]
-    if not found:
-        return None
-    made = table(columns, rows)
-    groups = ((row.block, [values] if row.pairs else [], ()) for row, values in zip(rows, made.rows, strict=True))
     notes = [_better_note(row, row.pairs, swept) for row in found if row.pairs and row.pairs.better] or [
         "No method is shown to be better than codriving in success, velocity or PET on these seeds."
     ]
     scenarios = ", ".join(dict.fromkeys(row.scenario for row in rows))
     heading = f"against {REFERENCE} on the same seeds - {scenarios}{metrics_text(metrics)}"
-    return printed(heading, columns, groups, (*notes, *PAIRED_NOTES))
+    return printed(heading, table(columns, found), [row.block for row in found], (*notes, *PAIRED_NOTES))
 
 
 def _better_note(row: Compared, pairs: PairedCells, swept: Sequence[str]) -> str:
@@ -236,3 +241,111 @@ def _better_note(row: Compared, pairs: PairedCells, swept: Sequence[str]) -> str
     }
     where = ", ".join([row.scenario, *(f"{key}={row.swept[key]}" for key in swept if row.swept.get(key))])
     return f"Better than codriving: {row.name} in {' and in '.join(shown[what] for what in pairs.better)} - {where}."
+
+
+LOAD_NOTE = (
+    "Rates are over completed episodes, with Wilson 95 % intervals; velocity is the mean over successful episodes."
+)
+
+AT_EACH = ("completed", "success_rate", "success_low", "success_high", "pet_mean", "pet_below_1_5", "velocity_mean")
+"""What the CSV gives at each number of CAVs."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadRow:
+    """One method at all numbers of CAVs.
+
+    Attributes:
+        at: Its cell at each number of CAVs; empty for a method that was not driven.
+    """
+
+    scenario: str
+    method: str
+    swept: Mapping[str, str]
+    at: dict[int, CellResults] = field(default_factory=dict)
+
+    @property
+    def cell(self) -> CellResults | None:
+        """A cell that says of what method it is."""
+        return next(iter(self.at.values()), None)
+
+    @property
+    def status(self) -> str:
+        """Whether it could be driven."""
+        return DRIVEN if self.at else MISSING
+
+    @property
+    def name(self) -> str:
+        """The method, with its variant."""
+        return self.cell.name if self.cell else self.method
+
+
+def load_rows(cells: Sequence[tuple[int, CellResults]], methods: Sequence[str]) -> list[LoadRow]:
+    """Put the cells of one method and setting into a row.
+
+    Returns:
+        The rows: those of a scenario and setting together, ``methods`` in their order, then all others as they come.
+    """
+    settings: dict[tuple[Value, ...], dict[tuple[Value, ...], LoadRow]] = {}
+    for cavs, cell in cells:
+        first = cell.first
+        setting = settings.setdefault((first.scenario, *setting_of(cell.swept).values()), {})
+        which = (first.method, first.variant, first.reasoner, cell.swept.get(METHOD_CHOICE))
+        setting.setdefault(which, LoadRow(first.scenario, first.method, cell.swept)).at[cavs] = cell
+    return list(chain.from_iterable(_in_order(list(setting.values()), methods) for setting in settings.values()))
+
+
+def _in_order(rows: Sequence[LoadRow], methods: Sequence[str]) -> list[LoadRow]:
+    ordered: list[LoadRow] = []
+    for method in methods:
+        found = [row for row in rows if takes_place_of(row.method) == method]
+        ordered += found or [LoadRow(rows[0].scenario, method, setting_of(rows[0].swept))]
+    return [*ordered, *(row for row in rows if takes_place_of(row.method) not in methods)]
+
+
+def load_table(rows: Sequence[LoadRow], loads: Sequence[int], swept: Sequence[str] = ()) -> Table:
+    """Make the table of loads."""
+    model = any(cell.asked for row in rows for cell in row.at.values())
+    at_each: list[Column[CellResults]] = [
+        *(replace(BY_KEY[key], head="") for key in AT_EACH),
+        Column("success", _success, "success (95 %)", csv=False),
+        Column("velocity", lambda c: two_digits(BY_KEY["velocity_mean"].value(c)) or "-", "velocity [m/s]", csv=False),
+        *([FALLBACKS] if model else []),
+        Column("cpu", lambda c: milliseconds(c.cpu), CPU, csv=False, page=False),
+    ]
+    columns: list[Column[Any]] = [
+        *status_columns(scenario=True),
+        *swept_columns(swept),
+        REASONER,
+        Column("episodes", lambda row: len(row.cell.records) if row.cell else None, "episodes"),
+    ]
+    return table([*columns, *(_at(cavs, column) for column in at_each for cavs in loads)], rows)
+
+
+def _at(cavs: int, column: Column[CellResults]) -> Column[LoadRow]:
+    head = f"{column.head}, {cavs} CAVs" if column.head else ""
+    return column.of(lambda row: row.at.get(cavs), f"{column.key}_{cavs}", head)
+
+
+def print_loads(
+    rows: Sequence[LoadRow], loads: Sequence[int], metrics: str, swept: Sequence[str] = (), screen: bool = False
+) -> PrintedTable:
+    """Prepare the table of loads for people.
+
+    Args:
+        screen: Whether it is for the screen, which shows computing times, too.
+    """
+    blocks = [(row.scenario, *setting_of(row.swept).items()) for row in rows]
+    labels = [(row.method, row.status, cell) for row in rows for cell in row.at.values() or [None]]
+    notes = (LOAD_NOTE, *notes_of(labels, screen))
+    return printed(load_title(rows, metrics), load_table(rows, loads, swept), blocks, notes, screen=screen)
+
+
+def load_title(rows: Sequence[LoadRow], metrics: str) -> str:
+    """Say what is shown and who reasoned."""
+    return title("load", [row.scenario for row in rows], [row.cell.first.reasoner for row in rows if row.cell], metrics)
+
+
+def _success(cell: CellResults) -> str:
+    rate, low, high = (percent(BY_KEY[key].value(cell)) for key in ("success_rate", "success_low", "success_high"))
+    return f"{rate} ({low.removesuffix(' %')} to {high.removesuffix(' %')})" if low else "-"

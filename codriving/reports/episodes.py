@@ -1,12 +1,14 @@
-"""``episodes.csv``: one row an episode."""
+"""``episodes.csv`` and ``timing.csv``: one row an episode; the latter alone differs from run to run."""
 
-from collections.abc import Iterable, Sequence
-from typing import Any
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from codriving.datatypes.record import Ending, EpisodeRecord, NamedNumber
 from codriving.reports.columns import Column, mean, swept_columns
 from codriving.reports.results import LABELS, CellResults, ScoredEpisode, counter_names, named_numbers
 from codriving.reports.wording import two_digits
+from codriving.runs.episode_folder import Timing
 
 LEADING: tuple[Column[ScoredEpisode], ...] = (
     *(column.of(lambda e: e.record) for column in LABELS),
@@ -43,8 +45,8 @@ MEMORY: Column[ScoredEpisode] = Column("memory", lambda e: e.record.memory or No
 def episode_columns(cells: Sequence[CellResults], swept: Iterable[str] = ()) -> list[Column[Any]]:
     """Give the columns of ``episodes.csv``: fixed ones, swept keys, numbers of metrics, and the counters of methods."""
     records = [record for cell in cells for record in cell.records]
-    memory = [MEMORY] if any(record.memory for record in records) else []
-    known: list[Column[Any]] = [*LEADING, *swept_columns(swept), *FURTHER, *memory]
+    known: list[Column[Any]] = [*LEADING, *swept_columns(swept), *FURTHER]
+    known += [MEMORY] if any(record.memory for record in records) else []
     known += number_columns(named_numbers(cells), known)
     return [*known, *counter_columns(records, known)]
 
@@ -74,3 +76,41 @@ def counter_columns(records: Sequence[EpisodeRecord], known: Iterable[Column[Any
 
     taken = {column.key for column in known}
     return [column(name) for name in counter_names(records) if name not in taken]
+
+
+class TimedEpisode(NamedTuple):
+    """An episode and what it cost; None where that is lost."""
+
+    record: EpisodeRecord
+    timing: Timing | None
+    swept: Mapping[str, str]
+
+
+def timing_columns(swept: Iterable[str] = ()) -> list[Column[Any]]:
+    """Give the columns of ``timing.csv``; times are in seconds."""
+    labels = [column.of(lambda e: e.record) for column in (*LABELS, Column[EpisodeRecord]("seed", lambda r: r.seed))]
+    measured: list[Column[TimedEpisode]] = [
+        Column("seconds", lambda e: e.timing.seconds if e.timing else None),
+        Column("decisions", lambda e: e.record.decisions),
+        Column("decision_seconds_mean", lambda e: e.timing.decision_mean if e.timing else None),
+        Column("decision_seconds_max", lambda e: e.timing.decision_max if e.timing else None),
+        Column("decision_cpu_mean", lambda e: e.timing.decision_cpu_mean if e.timing else None),
+        Column("decision_cpu_max", lambda e: e.timing.decision_cpu_max if e.timing else None),
+    ]
+    return [*labels, *swept_columns(swept), *measured]
+
+
+def seconds_per_decision(timings: Iterable[Timing | None]) -> float | None:
+    """Give the wall-clock time of a decision [s], over all decisions of a cell; None where nothing was measured."""
+    return _mean([(t.decisions, t.decision_mean) for t in timings if t and t.decision_mean is not None])
+
+
+def cpu_per_decision(timings: Iterable[Timing | None]) -> float | None:
+    """Give the CPU time of a decision [s], over all decisions of a cell; None where nothing was measured."""
+    return _mean([(t.decisions, t.decision_cpu_mean) for t in timings if t and t.decision_cpu_mean is not None])
+
+
+def _mean(known: Sequence[tuple[int, float]]) -> float | None:
+    """The mean over all decisions of episodes of which number of decisions and mean are known."""
+    decisions = sum(number for number, _ in known)
+    return math.fsum(number * mean for number, mean in known) / decisions if decisions else None

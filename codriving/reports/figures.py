@@ -7,14 +7,14 @@ from itertools import cycle, pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 from codriving.reports.columns import mean
-from codriving.reports.comparison import setting_of
+from codriving.reports.comparison import LoadRow, load_title, setting_of
 from codriving.reports.learning import LearningRow
-from codriving.reports.load import LoadRow, load_title
 from codriving.reports.paper import LearningStatement
 from codriving.reports.results import CellResults
 from codriving.reports.wording import title
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -61,28 +61,6 @@ _SPREAD = 0.06
 """Shift of one line against the next, as a share of the smallest step between loads or of 2, to part the intervals."""
 
 
-def load_figure(rows: Sequence[LoadRow], loads: Sequence[int], metrics: str) -> Mapping[str, bytes]:
-    """Draw success and velocity against the number of CAVs, a column of panels for each scenario.
-
-    Returns:
-        The content of ``load.png`` and ``load.svg``.
-    """
-    with _plain_settings():
-        return _saved(_draw_loads([row for row in rows if row.at], sorted(loads), load_title(rows, metrics)), "load")
-
-
-def learning_figure(
-    rows: Sequence[LearningRow], paper: Sequence[LearningStatement], metrics: str
-) -> Mapping[str, bytes]:
-    """Draw success against the number of past interactions, a panel a scenario (paper, learning figure).
-
-    Returns:
-        The content of ``learn.png`` and ``learn.svg``.
-    """
-    with _plain_settings():
-        return _saved(_draw_learning(rows, paper, metrics), "learn")
-
-
 @contextmanager
 def _plain_settings() -> Iterator[None]:
     """Matplotlib as it is shipped but for the look of our figures, whatever its user has set."""
@@ -94,19 +72,16 @@ def _plain_settings() -> Iterator[None]:
         yield
 
 
-def _saved(figure: "Figure", name: str) -> Mapping[str, bytes]:
-    kinds: dict[str, dict[str, str | None]] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
-    found = {}
-    for kind, metadata in kinds.items():
-        stream = io.BytesIO()
-        figure.savefig(stream, format=kind, dpi=160, metadata=metadata)
-        found[f"{name}.{kind}"] = stream.getvalue()
-    return found
+@_plain_settings()
+def load_figure(rows: Sequence[LoadRow], loads: Sequence[int], metrics: str) -> Mapping[str, bytes]:
+    """Draw success and velocity against the number of CAVs, a column of panels for each scenario.
 
-
-def _draw_loads(rows: Sequence[LoadRow], loads: Sequence[int], heading: str) -> "Figure":
+    Returns:
+        The content of ``load.png`` and ``load.svg``.
+    """
     from matplotlib.figure import Figure
 
+    heading, rows, loads = load_title(rows, metrics), [row for row in rows if row.at], sorted(loads)
     panels: dict[str, list[LoadRow]] = {}
     for row in rows:
         setting = [f"{key}={value}" for key, value in setting_of(row.swept).items()]
@@ -126,18 +101,24 @@ def _draw_loads(rows: Sequence[LoadRow], loads: Sequence[int], heading: str) -> 
             _draw_rates(success, cells, styles[row.name], row.name)
             velocity.plot(*_unzipped(speeds), **_look(styles[row.name], row.name))
         success.set_ylim(-3, 103)
-        success.set_xticks(list(loads))
+        success.set_xticks(loads)
         velocity.set_xlabel("CAVs")
     axes[0][0].set_ylabel("success [%], 95 % interval")
     axes[1][0].set_ylabel("mean velocity [m/s]")
     handles = {line.get_label(): line for axis in axes[0] for line in axis.get_lines() if line.get_label() in names}
-    shown = [name for name in names if name in handles]
-    figure.legend([handles[name] for name in shown], shown, loc="outside lower center", ncols=min(4, len(shown) or 1))
-    figure.suptitle(heading, fontsize=11)
-    return figure
+    shown = {name: handles[name] for name in names if name in handles}
+    return _saved(figure, shown, heading, "load")
 
 
-def _draw_learning(rows: Sequence[LearningRow], paper: Sequence[LearningStatement], metrics: str) -> "Figure":
+@_plain_settings()
+def learning_figure(
+    rows: Sequence[LearningRow], paper: Sequence[LearningStatement], metrics: str
+) -> Mapping[str, bytes]:
+    """Draw success against the number of past interactions, a panel a scenario (paper, learning figure).
+
+    Returns:
+        The content of ``learn.png`` and ``learn.svg``.
+    """
     from matplotlib.figure import Figure
 
     firsts = [row.cell.first for row in rows]
@@ -162,9 +143,19 @@ def _draw_learning(rows: Sequence[LearningRow], paper: Sequence[LearningStatemen
         axis.set_ylim(-3, 105)
     axes[0].set_ylabel("success [%], 95 % interval")
     handles = {str(h.get_label()): h for axis in axes for h in axis.get_legend_handles_labels()[0]}
-    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=min(4, len(handles)))
-    figure.suptitle(title("learning", (), [first.reasoner for first in firsts], metrics), fontsize=11)
-    return figure
+    return _saved(figure, handles, title("learning", (), [first.reasoner for first in firsts], metrics), "learn")
+
+
+def _saved(figure: "Figure", handles: Mapping[str, "Artist"], heading: str, name: str) -> Mapping[str, bytes]:
+    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=min(4, len(handles) or 1))
+    figure.suptitle(heading, fontsize=11)
+    kinds: dict[str, dict[str, str | None]] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
+    found = {}
+    for kind, metadata in kinds.items():
+        stream = io.BytesIO()
+        figure.savefig(stream, format=kind, dpi=160, metadata=metadata)
+        found[f"{name}.{kind}"] = stream.getvalue()
+    return found
 
 
 def _draw_rates(axis: "Axes", cells: Sequence[tuple[float, CellResults]], style: Style, label: str) -> None:

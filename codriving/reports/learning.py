@@ -102,11 +102,10 @@ def learning_table(rows: Sequence[LearningRow], swept: Sequence[str] = ()) -> Ta
 
 def print_learning(rows: Sequence[LearningRow], metrics: str, swept: Sequence[str] = ()) -> PrintedTable:
     """Prepare the table for people."""
-    made = learning_table(rows, swept)
-    groups = ((_setting(row, swept), [values], ()) for row, values in zip(rows, made.rows, strict=True))
     firsts = [row.cell.first for row in rows]
     heading = title("learning", [first.scenario for first in firsts], [first.reasoner for first in firsts], metrics)
-    return printed(heading, made.columns, groups, (NOTE, *NOTES, _shown(rows, swept)))
+    notes = (NOTE, *NOTES, _shown(rows, swept))
+    return printed(heading, learning_table(rows, swept), [_setting(row, swept) for row in rows], notes)
 
 
 def _setting(row: LearningRow, swept: Sequence[str]) -> tuple[object, ...]:

@@ -107,8 +107,8 @@ class PairedCells:
 
     def __str__(self) -> str:
         said = [f"{word} in {', '.join(w)}" for word, w in (("better", self.better), ("worse", self.worse)) if w]
-        few = self.velocity.pairs < FEWEST
-        return "; ".join(said) or (f"fewer than {FEWEST} pairs" if few else "no difference shown")
+        none = f"fewer than {FEWEST} pairs" if self.velocity.pairs < FEWEST else "no difference shown"
+        return "; ".join(said) or none
 
 
 def points(value: Value) -> str:

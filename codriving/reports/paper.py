@@ -82,18 +82,16 @@ class Paper:
         removed = variant if variant in WHOLE else variant.partition("/")[0]
         if removed in WHOLE and variant not in WHOLE:
             return ""
-        matches = (s.statement for s in self.ablation if (s.scenario, s.variant) == (scenario, removed))
-        return next(matches, "")
+        return next((s.statement for s in self.ablation if (s.scenario, s.variant) == (scenario, removed)), "")
 
 
 def read_paper(folder: Path) -> Paper:
     """Read the paper's numbers."""
-    comparison = tuple(_row(row) for row in _read(folder / COMPARISON))
-    ablation = tuple(
-        PaperStatement(row["scenario"], row["variant"], row["statement"]) for row in _read(folder / ABLATION)
+    return Paper(
+        tuple(map(_row, _read(folder / COMPARISON))),
+        tuple(PaperStatement(row["scenario"], row["variant"], row["statement"]) for row in _read(folder / ABLATION)),
+        tuple(replace(_row(row), episodes=None) for row in _read(folder / SINGLE_VEHICLE)),
     )
-    single = tuple(replace(_row(row), episodes=None) for row in _read(folder / SINGLE_VEHICLE))
-    return Paper(comparison, ablation, single)
 
 
 def read_learning(folder: Path) -> tuple[LearningStatement, ...]:

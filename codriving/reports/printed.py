@@ -1,11 +1,12 @@
 """Tables as people read them: plain and never cut in a pipe, fitted to a terminal, or Markdown."""
 
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TextIO
+from types import MappingProxyType
+from typing import Literal, TextIO
 
-from codriving.reports.columns import Column, Row
+from codriving.reports.columns import Row, Table
 
 _PIPE_WIDTH = 1000
 """Columns of a pipe: wide enough that nothing wraps."""
@@ -45,32 +46,32 @@ class PrintedTable:
 
 def printed(
     title: str,
-    columns: Sequence[Column[Any]],
-    groups: Iterable[tuple[object, Sequence[Row], Sequence[Row]]],
+    table: Table,
+    blocks: Iterable[object],
     notes: Iterable[str],
+    theirs: Mapping[int, Row] = MappingProxyType({}),
     screen: bool = False,
 ) -> PrintedTable:
     """Prepare a table for people.
 
     Args:
-        groups: The block that rows belong to, rows of ours, and the paper's rows below them.
+        blocks: The block that each row belongs to.
+        theirs: The paper's rows, by number of the row that they stand below.
         screen: Whether it is for the screen, which shows what differs from run to run, too.
     """
-    groups = list(groups)
-    ours = [row for _, rows, _ in groups for row in rows]
     shown = [
-        column
-        for column in columns
-        if column.head and (column.page or screen) and (not column.sparse or any(row.get(column.key) for row in ours))
+        c
+        for c in table.columns
+        if c.head and (c.page or screen) and (not c.sparse or any(row.get(c.key) for row in table.rows))
     ]
     made: list[PrintedRow] = []
     previous: object = None
-    for block, rows, theirs in groups:
+    for index, (block, row) in enumerate(zip(blocks, table.rows, strict=True)):
         if made and block != previous:
             made[-1] = replace(made[-1], last=True)
         previous = block
-        for row, mine in [*((row, True) for row in rows), *((row, False) for row in theirs)]:
-            made.append(PrintedRow(tuple(column.text(row.get(column.key)) for column in shown), mine))
+        for values in [row, theirs[index]] if index in theirs else [row]:
+            made.append(PrintedRow(tuple(column.text(values.get(column.key)) for column in shown), values is row))
     words = frozenset(column.head for column in shown if column.words)
     return PrintedTable(title, tuple(column.head for column in shown), words, tuple(made), tuple(notes))
 

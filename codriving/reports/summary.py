@@ -3,16 +3,18 @@
 import math
 import statistics
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from codriving.datatypes.record import Ending
 from codriving.reports.columns import Column, Row, Table, Value, mean, share, swept_columns, table
-from codriving.reports.episodes import counter_columns, number_columns, number_head
+from codriving.reports.episodes import counter_columns, episode_columns, number_columns, number_head
 from codriving.reports.paper import WHOLE, Paper, PaperRow
-from codriving.reports.printed import PrintedTable, printed
+from codriving.reports.printed import PrintedTable, markdown_text, printed
 from codriving.reports.results import ASKED, COST, LABELS, CellResults, named_numbers, success_interval
 from codriving.reports.wording import interval_text, percent, stand_in_notes, three, title, two_digits
+from codriving.runs.atomic import write_text
 
 SEVERE_PET = 1.5
 """Below this a PET counts as severe in the paper [s]."""
@@ -101,7 +103,6 @@ _ON_SCREEN: tuple[Column[CellResults], ...] = (
 def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Table:
     """Make the summary: fixed columns, swept keys, and the counters of methods."""
     records = [record for cell in cells for record in cell.records]
-    memory = [MEMORY] if any(record.memory for record in records) else []
     model = any(cell.asked for cell in cells)
     numeric = {key for key in swept if all(_is_number(cell.swept.get(key)) for cell in cells)}
     values = [replace(column, words=column.key not in numeric) for column in swept_columns(swept)]
@@ -112,7 +113,7 @@ def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Ta
         *MEASURED,
         *(replace(column, head="") for column in values),
         *FURTHER,
-        *memory,
+        *([MEMORY] if any(record.memory for record in records) else []),
     ]
     known += number_columns(named_numbers(cells), known)
     counters = counter_columns(records, known)
@@ -148,15 +149,12 @@ def print_summary(
     # Where nothing has been removed there is nothing to compare the claim with.
     ablation = any(claim and cell.first.variant not in WHOLE for cell, claim in zip(cells, claims, strict=True))
     claimed: list[Column[Any]] = [Column("claim", lambda _: None, CLAIM, words=True)] if ablation else []
-    theirs = _beside(cells, paper)
-    groups = (
-        (row["scenario"], [{**row, "claim": claim}], [paper_row(theirs[index])] if index in theirs else [])
-        for index, (row, claim) in enumerate(zip(made.rows, claims, strict=True))
-    )
-    scenarios, reasoners = ([row[key] for row in made.rows] for key in ("scenario", "reasoner"))
-    models = stand_in_notes(row["method"] for row in made.rows)
+    rows = tuple({**row, "claim": claim} for row, claim in zip(made.rows, claims, strict=True))
+    scenarios, reasoners = ([row[key] for row in rows] for key in ("scenario", "reasoner"))
+    models = stand_in_notes(row["method"] for row in rows)
     said = (NOTE, *number_notes(cells), *models, *_model_notes(cells, screen), *notes)
-    return printed(title("", scenarios, reasoners, metrics), (*made.columns, *claimed), groups, said, screen)
+    heading, shown = title("", scenarios, reasoners, metrics), Table((*made.columns, *claimed), rows)
+    return printed(heading, shown, scenarios, said, _beside(cells, paper), screen)
 
 
 def number_notes(cells: Iterable[CellResults]) -> list[str]:
@@ -178,21 +176,19 @@ def paper_row(paper: PaperRow) -> Row:
         "count": "-" if paper.episodes is None else str(paper.episodes),
         "success_rate": numbers.get("success_rate"),
         "memory": "",
-        **{
-            what: three(*(numbers.get(f"{what}_{which}") for which in ("mean", "max", "min")))
-            for what in ("pet", "velocity")
-        },
+        "pet": three(*map(numbers.get, ("pet_mean", "pet_max", "pet_min"))),
+        "velocity": three(*map(numbers.get, ("velocity_mean", "velocity_max", "velocity_min"))),
     }
 
 
-def _beside(cells: Sequence[CellResults], paper: Paper) -> dict[int, PaperRow]:
+def _beside(cells: Sequence[CellResults], paper: Paper) -> dict[int, Row]:
     """Find the paper's rows, each below the last of ours that it belongs to, so that a sweep quotes it once."""
     last: dict[tuple[str, str], tuple[int, PaperRow]] = {}
     for index, cell in enumerate(cells):
         found = paper.row(cell.first.scenario, cell.first.method, cell.first.variant)
         if found is not None:
             last[found.scenario, found.method] = index, found
-    return dict(last.values())
+    return {index: paper_row(row) for index, row in last.values()}
 
 
 def _model_notes(cells: Sequence[CellResults], screen: bool) -> list[str]:
@@ -245,3 +241,42 @@ def _is_number(value: object) -> bool:
     except ValueError:
         return False
     return True
+
+
+@dataclass(frozen=True, slots=True)
+class RunTables:
+    """The tables of one run.
+
+    Attributes:
+        page: The summary as people read it, of ``summary.md``.
+        printed: The same for the screen, with times.
+    """
+
+    episodes: Table
+    summary: Table
+    page: PrintedTable
+    printed: PrintedTable
+
+    def write(self, folder: Path) -> None:
+        """Write ``episodes.csv``, ``summary.csv`` and ``summary.md``.
+
+        Raises:
+            OSError: If the folder cannot be written.
+        """
+        write_text(folder / "episodes.csv", self.episodes.csv())
+        write_text(folder / "summary.csv", self.summary.csv())
+        write_text(folder / "summary.md", markdown_text(self.page))
+
+
+def run_tables(
+    cells: Sequence[CellResults], paper: Paper, metrics: str = "standard", notes: Iterable[str] = ()
+) -> RunTables:
+    """Make all tables of a run."""
+    swept = tuple(dict.fromkeys(key for cell in cells for key in cell.swept))
+    notes = tuple(notes)
+    return RunTables(
+        table(episode_columns(cells, swept), [episode for cell in cells for episode in cell.episodes]),
+        summary_table(cells, swept),
+        print_summary(cells, paper, metrics, swept, notes),
+        print_summary(cells, paper, metrics, swept, notes, screen=True),
+    )

@@ -9,9 +9,15 @@ from hypothesis import strategies as st
 from remembered import description
 
 from codriving.errors import ConfigError
-from codriving.memory.embedder import Embedder
-from codriving.memory.embedders import OWN, EmbeddingServer, WordEmbedder, make_embedder
-from codriving.memory.features import NUMBERS, FeatureEmbedder
+from codriving.memory.embedders import (
+    NUMBERS,
+    OWN,
+    Embedder,
+    EmbeddingServer,
+    FeatureEmbedder,
+    WordEmbedder,
+    make_embedder,
+)
 
 SERVER = EmbeddingServer("openai/none", None, None, 1.0)
 EMBEDDERS = [FeatureEmbedder(), WordEmbedder(), WordEmbedder(banded=False)]

@@ -12,8 +12,7 @@ from codriving.datatypes.experience import Description
 from codriving.environment.environment import Environment
 from codriving.llm.language_model import Offline
 from codriving.memory.describe import describe
-from codriving.memory.embedders import WordEmbedder
-from codriving.memory.features import FeatureEmbedder
+from codriving.memory.embedders import FeatureEmbedder, WordEmbedder
 from codriving.memory.retrieval_metrics import chance, precision_at, same_kind
 from codriving.methods.codriving import CoDriving
 from codriving.reasoning.sharing.sharing import CdaLevel

@@ -14,8 +14,7 @@ from remembered import description, experience, filled, interaction, noise
 from codriving.datatypes.experience import Verdict
 from codriving.datatypes.world import Action
 from codriving.errors import MemoryFileError
-from codriving.memory.embedders import WordEmbedder
-from codriving.memory.features import FeatureEmbedder
+from codriving.memory.embedders import FeatureEmbedder, WordEmbedder
 from codriving.memory.snapshot import Snapshot, open_snapshot
 from codriving.memory.store import MemoryStore
 
@@ -200,7 +199,7 @@ import sys
 sys.path.insert(0, sys.argv[1])
 from pathlib import Path
 from remembered import description, experience, interaction
-from codriving.memory.features import FeatureEmbedder
+from codriving.memory.embedders import FeatureEmbedder
 from codriving.memory.store import MemoryStore
 store, first = MemoryStore(Path(sys.argv[2]), FeatureEmbedder(), 0.98), int(sys.argv[3])
 for k in range(int(sys.argv[4])):

@@ -15,7 +15,7 @@ from codriving.datatypes.record import Ending
 from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import Action
 from codriving.llm.language_model import Offline
-from codriving.memory.features import FeatureEmbedder
+from codriving.memory.embedders import FeatureEmbedder
 from codriving.memory.online import OnlineMemory
 from codriving.memory.snapshot import open_snapshot
 from codriving.methods.codriving import CoDriving

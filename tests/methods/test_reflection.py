@@ -18,7 +18,7 @@ from codriving.llm.prompts.render import Prompts
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
 from codriving.memory.effect import LESSONS
-from codriving.memory.features import FeatureEmbedder
+from codriving.memory.embedders import FeatureEmbedder
 from codriving.memory.snapshot import open_snapshot
 from codriving.methods.codriving import CoDriving
 from codriving.methods.language_model.prompted_model import PromptedModel

@@ -10,14 +10,21 @@ from codriving.config.locate import experiments_dir
 from codriving.datatypes.record import Collision, Ending, EpisodeRecord, Outcome, Participant, Pet, Score, TravelScore
 from codriving.reports.built_memory import BuiltMemory, print_built
 from codriving.reports.columns import table
-from codriving.reports.comparison import comparison_rows, comparison_table, print_comparison, print_pairs
+from codriving.reports.comparison import (
+    comparison_rows,
+    comparison_table,
+    load_rows,
+    load_table,
+    print_comparison,
+    print_loads,
+    print_pairs,
+)
+from codriving.reports.episodes import TimedEpisode, timing_columns
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
-from codriving.reports.load import load_rows, load_table, print_loads
 from codriving.reports.paper import read_learning, read_paper
 from codriving.reports.printed import PrintedTable, markdown_text, print_table
 from codriving.reports.results import CellResults
-from codriving.reports.run_tables import run_tables
-from codriving.reports.timing import TimedEpisode, timing_columns
+from codriving.reports.summary import run_tables
 from codriving.runs.episode_folder import timing_of
 
 ASKED = {"model_calls": 1200, "prompt_tokens": 400_000, "completion_tokens": 20_000, "cost_usd": 0.1, "re_asks": 190,

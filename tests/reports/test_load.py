@@ -5,8 +5,8 @@ from collections.abc import Callable
 import pytest
 
 from codriving.datatypes.record import Ending, EpisodeRecord
+from codriving.reports.comparison import LoadRow, load_rows, load_table, print_loads
 from codriving.reports.figures import METHODS, load_figure
-from codriving.reports.load import LoadRow, load_rows, load_table, print_loads
 from codriving.reports.results import CellResults
 from tests.reports.making import column_of
 

@@ -6,13 +6,19 @@ from dataclasses import replace
 import pytest
 
 from codriving.datatypes.record import Ending, EpisodeRecord, NamedNumber
-from codriving.reports.comparison import comparison_rows, comparison_table, print_comparison
-from codriving.reports.load import load_rows, load_table, print_loads
+from codriving.reports.comparison import (
+    comparison_rows,
+    comparison_table,
+    load_rows,
+    load_table,
+    print_comparison,
+    print_loads,
+)
+from codriving.reports.episodes import seconds_per_decision
 from codriving.reports.paper import Paper
 from codriving.reports.printed import markdown_text
 from codriving.reports.results import CellResults
-from codriving.reports.run_tables import run_tables
-from codriving.reports.timing import seconds_per_decision
+from codriving.reports.summary import run_tables
 from codriving.runs.episode_folder import timing_of
 from tests.reports.making import column_of, episodes_of, print_cells, summary_of, summary_row
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.paper import Paper
 from codriving.reports.results import CellResults
-from codriving.reports.run_tables import run_tables
+from codriving.reports.summary import run_tables
 
 
 def test_the_files_are_written_with_one_row_an_episode_and_one_a_cell(

@@ -6,7 +6,7 @@ import pytest
 
 from codriving.datatypes.record import EpisodeRecord
 from codriving.reports.columns import table
-from codriving.reports.timing import TimedEpisode, cpu_per_decision, timing_columns
+from codriving.reports.episodes import TimedEpisode, cpu_per_decision, timing_columns
 from codriving.runs.episode_folder import timing_of
 
 

@@ -70,25 +70,20 @@ class CorrectionReply(BaseModel):
 @lru_cache(maxsize=64)
 def decision_reply(allowed: tuple[str, ...]) -> type[DecisionReply]:
     """Return the form of a decision."""
-    made: type[DecisionReply] = create_model("Decision", __base__=DecisionReply, action=(ActionWord, _one_of(allowed)))
-    return made
+    return create_model("Decision", __base__=DecisionReply, action=(ActionWord, _one_of(allowed)))
 
 
 @lru_cache(maxsize=64)
 def correction_reply(allowed: tuple[str, ...]) -> type[CorrectionReply]:
     """Return the form of a correction."""
-    made: type[CorrectionReply] = create_model(
-        "Reflection", __base__=CorrectionReply, action=(ActionWord, _one_of(allowed))
-    )
-    return made
+    return create_model("Reflection", __base__=CorrectionReply, action=(ActionWord, _one_of(allowed)))
 
 
 def order_reply(pairs: Mapping[str, tuple[str, str]]) -> type[OrderReply]:
     """Return the form of a passing order."""
     vehicles = sorted({name for pair in pairs.values() for name in pair})
     entry = create_model("Pair", __base__=PairReply, pair=(str, _one_of(list(pairs))), first=(str, _one_of(vehicles)))
-    made: type[OrderReply] = create_model("Order", __base__=OrderReply, orders=(list[entry], ...))  # type: ignore[valid-type]
-    return made
+    return create_model("Order", __base__=OrderReply, orders=(list[entry], ...))  # type: ignore[valid-type]
 
 
 def first_of_pairs(reply: OrderReply, pairs: Mapping[str, tuple[str, str]]) -> dict[str, tuple[str, str]]:
