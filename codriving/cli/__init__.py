@@ -1,1 +1,1 @@
-"""The command line: one command a file, no logic, and the only door to Typer."""
+"""The command line: no logic, and the only door to Typer."""

@@ -7,15 +7,8 @@ import typer
 from typer.core import TyperGroup
 
 from codriving import __version__
-from codriving.cli.ablate import ablate
-from codriving.cli.check import check
-from codriving.cli.compare import compare
-from codriving.cli.learn import learn
-from codriving.cli.list import list_choices
+from codriving.cli.commands import ablate, check, compare, learn, list_choices, replay, run, train
 from codriving.cli.memory import memory
-from codriving.cli.replay import replay
-from codriving.cli.run import run
-from codriving.cli.train import train
 from codriving.errors import UserError
 
 USER_ERROR, INTERRUPTED = 2, 130

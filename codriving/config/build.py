@@ -1,11 +1,14 @@
 """Config nodes to objects: the one place where a `_target_` is called, once its class is known to fit."""
 
 import inspect
+import math
+import types
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, TypeVar, get_args
+from enum import Enum
+from pathlib import Path
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
-from codriving.config.coerce import MismatchError, coerce
-from codriving.config.schema import check_root, unknown
+from codriving.config.schema import check_root, texts, unknown
 from codriving.config.target import find_class
 from codriving.datatypes.parts import CaseMemory, Method, Metric, Model, Scenario, Simulator
 from codriving.errors import ConfigError
@@ -40,29 +43,27 @@ def build(node: object, expected: type[T], key: str = "", plugins: Sequence[str]
 
 def asks_for(node: object, wanted: type, plugins: Sequence[str] = ()) -> bool:
     """Tell whether a class that a node names, itself or further inside, has a parameter annotated with a class."""
-    for target in targets(node):
-        annotations = _annotations(find_class(target, "the node", plugins)).values()
-        if any(wanted in _classes(annotation) for annotation in annotations):
-            return True
-    return False
+    annotated = (_annotations(find_class(target, "the node", plugins)) for target in targets(node))
+    return any(wanted in _classes(annotation) for found in annotated for annotation in found.values())
 
 
 def targets(node: object) -> Iterator[str]:
     """Yield each class that a config names."""
-    inner = node.values() if isinstance(node, Mapping) else node if isinstance(node, list) else ()
-    if isinstance(node, Mapping) and isinstance(node.get(TARGET), str):
-        yield node[TARGET]
-    for value in inner:
-        yield from targets(value)
+    return (text for key, text in texts(node) if key.rpartition(".")[2] == TARGET)
 
 
 def _build(node: object, expected: Sequence[type], key: str, plugins: Sequence[str], given: Given) -> Any:  # noqa: ANN401
     if not isinstance(node, Mapping) or TARGET not in node:
         raise ConfigError(f"{key or 'the node'} must hold a {TARGET}, got {node!r}")
     cls = find_class(node[TARGET], key, plugins)
-    _check_class(cls, node[TARGET], expected, key)
+    if not any(one in cls.__mro__ for one in expected):
+        names = " or ".join(one.__name__ for one in expected) or "a plain value"
+        raise ConfigError(
+            f"{key or 'the node'} must be {names}, but {node[TARGET]} is none; name another class, or let it inherit "
+            f"from {' or '.join(f'{one.__module__}.{one.__name__}' for one in expected) or 'what is expected there'}"
+        )
     arguments = {str(name): value for name, value in node.items() if name != TARGET}
-    annotations = _annotations(cls)
+    parameters, annotations = _parameters(cls), _annotations(cls)
     handed = {n: given[c] for n, a in annotations.items() for c in _classes(a) if c in given}
     for name, value in handed.items():
         if value is None and type(None) not in get_args(annotations[name]):
@@ -72,35 +73,25 @@ def _build(node: object, expected: Sequence[type], key: str, plugins: Sequence[s
             f"{_join(key, name)} is not set here since release 0.2: {cls.__name__} is handed what {name}= chooses; "
             f"delete the line `{name}:` from its YAML"
         )
-    _check_names({**arguments, **handed}, cls, key)
+    for name in arguments:
+        if name not in parameters:
+            raise unknown(_join(key, name), parameters, key or cls.__name__)
+    for name, parameter in parameters.items():
+        if parameter.default is parameter.empty and name not in {**arguments, **handed}:
+            raise ConfigError(f"{_join(key, name)} is missing; {cls.__name__} needs it")
     for name, value in arguments.items():
-        arguments[name] = _argument(value, annotations.get(name, object), _join(key, name), plugins, given)
+        annotation = annotations.get(name, object)
+        made = _nested(value, _classes(annotation), _join(key, name), plugins, given)
+        try:
+            arguments[name] = coerce(made, annotation)
+        except MismatchError as err:
+            raise ConfigError(f"{_join(key, name)} must be {err}, got {value!r}") from err
     try:
         return cls(**arguments, **handed)
     except ConfigError as err:
         raise type(err)(_locate(str(err), key, arguments)) from err
     except ValueError as err:
         raise ConfigError(_locate(str(err), key, arguments)) from err
-
-
-def _check_class(cls: type, target: str, expected: Sequence[type], key: str) -> None:
-    """Refuse a class that its place does not expect, before anything of it is called."""
-    if not any(one in cls.__mro__ for one in expected):
-        names = " or ".join(one.__name__ for one in expected) or "a plain value"
-        raise ConfigError(
-            f"{key or 'the node'} must be {names}, but {target} is none; name another class, or let it inherit from "
-            f"{' or '.join(f'{one.__module__}.{one.__name__}' for one in expected) or 'what is expected there'}"
-        )
-
-
-def _check_names(arguments: Mapping[str, object], cls: type, key: str) -> None:
-    parameters = _parameters(cls)
-    for name in arguments:
-        if name not in parameters:
-            raise unknown(_join(key, name), parameters, key or cls.__name__)
-    for name, parameter in parameters.items():
-        if parameter.default is parameter.empty and name not in arguments:
-            raise ConfigError(f"{_join(key, name)} is missing; {cls.__name__} needs it")
 
 
 def _parameters(cls: type) -> dict[str, inspect.Parameter]:
@@ -132,14 +123,6 @@ def _classes(annotation: Any) -> tuple[type, ...]:  # noqa: ANN401 - an annotati
     return (annotation,) if isinstance(annotation, type) and annotation.__module__ not in ("builtins", "typing") else ()
 
 
-def _argument(value: object, annotation: object, key: str, plugins: Sequence[str], given: Given) -> object:
-    made = _nested(value, _classes(annotation), key, plugins, given)
-    try:
-        return coerce(made, annotation)
-    except MismatchError as err:
-        raise ConfigError(f"{key} must be {err}, got {value!r}") from err
-
-
 def _nested(value: object, expected: Sequence[type], key: str, plugins: Sequence[str], given: Given) -> object:
     if isinstance(value, Mapping):
         if TARGET in value:
@@ -165,16 +148,88 @@ def _join(key: str, name: str) -> str:
     return f"{key}.{name}" if key else name
 
 
-EXPECTED: dict[str, type] = {
-    "scenario": Scenario,
-    "executor": object,
-    "cda": object,
-    "llm": Model,
-    "memory": CaseMemory,
-    "metrics": Metric,
-    "launcher": object,
-    "environment": Simulator,
-}
+_WORDS = {int: "a whole number", float: "a number", bool: "true or false", str: "a text", type(None): "null"}
+
+
+class MismatchError(Exception):
+    """Raised when a value does not have the type that is wanted; the message says which that is."""
+
+
+def coerce(value: object, wanted: Any) -> object:  # noqa: ANN401 - an annotation has no common type
+    """Turn a YAML value into what an annotation asks for, without guessing.
+
+    Whole numbers become floats where a float is wanted, lists become tuples, texts become members of an enumeration or
+    paths. Nothing else is converted: ``"5"`` is not 5 and ``4.0`` is not a number of cars. What is not a plain type is
+    left to the constructor.
+
+    Raises:
+        MismatchError: If the value does not fit.
+    """
+    wanted = type(None) if wanted is None else wanted
+    origin, parts = get_origin(wanted), get_args(wanted)
+    if wanted in _WORDS:
+        return _plain(value, wanted)
+    if origin is Literal:
+        return _one_of(value, parts)
+    if origin in (Union, types.UnionType):
+        return _any_of(value, parts)
+    if (origin or wanted) in (tuple, list, Sequence):
+        return _sequence(value, origin or wanted, parts)
+    if (origin or wanted) in (dict, Mapping):
+        if not isinstance(value, Mapping):
+            raise MismatchError("a mapping")
+        return {k: _part(v, parts[1] if parts else object, "a mapping to {}") for k, v in value.items()}
+    if isinstance(wanted, type) and issubclass(wanted, Enum):
+        return value if isinstance(value, wanted) else wanted(_one_of(value, [member.value for member in wanted]))
+    return Path(str(_plain(value, str))) if wanted is Path else value
+
+
+def _plain(value: object, wanted: type) -> object:
+    if wanted is float and type(value) is int:
+        return float(value)
+    if not isinstance(value, wanted) or (isinstance(value, bool) and wanted is not bool):
+        raise MismatchError(_WORDS[wanted])
+    if isinstance(value, float) and not math.isfinite(value):
+        raise MismatchError("a finite number")
+    return value
+
+
+def _one_of(value: object, allowed: Sequence[object]) -> object:
+    if not any(value == one and isinstance(value, bool) == isinstance(one, bool) for one in allowed):
+        raise MismatchError(f"one of {', '.join(map(str, allowed))}")
+    return value
+
+
+def _any_of(value: object, options: Sequence[object]) -> object:
+    wanted = []
+    # An exact fit comes first, so that 3 stays an int where int | float is wanted.
+    for option in sorted(options, key=lambda option: type(value) is not option):
+        try:
+            return coerce(value, option)
+        except MismatchError as err:
+            wanted.append(str(err))
+    raise MismatchError(" or ".join(dict.fromkeys(wanted)))
+
+
+def _sequence(value: object, kind: Any, parts: Sequence[object]) -> object:  # noqa: ANN401
+    fixed = kind is tuple and len(parts) > 0 and parts[-1] is not Ellipsis
+    if not isinstance(value, list | tuple) or (fixed and len(value) != len(parts)):
+        raise MismatchError(f"a list of {len(parts)} values" if fixed and len(parts) > 1 else "a list")
+    if fixed:
+        return tuple(_part(v, part, "a list with {} in each place") for v, part in zip(value, parts, strict=True))
+    items = [_part(v, parts[0] if parts else object, "a list, each {}") for v in value]
+    return items if kind is list else tuple(items)
+
+
+def _part(value: object, wanted: object, phrase: str) -> object:
+    try:
+        return coerce(value, wanted)
+    except MismatchError as err:
+        raise MismatchError(phrase.format(err)) from err
+
+
+EXPECTED: dict[str, type] = {"scenario": Scenario, "executor": object, "cda": object, "llm": Model}
+EXPECTED |= {"memory": CaseMemory, "metrics": Metric, "launcher": object, "environment": Simulator}
 """What each node has to be; those of a room further up are checked again where a method or a run takes them."""
 
 
@@ -186,9 +241,6 @@ def validate(resolved: Mapping[str, Any]) -> None:
     """
     check_root(resolved)
     plugins = resolved["plugins"]
-    made: dict[str, Any] = {
-        name: build(resolved[name], expected, name, plugins)
-        for name, expected in EXPECTED.items()
-        if resolved[name] is not None
-    }
+    chosen = {name: expected for name, expected in EXPECTED.items() if resolved[name] is not None}
+    made: dict[str, Any] = {name: build(resolved[name], expected, name, plugins) for name, expected in chosen.items()}
     build(resolved["method"], Method, "method", plugins, {Model: made["llm"], CaseMemory: made.get("memory")})

@@ -51,14 +51,9 @@ FIRST = {
 }
 """Choices that come before the others: in the paper's order, or from the least to the most; the rest goes by name."""
 
-_LINE = re.compile(r"^(\w+):\s*([^#\n]*)")
+_LINE = re.compile(r"^(\w+):[^\S\n]*([^#\n]*)", re.MULTILINE)
 _PARENT = re.compile(r"\[(_\w+), _self_\]")
-_DEFAULT = re.compile(r"^\s*-\s*(\w+):\s*\"?(\w+)")
-
-
-def _folders(group: str, config_dir: Path | None) -> list[Path]:
-    own = experiments_root() if group == EXPERIMENTS else conf_dir()
-    return [root / group for root in (own, config_dir) if root is not None]
+_DEFAULT = re.compile(r"^\s*-\s*(\w+):\s*\"?(\w+)", re.MULTILINE)
 
 
 def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
@@ -75,35 +70,30 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
     """
     if group not in LISTED:
         raise ConfigError(f"unknown group {group}; groups: {', '.join(LISTED)}")
-    found = {file.stem: file for folder in _folders(group, config_dir) for file in sorted(folder.glob("[!_]*.yaml"))}
-    first = [name for name in FIRST.get(group, ()) if name in found]
-    return {name: found[name] for name in dict.fromkeys([*first, *sorted(found)])}
+    roots = [experiments_root() if group == EXPERIMENTS else conf_dir(), *([config_dir] if config_dir else [])]
+    found = {file.stem: file for root in roots for file in sorted((root / group).glob("[!_]*.yaml"))}
+    return {name: found[name] for name in (*FIRST.get(group, ()), *sorted(found)) if name in found}
 
 
 def describe(file: Path) -> str:
     """Return the sentence that a YAML begins with, or nothing."""
-    for line in file.read_text(encoding="utf-8").splitlines():
-        if line.startswith("# @package") or not line.strip():
-            continue
-        return line.removeprefix("#").strip() if line.startswith("#") else ""
-    return ""
+    lines = file.read_text(encoding="utf-8").splitlines()
+    first = next((line for line in lines if line.strip() and not line.startswith("# @package")), "")
+    return first.removeprefix("#").strip() if first.startswith("#") else ""
 
 
 def values(file: Path) -> dict[str, str]:
     """Return the keys of the top level of a YAML, and of one that it inherits from, with the text of their values."""
-    found = [m for line in file.read_text(encoding="utf-8").splitlines() if (m := _LINE.match(line))]
-    own = {m[1]: m[2].strip() for m in found if not m[1].startswith("_")}
+    found = _LINE.findall(file.read_text(encoding="utf-8"))
+    own = {name: value.strip() for name, value in found if not name.startswith("_")}
     parent = _PARENT.match(own.pop("defaults", ""))
     return {**(values(conf_dir() / file.parent.name / f"{parent[1]}.yaml") if parent else {}), **own}
 
 
 def default_choice(group: str) -> str | None:
     """Return what a group is set to when nothing is said."""
-    for line in (conf_dir() / "config.yaml").read_text(encoding="utf-8").splitlines():
-        found = _DEFAULT.match(line)
-        if found and found[1] == group:
-            return None if found[2] == "null" else found[2]
-    return None
+    choice = dict(_DEFAULT.findall((conf_dir() / "config.yaml").read_text(encoding="utf-8"))).get(group)
+    return None if choice == "null" else choice
 
 
 def check_config_dir(config_dir: Path) -> None:

@@ -9,11 +9,12 @@ from codriving.config.choices import check_config_dir
 from codriving.config.locate import conf_dir, experiments_root
 from codriving.config.overrides import prepare
 from codriving.config.plugins import find_beside, gathered
-from codriving.config.schema import GROUPS, LARGEST_SEED, check_root
-from codriving.config.secrets import check_secrets, texts
+from codriving.config.schema import GROUPS, LARGEST_SEED, check_root, texts
 from codriving.errors import ConfigError
 
 _ENVIRONMENT = re.compile(r"\$\{\s*oc\.env\b")
+_VARIABLE = re.compile(r"[A-Z_][A-Z0-9_]*")
+_PASSWORD = re.compile(r"\w+://[^/]*@")
 
 
 def compose(overrides: Sequence[str], config_dir: Path | None = None) -> dict[str, Any]:
@@ -44,8 +45,7 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
     Raises:
         ConfigError: If anything in the overrides or in a YAML file cannot be used.
     """
-    from hydra import compose as hydra_compose
-    from hydra import initialize_config_dir
+    import hydra
     from hydra.errors import HydraException
     from omegaconf import OmegaConf, open_dict
     from omegaconf.errors import OmegaConfBaseException
@@ -54,20 +54,21 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
     if config_dir is not None:
         config_dir = config_dir.absolute()
         check_config_dir(config_dir)
-    tokens = [_search_path(config_dir), *prepare(overrides, config_dir)]
+    # Quoted, for a path may hold blanks, commas and quotes.
+    folders = [str(root).replace("\\", "\\\\").replace("'", "\\'") for root in (experiments_root(), config_dir) if root]
+    search_path = "hydra.searchpath=[" + ",".join(f"'file://{folder}'" for folder in folders) + "]"
+    tokens = [search_path, *(prepare(token, config_dir) for token in overrides)]
     try:
-        with initialize_config_dir(str(conf_dir()), version_base="1.3"):
-            config = hydra_compose("config", overrides=tokens, return_hydra_config=True)
+        with hydra.initialize_config_dir(str(conf_dir()), version_base="1.3"):
+            config = hydra.compose("config", overrides=tokens, return_hydra_config=True)
         chosen = config.hydra.runtime.choices
         choices = {group: str(chosen[group]) for group in GROUPS if chosen.get(group) is not None}
         with open_dict(config):
             del config["hydra"]
         _refuse_environment(OmegaConf.to_container(config, resolve=False))
-        resolved = OmegaConf.to_container(config, resolve=True)
+        resolved: Any = OmegaConf.to_container(config, resolve=True)
     except (HydraException, OmegaConfBaseException, YAMLError) as err:
         raise ConfigError(_one_line(err)) from err
-    if not isinstance(resolved, dict):
-        raise ConfigError("the config must be a mapping")
     plain = gathered({str(key): value for key, value in resolved.items()})
     check_root(plain)
     _check_together(plain, choices)
@@ -84,7 +85,7 @@ def show(resolved: Mapping[str, Any]) -> str:
 
 def _check_together(resolved: Mapping[str, Any], choices: Mapping[str, str]) -> None:
     """Check what concerns more than one key of the root; rules between the keys of a node are its constructor's."""
-    check_secrets(resolved)
+    _check_secrets(resolved)
     last = resolved["seed"] + resolved["episodes"] - 1
     if last > LARGEST_SEED:
         raise ConfigError(f"seed + episodes - 1 must be at most {LARGEST_SEED}, got {last}; lower seed or episodes")
@@ -92,11 +93,23 @@ def _check_together(resolved: Mapping[str, Any], choices: Mapping[str, str]) -> 
         raise ConfigError(f"workers must be auto or 1 with launcher=serial, got {resolved['workers']}")
 
 
-def _search_path(config_dir: Path | None) -> str:
-    """Write Hydra's list of further folders; quoted, for a path may hold blanks, commas and quotes."""
-    roots = [experiments_root(), *([config_dir] if config_dir else [])]
-    escaped = [str(root).replace("\\", "\\\\").replace("'", "\\'") for root in roots]
-    return "hydra.searchpath=[" + ",".join(f"'file://{root}'" for root in escaped) + "]"
+def _check_secrets(resolved: Mapping[str, Any]) -> None:
+    """Refuse what may be a key where the name of its variable belongs; the message leaves the value out.
+
+    Raises:
+        ConfigError: If a setting that ends in ``_env`` is not the name of a variable, or an address has a password.
+    """
+    for key, value in sorted(texts(resolved), key=lambda pair: pair[0].count(".")):
+        if key.endswith("_env") and not _VARIABLE.fullmatch(value):
+            raise ConfigError(
+                f"{key} must be the name of an environment variable (capitals, digits and _) that holds the key, not "
+                f"the key itself; what was given is not shown: set the variable and give its name, {key}=MY_KEY"
+            )
+        if _PASSWORD.match(value):
+            raise ConfigError(
+                f"{key} must be an address without user and password, for it is written to the run folder; what was "
+                "given is not shown"
+            )
 
 
 def _refuse_environment(raw: object) -> None:

@@ -5,19 +5,17 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parent.parent
 """The installed or checked-out package `codriving`."""
 
-
-def _installed() -> bool:
-    return (PACKAGE / "_conf").is_dir()
+_INSTALLED = (PACKAGE / "_conf").is_dir()
 
 
 def conf_dir() -> Path:
     """Return the folder of the config groups."""
-    return PACKAGE / "_conf" if _installed() else PACKAGE.parent / "conf"
+    return PACKAGE / "_conf" if _INSTALLED else PACKAGE.parent / "conf"
 
 
 def experiments_root() -> Path:
     """Return the folder in which ``experiments`` lies, as a search path needs it."""
-    return PACKAGE / "_experiments" if _installed() else PACKAGE.parent
+    return PACKAGE / "_experiments" if _INSTALLED else PACKAGE.parent
 
 
 def experiments_dir() -> Path:

@@ -43,9 +43,8 @@ def moved_imports(err: ImportError) -> str:
         return ""
     frames = [frame for frame in traceback.extract_tb(err.__traceback__) if not frame.filename.startswith("<")]
     file = Path(frames[-1].filename)
-    if PACKAGE in file.parents:
-        return ""
-    places = [f"{name} ({new_place(name) or 'gone'})" for name in _imported(file, err.name)]
+    names = () if PACKAGE in file.parents else _imported(file, err.name)
+    places = [f"{name} ({new_place(name) or 'gone'})" for name in names]
     if not places:
         return ""
     return f"{file} imports from {err.name}, which is not where it was in release 0.1: {', '.join(places)}"

@@ -1,35 +1,32 @@
 """What the command line says, made ready for Hydra: groups stay groups, every key is judged by our own rules."""
 
-from collections.abc import Sequence
+import re
 from pathlib import Path
 from typing import Any
 
 from codriving.config.choices import LISTED, choices
 from codriving.config.schema import GROUPS, ROOT
-from codriving.config.secrets import may_be_secret, shown
 from codriving.errors import ConfigError
 
 KEY_VALUE = "write key=value, for instance scenario=intersection or episodes=20"
 
 TEXT_WITH_COMMAS = "for a text with commas write {key}='\"a,b\"'"
 
+_SECRET = re.compile(r"key|token|secret|password|credential", re.IGNORECASE)
 
-def prepare(tokens: Sequence[str], config_dir: Path | None = None) -> list[str]:
-    """Turn override tokens into overrides that Hydra composes without judging keys.
+
+def prepare(token: str, config_dir: Path | None = None) -> str:
+    """Turn an override into one that Hydra composes without judging its key.
 
     Hydra refuses an unknown key unless it has a ``+``, and then accepts any. So every key gets its ``++`` here, and the
     checks after composing refuse what nobody reads: one rule and one message for both spellings.
 
     Args:
-        tokens: ``key=value`` as typed.
+        token: ``key=value`` as typed.
 
     Raises:
-        ConfigError: If a token is not ``key=value``, or names a choice that there is not.
+        ConfigError: If it is not ``key=value``, or names a choice that there is not.
     """
-    return [_prepare(token, config_dir) for token in tokens]
-
-
-def _prepare(token: str, config_dir: Path | None) -> str:
     override = parse(token)
     key = override.key_or_group
     if override.is_delete():
@@ -42,17 +39,33 @@ def _prepare(token: str, config_dir: Path | None) -> str:
     plain = token.lstrip("+")
     if key in LISTED:
         check_choice(key, override.value(), config_dir)
-        return plain
-    if "/" in key:
+    if key in LISTED or "/" in key:
         return plain
     head, _, rest = key.partition(".")
-    slot = rest.partition(".")[0]
-    if head not in GROUPS[2:] and slot in GROUPS:
+    if head not in GROUPS[2:] and (slot := rest.partition(".")[0]) in GROUPS:
         raise ConfigError(f"{key} is {slot} itself; set {rest} instead")
     if key in ROOT and ROOT[key].kind is str and not isinstance(override.value(), str | None):
         # Hydra reads run=2026_01 as a number; a name stays what was typed.
         return f"++{key}='{plain.partition('=')[2]}'"
     return f"++{plain}"
+
+
+def shown(token: str) -> str:
+    """Give an override for a message.
+
+    Args:
+        token: ``key=value`` as typed.
+    """
+    return f"{token.partition('=')[0]}=..." if may_be_secret(token) else token
+
+
+def may_be_secret(token: str) -> bool:
+    """Tell whether an override may hold a secret, by the name of its key.
+
+    Args:
+        token: ``key=value`` as typed.
+    """
+    return _SECRET.search(token.partition("=")[0]) is not None
 
 
 def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not typed

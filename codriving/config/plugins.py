@@ -26,11 +26,10 @@ def gathered(resolved: Mapping[str, Any]) -> dict[str, Any]:
         ConfigError: If a node's ``plugins`` is no list of package names.
     """
     found: list[str] = []
-    nodes = {name: _without(node, str(name), found) for name, node in resolved.items() if name != PLUGINS}
-    own = resolved.get(PLUGINS)
-    if isinstance(own, list) and found:
-        own = list(dict.fromkeys([*own, *found]))
-    return {name: own if name == PLUGINS else nodes[name] for name in resolved}
+    nodes = {n: node if n == PLUGINS else _without(node, str(n), found) for n, node in resolved.items()}
+    if found and isinstance(own := nodes.get(PLUGINS), list):
+        nodes[PLUGINS] = list(dict.fromkeys([*own, *found]))
+    return nodes
 
 
 def _without(node: object, key: str, found: list[str]) -> object:

@@ -1,9 +1,8 @@
 """The root of the config as a table: which keys there are, what they mean and which values they take."""
 
 import difflib
-import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,8 +33,8 @@ class Key:
     name: str
     meaning: str
     kind: type
-    low: int | None = None
-    high: int | None = None
+    low: int = 0
+    high: int = 0
     words: tuple[str, ...] = ()
     pattern: str | None = None
     optional: bool = False
@@ -43,34 +42,25 @@ class Key:
     @property
     def rule(self) -> str:
         """The rule in words, as it stands in messages and in the docs."""
-        if self.kind is bool:
-            rule = "true or false"
-        elif self.kind is int:
-            upper = f"to {self.high}" if self.high is not None else "or more"
-            rule = f"a whole number, {self.low} {upper}"
-        elif self.kind is list:
-            rule = "a list of package names, for instance [my_package]"
-        elif self.pattern:
-            rule = "a name of letters, digits, dots, dashes and underscores"
-        else:
-            rule = "a text"
+        rule = {
+            bool: "true or false",
+            int: f"a whole number, {self.low} to {self.high}",
+            list: "a list of package names, for instance [my_package]",
+            str: "a name of letters, digits, dots, dashes and underscores" if self.pattern else "a text",
+        }[self.kind]
         return " or ".join([rule, *self.words, *(["null"] if self.optional else [])])
 
     def allows(self, value: object) -> bool:
         """Tell whether a value follows the rule."""
-        if value is None:
-            return self.optional
-        if isinstance(value, str) and value in self.words:
-            return True
+        if value is None or value in self.words:
+            return value is not None or self.optional
         if self.kind is list:
             return isinstance(value, list) and all(isinstance(v, str) and _PACKAGE.fullmatch(v) for v in value)
         if not isinstance(value, self.kind) or isinstance(value, bool) != (self.kind is bool):
             return False
         if self.kind is int:
-            return (self.low or 0) <= value <= (math.inf if self.high is None else self.high)  # type: ignore[operator]
-        if self.kind is bool:
-            return True
-        return bool(value) and (self.pattern is None or re.fullmatch(self.pattern, str(value)) is not None)
+            return self.low <= value <= self.high  # type: ignore[operator]
+        return self.kind is bool or re.fullmatch(self.pattern or r"(?s).+", str(value)) is not None
 
 
 _NAME = r"[A-Za-z0-9_-][A-Za-z0-9._-]*"
@@ -98,11 +88,22 @@ def unknown(key: str, known: Iterable[str], where: str) -> ConfigError:
         key: The full key that was given, for instance ``scenario.typo``.
     """
     names = sorted(known)
-    last = key.rpartition(".")[2]
+    node, dot, last = key.rpartition(".")
     close = difflib.get_close_matches(last, names, n=1)
-    prefix = key[: len(key) - len(last)]
-    hint = f"did you mean {prefix}{close[0]}? " if close else ""
+    hint = f"did you mean {node}{dot}{close[0]}? " if close else ""
     return ConfigError(f"unknown key {key}; {hint}keys of {where}: {', '.join(names)}")
+
+
+def texts(node: object, key: str = "") -> Iterator[tuple[str, str]]:
+    """Yield every text with its dotted key."""
+    if isinstance(node, Mapping):
+        for name, value in node.items():
+            yield from texts(value, f"{key}.{name}" if key else str(name))
+    elif isinstance(node, list):
+        for index, value in enumerate(node):
+            yield from texts(value, f"{key}.{index}")
+    elif isinstance(node, str):
+        yield key, node
 
 
 def check_root(resolved: Mapping[str, Any]) -> None:
@@ -112,23 +113,16 @@ def check_root(resolved: Mapping[str, Any]) -> None:
         ConfigError: If a key is unknown or missing, or a value breaks its rule.
     """
     known = (*ROOT, *NODES)
-    for name in resolved:
-        if name not in known:
-            raise unknown(str(name), known, "the config")
-    for name in known:
-        if name not in resolved:
-            raise ConfigError(f"{name} is missing from the config")
+    if strange := [str(name) for name in resolved if name not in known]:
+        raise unknown(strange[0], known, "the config")
+    if missing := [name for name in known if name not in resolved]:
+        raise ConfigError(f"{missing[0]} is missing from the config")
     for name, key in ROOT.items():
         if not key.allows(resolved[name]):
             raise ConfigError(f"{name} must be {key.rule}, got {resolved[name]!r}")
     for name in NODES:
-        _check_node(name, resolved[name])
-
-
-def _check_node(name: str, node: object) -> None:
-    if node is None and name in OPTIONAL:
-        return
-    if isinstance(node, Mapping) and "_target_" not in node:
-        raise ConfigError(f"{name} has no _target_, so nobody would read {', '.join(map(str, node)) or 'it'}")
-    if not isinstance(node, Mapping):
-        raise ConfigError(f"{name} must name one of its YAML files or hold a _target_, got {node!r}")
+        node = resolved[name]
+        if isinstance(node, Mapping) and "_target_" not in node:
+            raise ConfigError(f"{name} has no _target_, so nobody would read {', '.join(map(str, node)) or 'it'}")
+        if not (isinstance(node, Mapping) or (node is None and name in OPTIONAL)):
+            raise ConfigError(f"{name} must name one of its YAML files or hold a _target_, got {node!r}")

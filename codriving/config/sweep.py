@@ -8,26 +8,20 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config.choices import ALL, LISTED, check_config_dir, choices
-from codriving.config.overrides import TEXT_WITH_COMMAS, check_choice, parse
+from codriving.config.overrides import TEXT_WITH_COMMAS, check_choice, may_be_secret, parse, shown
 from codriving.config.schema import ROOT
-from codriving.config.secrets import may_be_secret, shown
 from codriving.errors import ConfigError
 
 MOST = 1000
 """Configs of one command; more than these are a slip of the keyboard."""
-
-_SEEDS = "all cells drive the same seeds, so that their rows can be compared"
-_WORKERS = "all cells share the processes, and no result depends on them"
 
 ONE_VALUE = {
     "run": "a sweep is one run under one name",
     "output": "all cells of a run are written under one folder",
     "experiment": "all cells of a run belong to one experiment",
     "experiments": "each is a table of its own, so run them one after another",
-    "episodes": _SEEDS,
-    "seed": _SEEDS,
-    "workers": _WORKERS,
-    "launcher": _WORKERS,
+    **dict.fromkeys(("episodes", "seed"), "all cells drive the same seeds, so that their rows can be compared"),
+    **dict.fromkeys(("workers", "launcher"), "all cells share the processes, and no result depends on them"),
     "prompts": "templates belong to a model, whose llm.prompts takes several",
     "plugins": "it holds a list already, as in plugins=[a,b]",
     "render": "it changes no result",
@@ -46,12 +40,11 @@ class Point:
 
 @dataclass(frozen=True)
 class _Axis:
-    """A token and the tokens with one value each that it stands for."""
+    """A token and, by their value, the tokens with one value each that it stands for."""
 
     token: str
     key: str
-    values: tuple[str, ...]
-    tokens: tuple[str, ...]
+    tokens: dict[str, str]
 
 
 def expand(tokens: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:
@@ -69,20 +62,19 @@ def expand(tokens: Sequence[str], config_dir: Path | None = None) -> tuple[Point
     if config_dir is not None:
         check_config_dir(config_dir)
     axes = [_axis(token, config_dir) for token in tokens]
-    several = [axis for axis in axes if len(axis.values) > 1]
+    several = [axis for axis in axes if len(axis.tokens) > 1]
     for axis in several:
         if sum(other.key == axis.key for other in axes) > 1:
             raise ConfigError(f"{shown(axis.token)}: {axis.key} is given again beside its several values; give it once")
-    if prod(len(axis.values) for axis in axes) > MOST:
+    if prod(len(axis.tokens) for axis in axes) > MOST:
         asked = " ".join(shown(axis.token) for axis in several)
         raise ConfigError(f"{asked} asks for more than {MOST} cells; a run has no more, so make several of it")
-    indices = product(*(range(len(axis.values)) for axis in axes))
     return tuple(
         Point(
-            tuple(axis.tokens[i] for axis, i in zip(axes, chosen, strict=True)),
-            {axis.key: axis.values[i] for axis, i in zip(axes, chosen, strict=True) if axis in several},
+            tuple(axis.tokens[value] for axis, value in zip(axes, chosen, strict=True)),
+            {axis.key: value for axis, value in zip(axes, chosen, strict=True) if axis in several},
         )
-        for chosen in indices
+        for chosen in product(*(axis.tokens for axis in axes))
     )
 
 
@@ -93,20 +85,16 @@ def _axis(token: str, config_dir: Path | None) -> _Axis:
     # What Hydra could do beyond setting keys is refused when composing, with or without several values.
     other = override.is_delete() or override.package is not None or override.is_hydra_override()
     if other or not (everything or override.is_sweep_override()):
-        return _Axis(token, key, ("",), (token,))
-    _refuse_one_value(token, key)
-    values = tuple(dict.fromkeys(_values(override, token, config_dir)))
-    if not values:
-        raise ConfigError(f"{shown(token)} stands for no value at all")
-    return _Axis(token, key, values, tuple(f"{override.get_key_element()}={value}" for value in values))
-
-
-def _refuse_one_value(token: str, key: str) -> None:
+        return _Axis(token, key, {"": token})
     head = key.partition(".")[0]
     if head in ONE_VALUE or head in ROOT:
         reason = ONE_VALUE.get(head, "it belongs to the run as a whole")
         hint = f"; {TEXT_WITH_COMMAS.format(key=key)}" if head in ROOT and ROOT[head].kind is str else ""
         raise ConfigError(f"{shown(token)}: {key} takes one value, since {reason}{hint}")
+    tokens = {value: f"{override.get_key_element()}={value}" for value in _values(override, token, config_dir)}
+    if not tokens:
+        raise ConfigError(f"{shown(token)} stands for no value at all")
+    return _Axis(token, key, tokens)
 
 
 def _values(override: Any, token: str, config_dir: Path | None) -> Iterator[str]:  # noqa: ANN401 - Hydra's own class
@@ -129,11 +117,11 @@ def _values(override: Any, token: str, config_dir: Path | None) -> Iterator[str]
             for item in islice(override.sweep_iterator(Transformer.identity), MOST + 1):
                 if key not in LISTED:
                     yield _text(item, Transformer.str)
-                    continue
-                name = getattr(item, "text", item)
-                if name != ALL:
+                elif (name := getattr(item, "text", item)) == ALL:
+                    yield from known
+                else:
                     check_choice(key, name, config_dir)
-                yield from known if name == ALL else [str(name)]
+                    yield str(name)
         except (HydraException, ValueError) as err:
             if may_be_secret(token):
                 raise ConfigError(f"cannot read {shown(token)!r}") from None

@@ -6,22 +6,12 @@ from typing import Any
 
 from codriving.config.compose import compose
 from codriving.config.locate import conf_dir
-from codriving.config.overrides import parse
+from codriving.config.overrides import parse, shown
 from codriving.config.schema import unknown
-from codriving.config.secrets import shown
 from codriving.errors import ConfigError
 
 TRAININGS = "train"
 """The folder of these configs; it is no group, since a run has no training."""
-
-LLM = "llm"
-"""The group of language models, of which one can teach."""
-
-GUIDANCE = "guidance"
-"""The key that holds who teaches, where a student is guided."""
-
-SMOKE = "smoke"
-"""The key that holds what ``--smoke`` changes."""
 
 
 def trainings(config_dir: Path | None = None) -> dict[str, Path]:
@@ -59,44 +49,33 @@ def compose_training(
         config: dict[str, Any] = OmegaConf.to_container(OmegaConf.load(known[name]), resolve=True)  # type: ignore[assignment]
     except (OmegaConfBaseException, YAMLError) as err:
         raise ConfigError(f"cannot read {known[name]} ({' '.join(str(err).split())})") from err
-    small = config.pop(SMOKE, {})
-    if smoke:
-        for key, value in small.items():
-            _set(config, key, value)
-    asked = [token for token in overrides if token.partition("=")[0].partition(".")[0] == LLM]
-    if asked:
-        _teach(config, asked, config_dir)
-    for token in (token for token in overrides if token not in asked):
-        override = parse(token)
+    small = config.pop("smoke", {})
+    for key, value in small.items() if smoke else ():
+        _set(config, key, value)
+    teacher = [token for token in overrides if token.partition("=")[0].partition(".")[0] == "llm"]
+    if teacher:
+        if not config.get("guidance"):
+            raise ConfigError(f"{shown(teacher[0])}: nobody teaches in this training; it has no guidance.llm")
+        config["guidance"]["llm"] = compose(teacher, config_dir)["llm"]
+    for override, token in ((parse(token), token) for token in overrides if token not in teacher):
         if override.is_delete() or override.is_sweep_override():
             raise ConfigError(f"{shown(token)}: a training takes one value for each key")
         _set(config, override.key_or_group, override.value())
     return config
 
 
-def _teach(config: dict[str, Any], overrides: Sequence[str], config_dir: Path | None) -> None:
-    """Put the language model that ``llm=`` chooses, with its settings, in the place of the teacher."""
-    if not config.get(GUIDANCE):
-        raise ConfigError(f"{shown(overrides[0])}: nobody teaches in this training; it has no guidance.llm")
-    config[GUIDANCE][LLM] = compose(overrides, config_dir)[LLM]
-
-
 def _set(config: dict[str, Any], key: str, value: object) -> None:
     """Set a key that is there already; ``settings`` and ``reward`` may get others, which their classes check."""
     node: Any = config
-    where = ""
-    *path, last = key.split(".")
-    for part in path:
-        node, where = _inside(node, part, where, key), f"{where}.{part}" if where else part
-    if not (isinstance(node, Mapping) and path and path[-1] in ("settings", "reward")):
-        _inside(node, last, where, key)
-    node[int(last) if isinstance(node, list) else last] = value
-
-
-def _inside(node: object, part: str, where: str, key: str) -> Any:  # noqa: ANN401 - any plain value
-    """Return what stands in a node under a key, or in a list under a number."""
-    found = dict(enumerate(node)) if isinstance(node, list) else node if isinstance(node, Mapping) else {}
-    names = {str(name): value for name, value in found.items()}
-    if part not in names:
-        raise unknown(key, names, where or "the training")
-    return names[part]
+    path = key.split(".")
+    for depth, part in enumerate(path):
+        found = dict(enumerate(node)) if isinstance(node, list) else node if isinstance(node, Mapping) else {}
+        names = {str(name): name for name in found}
+        last = depth == len(path) - 1
+        checked_later = last and isinstance(node, Mapping) and path[depth - 1 : depth] in (["settings"], ["reward"])
+        if part not in names and not checked_later:
+            raise unknown(key, names, ".".join(path[:depth]) or "the training")
+        if last:
+            node[names.get(part, part)] = value
+        else:
+            node = node[names[part]]

@@ -1,0 +1,141 @@
+"""The commands: what each takes from the command line, handed on to the room that does it."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from codriving.cli.arguments import ConfigDir, Overrides, ShowConfig
+from codriving.cli.completion import PLURALS, complete_format, complete_group, complete_table
+from codriving.errors import ConfigError
+
+
+def run(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConfig = False) -> None:
+    """Drive a seeded batch of episodes and print its table.
+
+    The same command with the same run=NAME goes on where it was interrupted.
+    """
+    from codriving.experiment.run import RUN, run_command
+
+    raise typer.Exit(run_command(RUN, overrides or [], config_dir, cfg))
+
+
+def ablate(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConfig = False) -> None:
+    """Run the full method and each reasoning sub-module removed, on the same seeds, into one table."""
+    from codriving.experiment.run import ABLATE, run_command
+
+    raise typer.Exit(run_command(ABLATE, overrides or [], config_dir, cfg))
+
+
+def compare(
+    table: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="TABLE", help="Which table: baselines, single-vehicle, all or load.", autocompletion=complete_table
+        ),
+    ] = None,
+    overrides: Overrides = None,
+    config_dir: ConfigDir = None,
+    cfg: ShowConfig = False,
+) -> None:
+    """Drive every method of the paper on the same seeds, into one table beside the paper's.
+
+    baselines: each method against codriving. single-vehicle: those by which each CAV is on its own. all: both.
+    load: baselines with 4, 6, 8 and 12 CAVs. method=NAME adds a method of your own.
+    """
+    from codriving import experiment
+
+    raise typer.Exit(experiment.run_command(experiment.compare(table), overrides or [], config_dir, cfg))
+
+
+def learn(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConfig = False) -> None:
+    """Learn from so many interactions, then test what was learnt: success after each, as table and figure.
+
+    interactions=0,2,5,10,20 says after how many; scenario=all and three CDA levels are tested unless you name some.
+    The same command with the same run=NAME goes on where it was interrupted.
+    """
+    from codriving.experiment.learn import run_learn
+
+    raise typer.Exit(run_learn(overrides or [], config_dir, cfg))
+
+
+def check(overrides: Overrides = None, config_dir: ConfigDir = None) -> None:
+    """Ask a language model for one order and one decision, and show answer, form, latency, tokens and cost.
+
+    Exit code 0 if both were answered in form, 1 if a fallback was needed, 2 if the model cannot be reached.
+    """
+    from codriving.experiment import run_check
+
+    raise typer.Exit(run_check(overrides or [], config_dir))
+
+
+def replay(
+    run: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder, or the name of one under outputs/.")],
+    episode: Annotated[int | None, typer.Option(metavar="N", help="Its seed; the first one if not given.")] = None,
+    cell: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Which row of the table, or a part of its name; for a sweep.")
+    ] = None,
+    format: Annotated[
+        str | None, typer.Option(metavar="mp4|gif", help="mp4 if not given.", autocompletion=complete_format)
+    ] = None,
+    out: Annotated[Path | None, typer.Option(metavar="FILE", help="Beside the episode's record if not given.")] = None,
+    speed: Annotated[float | None, typer.Option(metavar="X", help="Seconds of driving a second of film: 1.")] = None,
+    fps: Annotated[float | None, typer.Option(metavar="X", help="Frames a second: 25, and 10 for a gif.")] = None,
+    scale: Annotated[float, typer.Option(metavar="X", help="0.5 to 4; at 1 a frame has 1280 x 720 pixels.")] = 1.0,
+    frame: Annotated[
+        float | None, typer.Option(metavar="T", help="A PNG of one moment [s] in place of a film.")
+    ] = None,
+    config_dir: ConfigDir = None,
+) -> None:
+    """Show a stored episode: road, vehicles, conflicts, what every CAV decides and why."""
+    from codriving.experiment.replay import ReplayOptions
+    from codriving.experiment.replay import replay as show
+
+    print(show(run, ReplayOptions(cell, episode, format, out, speed, fps, scale, frame, config_dir)))
+
+
+def train(
+    learner: Annotated[str, typer.Argument(metavar="LEARNER", help="What is trained: madqn, ppo or tell.")],
+    overrides: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[KEY=VALUE]...", help="Settings, for instance seed=2, decisions=300000 or run=second."),
+    ] = None,
+    family: Annotated[
+        str, typer.Option("--family", help="Roads to train for: junction (intersection, roundabout) or lanes.")
+    ] = "junction",
+    smoke: Annotated[bool, typer.Option("--smoke", help="A test of the machinery in less than two minutes.")] = False,
+    config_dir: ConfigDir = None,
+) -> None:
+    """Train a learner on the environment; the same command goes on where it was stopped.
+
+    Needs PyTorch: pip install 'codriving[train]'. Config, curve, checkpoint and weights are kept in outputs/train/NAME.
+    """
+    from codriving.training.command import run_training
+
+    raise typer.Exit(run_training(learner, family, overrides or [], smoke, config_dir))
+
+
+def list_choices(
+    group: Annotated[
+        str | None,
+        typer.Argument(metavar="[GROUP]", help=f"One of {', '.join(PLURALS)}.", autocompletion=complete_group),
+    ] = None,
+    config_dir: ConfigDir = None,
+) -> None:
+    """List what a group offers, or all groups."""
+    from codriving.config.choices import ALL, SWEPT, check_config_dir, choices, describe
+
+    if config_dir is not None:
+        check_config_dir(config_dir)
+    if group is not None and group not in PLURALS and group not in PLURALS.values():
+        raise ConfigError(f"unknown group {group!r}; choices: {', '.join(PLURALS)}")
+    for plural, singular in PLURALS.items():
+        found = choices(singular, config_dir)
+        several = singular in SWEPT and len(found) > 1
+        if group in (plural, singular):
+            for name, file in found.items():
+                print(f"{name:<20} {describe(file)}".rstrip())
+            if several:
+                print(f"{ALL:<20} Every one of these, in this order: one row of the table each.")
+        elif group is None:
+            print(f"{plural:<20} {', '.join([*found, *([f'or {ALL}'] if several else [])]) or '-'}")
