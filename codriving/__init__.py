@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from codriving.experiment import Comparison, Results
-    from codriving.gym.parallel import ParallelDriving
+    from codriving.gym import ParallelDriving
 
 __all__ = ["__version__", "compare", "parallel_env", "run"]
 
@@ -74,6 +74,6 @@ def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDrivin
         >>> env = codriving.parallel_env("intersection", cavs=6, cda="status_sharing")  # doctest: +SKIP
         >>> observations, infos = env.reset(seed=0)  # doctest: +SKIP
     """
-    from codriving.gym.parallel import ParallelDriving
+    from codriving.gym import ParallelDriving
 
     return ParallelDriving(name, *overrides, **settings)

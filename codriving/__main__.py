@@ -1,6 +1,6 @@
 """`python -m codriving` is the command line."""
 
-from codriving.cli.app import main
+from codriving.cli import main
 
 if __name__ == "__main__":
     main()

@@ -3,17 +3,20 @@
 What a rule of one's own needs is here by name; see docs/methods/README.md.
 """
 
-from codriving.datatypes.order import ApproachingVehicle, Instance
-from codriving.reasoning.ordering.protocol import (
+from codriving.datatypes import ApproachingVehicle, Instance
+from codriving.reasoning import (
     JointPlan,
     JointPlanner,
     Ordering,
     OrderRule,
     Request,
     best_subset,
+    evacuation_time,
     in_order,
+    repaired,
+    schedule,
+    total_delay,
 )
-from codriving.reasoning.ordering.schedule import evacuation_time, repaired, schedule, total_delay
 
 __all__ = [
     "ApproachingVehicle",

@@ -5,14 +5,26 @@ What a scenario is made of can be imported from here, for scenarios of your own:
 which draws a scene.
 """
 
-from codriving.datatypes.parts import Scenario
-from codriving.datatypes.road import Arc, Block, Lane, LaneId, Line, Point, Road, Route, Sine, Straight, Turn
-from codriving.datatypes.world import Kind, Scene, Start
-from codriving.environment.scenarios.pace import Pace
-from codriving.environment.scenarios.placement import Crowd, place
-from codriving.environment.scenarios.shapes import bend, turned
+from codriving.datatypes import (
+    Arc,
+    Block,
+    Kind,
+    Lane,
+    LaneId,
+    Line,
+    Point,
+    Road,
+    Route,
+    Scenario,
+    Scene,
+    Sine,
+    Start,
+    Straight,
+    Turn,
+)
+from codriving.environment import Crowd, Pace, bend, place, turned
 from codriving.errors import require, require_interval, require_range
-from codriving.geometry.lane_path import lane_starts
+from codriving.geometry import lane_starts
 
 __all__ = [
     "Arc",

@@ -3,6 +3,7 @@
 Places and sizes on a frame are in logical pixels, x to the right and y downwards; those of the world are in metres.
 """
 
+from codriving.animation.film import EpisodeFilm, Frame, write_png
 from codriving.animation.live import LivePicture
 
-__all__ = ["LivePicture"]
+__all__ = ["EpisodeFilm", "Frame", "LivePicture", "write_png"]

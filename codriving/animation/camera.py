@@ -6,31 +6,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.animation.window import Area, Window, bounds, rows
-from codriving.datatypes.record import Track, Trajectory
-from codriving.datatypes.world import Kind
-from codriving.geometry.lane_path import lane_path
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Kind, Track, Trajectory
+from codriving.geometry import RoadMap, lane_path
 
-CLOSEST = 8.0
-"""The view of a compact road is never closer than so many pixels a metre."""
+CLOSEST = 8.0  # The view of a compact road is never closer than so many pixels a metre
 
-MARGIN = 9.0
-"""Around what has to be seen [m]."""
+MARGIN = 9.0  # Around what has to be seen [m]
 
-_ROW_MARGIN = 6.0
-"""The same around lanes in rows: half a lane, and room for names [m]."""
+_ROW_MARGIN = 6.0  # The same around lanes in rows: half a lane, and room for names [m]
 
-_LONG = 4.0
-"""A road that is so many times as long as it is wide may be cut into rows; a junction never is."""
+_LONG = 4.0  # A road that is so many times as long as it is wide may be cut into rows; a junction never is
 
+# If all come from one side up to the middle of the shared part, the world is about half as large around that.
 _NEAR = 0.45
-"""If all come from one side up to the middle of the shared part, the world is about half as large around that."""
 
-_EVERY = 0.1
-"""Time between two places of the camera [s]."""
+_EVERY = 0.1  # Time between two places of the camera [s]
 
-_CALM = 1.6
-"""How slowly the camera moves: width of the bell by which its way is smoothed [s]."""
+_CALM = 1.6  # How slowly the camera moves: width of the bell by which its way is smoothed [s]
 
 
 class Camera:
@@ -54,11 +46,7 @@ class Camera:
 
 
 def overview(points: NDArray[np.float64], road_map: RoadMap, view: Area) -> tuple[Window, ...]:
-    """Return windows through which points of the world are seen, in one view or in rows.
-
-    Args:
-        points: What has to be seen (n, 2) [m].
-    """
+    """Return windows through which points of the world are seen, in one view or in rows."""
     lanes = np.concatenate([lane_path(lane, spacing=5.0).points for lane in road_map.road.lanes])
     whole, box = bounds(lanes), bounds(points)
     if max(whole.width, whole.height) < _LONG * min(whole.width, whole.height):
@@ -81,11 +69,7 @@ def _around(points: NDArray[np.float64], road_map: RoadMap, view: Area) -> Windo
 
 
 def fitting(points: NDArray[np.float64], x: float, y: float, view: Area) -> float:
-    """Return how large the world may be shown around a place so that points are seen [px/m].
-
-    Args:
-        points: Points (n, 2) [m].
-    """
+    """Return how large the world may be shown around a place so that points are seen [px/m]."""
     far_x, far_y = np.abs(points - (x, y)).max(0) + MARGIN
     return float(min(view.width / 2 / far_x, view.height / 2 / far_y, CLOSEST))
 

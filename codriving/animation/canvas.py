@@ -17,8 +17,7 @@ from matplotlib.transforms import Affine2D, Bbox
 from numpy.typing import ArrayLike, NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-_CAPITAL = 0.73
-"""Height of a capital of DejaVu Sans, as a part of the size."""
+_CAPITAL = 0.73  # Height of a capital of DejaVu Sans, as a part of the size
 
 Floats = NDArray[np.float32]
 
@@ -53,12 +52,7 @@ def text_width(words: str, size: float, bold: bool) -> float:
 
 @lru_cache(maxsize=4096)
 def stamp(words: str, size: float, bold: bool, colour: str, halo: str | None, rim: int) -> Stamp:
-    """Cut the stamp of a line of text.
-
-    Args:
-        halo: Colour of a rim around them, or None.
-        rim: Width of the rim [px].
-    """
+    """Cut the stamp of a line of text."""
     font = _font(size, bold)
     left, top, right, bottom = font.getbbox(words, stroke_width=rim, anchor="ls")
     x, y = int(np.floor(left)), int(np.floor(top))
@@ -76,11 +70,7 @@ def stamp(words: str, size: float, bold: bool, colour: str, halo: str | None, ri
 
 
 class Shape:
-    """Lines or areas, any number of them.
-
-    Args:
-        parts: Points of each part (n, 2).
-    """
+    """Lines or areas, any number of them."""
 
     def __init__(self, parts: Iterable[ArrayLike], closed: bool = False) -> None:
         points = [np.asarray(part, dtype=float) for part in parts]
@@ -93,11 +83,9 @@ class Shape:
 
 Pixels = NDArray[np.uint8]
 
-_RENDERER: Any = backend_agg.RendererAgg
-"""Its module has no annotations."""
+_RENDERER: Any = backend_agg.RendererAgg  # Its module has no annotations
 
-_DPI = 72
-"""At which Agg's points are pixels."""
+_DPI = 72  # At which Agg's points are pixels
 
 
 class Canvas:
@@ -129,20 +117,11 @@ class Canvas:
     def polygon(
         self, points: ArrayLike, fill: str | None = None, stroke: str | None = None, width: float = 1.0
     ) -> None:
-        """Draw a closed shape.
-
-        Args:
-            points: Its corners (n, 2) [px].
-        """
+        """Draw a closed shape."""
         self.shape(Shape([points], closed=True), None, fill, stroke, width)
 
     def line(self, points: ArrayLike, colour: str, width: float, dash: Sequence[float] = ()) -> None:
-        """Draw a line through points.
-
-        Args:
-            points: Points (n, 2) [px].
-            dash: Lengths of dashes and gaps in turn [px]; none for a full line.
-        """
+        """Draw a line through points."""
         self.shape(Shape([points]), None, None, colour, width, dash)
 
     def box(
@@ -161,12 +140,7 @@ class Canvas:
         width: float = 1.0,
         dash: Sequence[float] = (),
     ) -> None:
-        """Draw a shape that was prepared before.
-
-        Args:
-            matrix: From its units to pixels (3, 3), for points as columns (x, y, 1); None if it is in pixels.
-            dash: Lengths of dashes and gaps in turn [px]; none for a full line.
-        """
+        """Draw a shape that was prepared before."""
         pen = self._pen
         pen.set_clip_rectangle(self._clip)
         pen.set_linewidth(width * self.scale if stroke else 0.0)

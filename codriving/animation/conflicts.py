@@ -8,10 +8,8 @@ from codriving.animation.canvas import Canvas
 from codriving.animation.content import DrawnConflict, DrawnVehicle
 from codriving.animation.style import BAND, HALO, PAPER, SEVERITIES
 from codriving.animation.window import Area, FreeSpace, Points, Window, beside
-from codriving.datatypes.order import Severity
-from codriving.datatypes.world import Kind
-from codriving.geometry.path import Path
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Kind, Severity
+from codriving.geometry import Path, RoadMap
 
 _RANK = {severity: rank for rank, severity in enumerate(SEVERITIES)}
 
@@ -81,11 +79,7 @@ class ConflictLayer:
 def conflict_lines(
     meeting: DrawnConflict, bodies: Mapping[str, DrawnVehicle], road_map: RoadMap
 ) -> tuple[Points, list[Points]]:
-    """Return where two vehicles would meet, and the ways of the two until there.
-
-    Returns:
-        A point (2,) and lines (n, 2) [m]. Where one only follows the other, the point lies between them.
-    """
+    """Return where two vehicles would meet, and the ways of the two until there."""
     pair = bodies[meeting.one], bodies[meeting.other]
     ends = np.array([(body.x, body.y) for body in pair])
     middle = ends.mean(axis=0)

@@ -6,10 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from codriving.datatypes.order import Relation, Severity
-from codriving.datatypes.record import Outcome, Track, Trajectory
-from codriving.datatypes.world import Action, Kind
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Action, Kind, Outcome, Relation, Severity, Track, Trajectory
+from codriving.geometry import RoadMap
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,9 +183,6 @@ def _ways(conflict: Mapping[str, Any], road_map: RoadMap) -> tuple[tuple[str, fl
 class StoredFrames:
     """The moments of one episode.
 
-    Args:
-        decisions: Lines of ``decisions.jsonl``, by time; what another method wrote differently is not shown.
-
     Attributes:
         duration: Time from the first row to the last [s].
     """
@@ -202,11 +197,7 @@ class StoredFrames:
         self.duration = max((t.first_step + len(t.x) - 1) * trajectory.step for t in trajectory.tracks)
 
     def at(self, time: float) -> FrameContent:
-        """Return what there was at a moment.
-
-        Args:
-            time: Simulated time [s]; after the end it is as at the end.
-        """
+        """Return what there was at a moment."""
         time = min(max(time, 0.0), self.duration)
         k = int(np.searchsorted(self._times, time + 1e-6, side="right")) - 1
         decided = self._decided[k] if k >= 0 else FrameContent(time)

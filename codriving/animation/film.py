@@ -19,11 +19,9 @@ from codriving.animation.camera import Camera
 from codriving.animation.content import StoredFrames
 from codriving.animation.panel import natural
 from codriving.animation.picture import Picture
-from codriving.datatypes.record import EpisodeRecord, Trajectory
-from codriving.datatypes.road import Road
-from codriving.datatypes.world import Kind
+from codriving.datatypes import EpisodeRecord, Kind, Road, Trajectory
 from codriving.errors import FilmError
-from codriving.geometry.road_map import road_map
+from codriving.geometry import road_map
 
 MP4, GIF = "mp4", "gif"
 
@@ -54,11 +52,7 @@ class Reel:
 
 
 def write_film(path: Path, reel: Reel, frames: Iterator[Frame], samples: Sequence[Frame] = ()) -> int:
-    """Write a film; only one frame at a time is in memory.
-
-    Raises:
-        FilmError: If ffmpeg cannot be started or gives up.
-    """
+    """Write a film; only one frame at a time is in memory."""
     with tempfile.TemporaryDirectory(prefix="codriving-") as folder:
         palette = Path(folder, "palette.png")
         if reel.format == GIF:
@@ -130,14 +124,11 @@ def write_png(path: Path, frame: Frame) -> None:
     Image.fromarray(frame).convert("RGB").save(path, format="PNG", optimize=True)
 
 
-WIDTH, HEIGHT = 1280.0, 720.0
-"""Size of a frame at scale 1 [px]."""
+WIDTH, HEIGHT = 1280.0, 720.0  # Size of a frame at scale 1 [px]
 
-_HOLD = 2.0
-"""How long the last frame stands [s of film]."""
+_HOLD = 2.0  # How long the last frame stands [s of film]
 
-_SAMPLES = 8
-"""Frames from which a GIF takes its colours."""
+_SAMPLES = 8  # Frames from which a GIF takes its colours
 
 
 class EpisodeFilm:

@@ -8,20 +8,14 @@ import numpy as np
 from codriving.animation.canvas import Canvas, Shape
 from codriving.animation.style import ASPHALT, FAINT, GREEN, GROUND, INK, ORANGE, PAINT
 from codriving.animation.window import Points, Window
-from codriving.datatypes.road import Lane, Line, Straight
-from codriving.geometry.box import corners
-from codriving.geometry.lane_path import lane_path
-from codriving.geometry.path import Path
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Lane, Line, Straight
+from codriving.geometry import Path, RoadMap, corners, lane_path
 
-_DASH, _SPACE = 3.0, 4.5
-"""A painted dash and the gap after it [m]."""
+_DASH, _SPACE = 3.0, 4.5  # A painted dash and the gap after it [m]
 
-_PAINT = 0.18
-"""Width of a painted line [m]."""
+_PAINT = 0.18  # Width of a painted line [m]
 
-_MARKS = 50.0
-"""Distance between two marks beside a long road [m]."""
+_MARKS = 50.0  # Distance between two marks beside a long road [m]
 
 
 class Ground:
@@ -69,14 +63,7 @@ class Ground:
 
 
 def side(way: Path, offset: float) -> Points:
-    """Return the line that runs beside a way.
-
-    Args:
-        offset: How far to its right [m].
-
-    Returns:
-        Points (n, 2) [m].
-    """
+    """Return the line that runs beside a way."""
     across = np.column_stack((-np.sin(way.headings), np.cos(way.headings)))
     points: Points = way.points + offset * across
     return points

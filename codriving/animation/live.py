@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from codriving.animation.content import DrawnDecision, DrawnVehicle, FrameContent, deliberated
 from codriving.animation.style import check_size
-from codriving.datatypes.record import Outcome
-from codriving.datatypes.world import Action, Kind, WorldState
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Action, Kind, Outcome, WorldState
+from codriving.geometry import RoadMap
 
 if TYPE_CHECKING:
     from codriving.animation.picture import Picture

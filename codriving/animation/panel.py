@@ -12,10 +12,9 @@ from codriving.animation.signs import action_glyph, tick
 from codriving.animation.style import BAND, BLUE, FAINT, GREEN, HAIR, INK, KINDS, PAPER, SEVERITIES
 from codriving.animation.vehicles import draw_plan, draw_vehicles
 from codriving.animation.window import Area, Window
-from codriving.datatypes.world import Kind
+from codriving.datatypes import Kind
 
-_FIRST, _LINE, _GAP = 20.0, 16.0, 8.0
-"""Heights of a card's first line, of its others, and of the space after it [px]."""
+_FIRST, _LINE, _GAP = 20.0, 16.0, 8.0  # Heights of a card's first line, of its others, and of the space after it [px]
 
 _MOST_LINES = 4
 _NAME, _WORD, _SMALL = 14.0, 13.0, 12.0
@@ -99,8 +98,7 @@ def natural(name: str) -> tuple[str, int, str]:
     return stem, int(digits) if digits else -1, name
 
 
-LEGEND = 104.0
-"""Height of the legend [px]."""
+LEGEND = 104.0  # Height of the legend [px]
 
 _LETTERS = 11.0
 _ROW = 21.0
@@ -134,8 +132,7 @@ def _window(left: float, y: float, zoom: float) -> Window:
 
 
 _EDGE = 20.0
-_HEAD = 64.0
-"""Height of the title [px]."""
+_HEAD = 64.0  # Height of the title [px]
 
 _PER_ROW, _CHIP, _MOST_ROWS = 5, 21.0, 3
 

@@ -12,9 +12,8 @@ from codriving.animation.signs import cross, target, tick
 from codriving.animation.style import GREEN, GROUND, INK, PANEL, PAPER, VERMILION
 from codriving.animation.vehicles import draw_names, draw_plan, draw_vehicles, way_ahead
 from codriving.animation.window import Area, FreeSpace, Window
-from codriving.datatypes.record import Ending, Outcome
-from codriving.datatypes.world import Kind
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Ending, Kind, Outcome
+from codriving.geometry import RoadMap
 
 
 def sentence(outcome: Outcome, cavs: int) -> str:
@@ -77,11 +76,7 @@ class Picture:
         return rows, columns
 
     def draw(self, moment: FrameContent, windows: tuple[Window, ...]) -> NDArray[np.uint8]:
-        """Draw a frame.
-
-        Returns:
-            The frame (rows, columns, 4), RGBA; valid until the next one is drawn.
-        """
+        """Draw a frame."""
         canvas = self._canvas
         self._lay_ground(windows)
         meetings = ConflictLayer(moment.meetings, moment.bodies, self.road_map)
@@ -107,11 +102,7 @@ class Picture:
         return canvas.pixels
 
     def rgb(self, moment: FrameContent, windows: tuple[Window, ...]) -> NDArray[np.uint8]:
-        """Draw a frame that may be kept.
-
-        Returns:
-            The frame (rows, columns, 3), RGB.
-        """
+        """Draw a frame that may be kept."""
         from PIL import Image
 
         # Pillow drops the opacity several times faster than slicing does.

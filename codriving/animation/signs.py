@@ -4,7 +4,7 @@ import numpy as np
 
 from codriving.animation.canvas import Canvas
 from codriving.animation.style import ACTIONS, PAPER, VERMILION
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action
 
 _UP = np.array([(-0.5, 0.1), (0.0, -0.4), (0.5, 0.1)])
 _LEFT = np.array([(0.5, 0.0), (-0.5, 0.0), (-0.1, -0.4), (-0.5, 0.0), (-0.1, 0.4)])
@@ -12,6 +12,7 @@ _BAR = np.array([(-0.5, 0.0), (0.5, 0.0)])
 _DOWN, _RIGHT = _UP * (1, -1), _LEFT * (-1, 1)
 _LOW = np.array([0.0, 0.45])
 
+# Lines of each sign, as parts of its size.
 SIGNS = {
     Action.FASTER: (_UP, _UP + _LOW),
     Action.SLOWER: (_DOWN, _DOWN - _LOW),
@@ -19,7 +20,6 @@ SIGNS = {
     Action.LANE_LEFT: (_LEFT,),
     Action.LANE_RIGHT: (_RIGHT,),
 }
-"""Lines of each sign, as parts of its size."""
 
 
 def action_glyph(canvas: Canvas, action: Action, x: float, y: float, size: float) -> None:

@@ -10,14 +10,12 @@ from codriving.animation.content import DrawnVehicle, FrameContent
 from codriving.animation.signs import action_glyph
 from codriving.animation.style import BLUE, HALO, INK, KINDS, PAPER
 from codriving.animation.window import FreeSpace, Points, Window, beside, bounds
-from codriving.datatypes.world import Kind
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Kind
+from codriving.geometry import RoadMap
 
-_SMALLEST = 15.0
-"""A vehicle is never drawn shorter [px]; far away it is a symbol."""
+_SMALLEST = 15.0  # A vehicle is never drawn shorter [px]; far away it is a symbol
 
-_LETTERS = 12.0
-"""Size of a name [px]."""
+_LETTERS = 12.0  # Size of a name [px]
 
 
 def draw_vehicles(canvas: Canvas, window: Window, bodies: Sequence[DrawnVehicle]) -> None:
@@ -38,8 +36,8 @@ def draw_vehicles(canvas: Canvas, window: Window, bodies: Sequence[DrawnVehicle]
 _CAV = np.array([(0.5, 0.0), (0.28, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.28, -0.5)])
 _ROOF = np.array([(0.30, 0.0), (0.08, 0.26), (0.08, -0.26)])
 _HDV = np.array([(0.44, 0.36), (-0.44, 0.36), (-0.44, -0.36), (0.44, -0.36)])
+# Outlines in lengths and widths of the vehicle, its front to the right.
 _GLASS = np.array([(0.22, 0.30), (0.22, -0.30)])
-"""Outlines in lengths and widths of the vehicle, its front to the right."""
 
 
 def _outline(window: Window, body: DrawnVehicle, shape: Points) -> Points:
@@ -70,19 +68,13 @@ def draw_names(canvas: Canvas, window: Window, space: FreeSpace, moment: FrameCo
         canvas.text(x + name + sign, y, f"{body.speed:.1f}", _LETTERS - 1, INK, halo=HALO)
 
 
-_AHEAD = 70.0
-"""How far a plan is shown [m]."""
+_AHEAD = 70.0  # How far a plan is shown [m]
 
-_STEP = 2.0
-"""Distance between two points of a plan [m]."""
+_STEP = 2.0  # Distance between two points of a plan [m]
 
 
 def way_ahead(road_map: RoadMap, body: DrawnVehicle) -> Points | None:
-    """Return the way that a vehicle plans to drive next.
-
-    Returns:
-        Points (n, 2) [m], or None if it is not known or has been driven.
-    """
+    """Return the way that a vehicle plans to drive next."""
     path = road_map.paths.get(body.route or "")
     if path is None or body.route is None:
         return None
@@ -100,11 +92,7 @@ def way_ahead(road_map: RoadMap, body: DrawnVehicle) -> Points | None:
 
 
 def draw_plan(canvas: Canvas, window: Window, way: Points) -> None:
-    """Draw a way with an arrow at its end.
-
-    Args:
-        way: Points (n, 2) [m].
-    """
+    """Draw a way with an arrow at its end."""
     if not window.sees(way, 10.0):
         return
     placed = window.place(way)

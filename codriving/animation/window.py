@@ -8,16 +8,13 @@ from numpy.typing import ArrayLike, NDArray
 
 Points = NDArray[np.float64]
 
-LARGEST = 12.0
-"""Beyond this many pixels a metre nothing is gained."""
+LARGEST = 12.0  # Beyond this many pixels a metre nothing is gained
 
 MOST_ROWS = 8
 
-GAP = 12.0
-"""Between two rows [px]."""
+GAP = 12.0  # Between two rows [px]
 
-TWICE = 12.0
-"""How much of the road is seen at the end of one row and again at the beginning of the next, at least [m]."""
+TWICE = 12.0  # How much of the road is seen at the end of one row and again at the beginning of the next, at least [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,14 +61,7 @@ class Window:
         return Area(a.left + left, a.top, a.width - left - right, a.height)
 
     def place(self, points: ArrayLike) -> Points:
-        """Return where points of the world are on the frame.
-
-        Args:
-            points: Points (..., 2) [m].
-
-        Returns:
-            Points (..., 2) [px].
-        """
+        """Return where points of the world are on the frame."""
         offset = (np.asarray(points, dtype=float) - (self.x, self.y)) * self.zoom
         if self.turned:
             offset = np.stack((offset[..., 1], -offset[..., 0]), axis=-1)
@@ -87,20 +77,11 @@ class Window:
         return np.array([(*linear[0], shift[0]), (*linear[1], shift[1]), (0.0, 0.0, 1.0)])
 
     def sees(self, points: ArrayLike, margin: float = 0.0) -> bool:
-        """Tell whether any of some points of the world, or what lies between them, can be seen.
-
-        Args:
-            points: Points (n, 2) [m].
-            margin: How far outside still counts [px].
-        """
+        """Tell whether any of some points of the world, or what lies between them, can be seen."""
         return self._within(self.area.padded(margin), points)
 
     def owns(self, point: ArrayLike) -> bool:
-        """Tell whether a point of the world is seen here and in no other row.
-
-        Args:
-            point: Point (2,) [m].
-        """
+        """Tell whether a point of the world is seen here and in no other row."""
         return self._within(self.core, point)
 
     def _within(self, a: Area, points: ArrayLike) -> bool:
@@ -112,21 +93,13 @@ class Window:
 
 
 def bounds(points: Points) -> Area:
-    """Return the smallest upright rectangle around points.
-
-    Args:
-        points: Points (n, 2).
-    """
+    """Return the smallest upright rectangle around points."""
     low, high = points.min(0), points.max(0)
     return Area(float(low[0]), float(low[1]), float(high[0] - low[0]), float(high[1] - low[1]))
 
 
 def rows(box: Area, area: Area) -> tuple[Window, ...]:
-    """Show a part of the world as large as it gets; one that is long and narrow is cut into rows, as text is.
-
-    Args:
-        box: Part of the world [m].
-    """
+    """Show a part of the world as large as it gets; one that is long and narrow is cut into rows, as text is."""
     turned = box.height > 1.5 * box.width
     long, wide = (box.height, box.width) if turned else (box.width, box.height)
 
@@ -151,11 +124,7 @@ def rows(box: Area, area: Area) -> tuple[Window, ...]:
 
 
 class FreeSpace:
-    """What is taken of a part of the frame.
-
-    Args:
-        frame: The part [px]; words never leave it.
-    """
+    """What is taken of a part of the frame."""
 
     def __init__(self, frame: Area) -> None:
         self._frame = frame
@@ -166,11 +135,7 @@ class FreeSpace:
         self._taken.append(area)
 
     def find(self, options: Sequence[Area]) -> Area:
-        """Take the first place that covers nothing, or the one that covers least.
-
-        Args:
-            options: Places, the best first [px].
-        """
+        """Take the first place that covers nothing, or the one that covers least."""
         best, least = self._inside(options[0]), float("inf")
         for option in options:
             place = self._inside(option)

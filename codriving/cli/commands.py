@@ -15,14 +15,14 @@ def run(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConf
 
     The same command with the same run=NAME goes on where it was interrupted.
     """
-    from codriving.experiment.run import RUN, run_command
+    from codriving.experiment import RUN, run_command
 
     raise typer.Exit(run_command(RUN, overrides or [], config_dir, cfg))
 
 
 def ablate(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConfig = False) -> None:
     """Run the full method and each reasoning sub-module removed, on the same seeds, into one table."""
-    from codriving.experiment.run import ABLATE, run_command
+    from codriving.experiment import ABLATE, run_command
 
     raise typer.Exit(run_command(ABLATE, overrides or [], config_dir, cfg))
 
@@ -43,9 +43,10 @@ def compare(
     baselines: each method against codriving. single-vehicle: those by which each CAV is on its own. all: both.
     load: baselines with 4, 6, 8 and 12 CAVs. method=NAME adds a method of your own.
     """
-    from codriving import experiment
+    from codriving.experiment import compare as comparison
+    from codriving.experiment import run_command
 
-    raise typer.Exit(experiment.run_command(experiment.compare(table), overrides or [], config_dir, cfg))
+    raise typer.Exit(run_command(comparison(table), overrides or [], config_dir, cfg))
 
 
 def learn(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConfig = False) -> None:
@@ -54,7 +55,7 @@ def learn(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowCo
     interactions=0,2,5,10,20 says after how many; scenario=all and three CDA levels are tested unless you name some.
     The same command with the same run=NAME goes on where it was interrupted.
     """
-    from codriving.experiment.learn import run_learn
+    from codriving.experiment import run_learn
 
     raise typer.Exit(run_learn(overrides or [], config_dir, cfg))
 
@@ -88,8 +89,8 @@ def replay(
     config_dir: ConfigDir = None,
 ) -> None:
     """Show a stored episode: road, vehicles, conflicts, what every CAV decides and why."""
-    from codriving.experiment.replay import ReplayOptions
-    from codriving.experiment.replay import replay as show
+    from codriving.experiment import ReplayOptions
+    from codriving.experiment import replay as show
 
     print(show(run, ReplayOptions(cell, episode, format, out, speed, fps, scale, frame, config_dir)))
 
@@ -110,7 +111,7 @@ def train(
 
     Needs PyTorch: pip install 'codriving[train]'. Config, curve, checkpoint and weights are kept in outputs/train/NAME.
     """
-    from codriving.training.command import run_training
+    from codriving.training import run_training
 
     raise typer.Exit(run_training(learner, family, overrides or [], smoke, config_dir))
 
@@ -123,7 +124,7 @@ def list_choices(
     config_dir: ConfigDir = None,
 ) -> None:
     """List what a group offers, or all groups."""
-    from codriving.config.choices import ALL, SWEPT, check_config_dir, choices, describe
+    from codriving.config import ALL, SWEPT, check_config_dir, choices, describe
 
     if config_dir is not None:
         check_config_dir(config_dir)

@@ -7,12 +7,24 @@ from pathlib import Path
 
 import typer
 
-from codriving.config.choices import ALL, EXPERIMENTS, LISTED, SWEPT, TABLES, choices, default_choice, describe, values
-from codriving.config.locate import conf_dir
-from codriving.config.plugins import PLUGINS
-from codriving.config.schema import GROUPS, ROOT
+from codriving.config import (
+    ALL,
+    EXPERIMENTS,
+    GROUPS,
+    LISTED,
+    PLUGINS,
+    ROOT,
+    SWEPT,
+    TABLES,
+    choices,
+    conf_dir,
+    default_choice,
+    describe,
+    values,
+)
 from codriving.errors import ConfigError
 
+# How `codriving list` calls the groups.
 PLURALS = {
     "scenarios": "scenario",
     "methods": "method",
@@ -23,7 +35,6 @@ PLURALS = {
     "launchers": "launcher",
     "experiments": EXPERIMENTS,
 }
-"""How `codriving list` calls the groups."""
 
 
 def complete_group(incomplete: str) -> list[str]:

@@ -1,1 +1,30 @@
 """Overrides to config to objects: the only door to Hydra and OmegaConf."""
+
+from codriving.config.build import TARGET, asks_for, build, targets, validate
+from codriving.config.choices import (
+    ALL,
+    EXPERIMENTS,
+    LISTED,
+    SWEPT,
+    TABLES,
+    TAKING_PART,
+    check_config_dir,
+    choices,
+    default_choice,
+    describe,
+    values,
+)
+from codriving.config.compose import compose, compose_named, show
+from codriving.config.locate import conf_dir, experiments_dir
+from codriving.config.overrides import check_choice, parse
+from codriving.config.plugins import PLUGINS
+from codriving.config.schema import GROUPS, LARGEST_SEED, ROOT
+from codriving.config.sweep import Point, expand
+from codriving.config.training import compose_training, trainings
+
+__all__ = [
+    "ALL", "EXPERIMENTS", "GROUPS", "LARGEST_SEED", "LISTED", "PLUGINS", "ROOT", "SWEPT", "TABLES", "TAKING_PART",
+    "TARGET", "Point", "asks_for", "build", "check_choice", "check_config_dir", "choices", "compose", "compose_named",
+    "compose_training", "conf_dir", "default_choice", "describe", "expand", "experiments_dir", "parse", "show",
+    "targets", "trainings", "validate", "values",
+]  # fmt: skip

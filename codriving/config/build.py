@@ -10,15 +10,15 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 from codriving.config.schema import check_root, texts, unknown
 from codriving.config.target import find_class
-from codriving.datatypes.parts import CaseMemory, Method, Metric, Model, Scenario, Simulator
+from codriving.datatypes import CaseMemory, Method, Metric, Model, Scenario, Simulator
 from codriving.errors import ConfigError
 
 T = TypeVar("T")
 
 TARGET = "_target_"
 
+# Objects that are handed to every constructor that has a parameter annotated with their class.
 Given = Mapping[type, object]
-"""Objects that are handed to every constructor that has a parameter annotated with their class."""
 
 
 def build(node: object, expected: type[T], key: str = "", plugins: Sequence[str] = (), given: Given | None = None) -> T:
@@ -161,9 +161,6 @@ def coerce(value: object, wanted: Any) -> object:  # noqa: ANN401 - an annotatio
     Whole numbers become floats where a float is wanted, lists become tuples, texts become members of an enumeration or
     paths. Nothing else is converted: ``"5"`` is not 5 and ``4.0`` is not a number of cars. What is not a plain type is
     left to the constructor.
-
-    Raises:
-        MismatchError: If the value does not fit.
     """
     wanted = type(None) if wanted is None else wanted
     origin, parts = get_origin(wanted), get_args(wanted)

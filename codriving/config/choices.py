@@ -7,40 +7,38 @@ from codriving.config.locate import conf_dir, experiments_root
 from codriving.config.schema import GROUPS
 from codriving.errors import ConfigError
 
-EXPERIMENTS = "experiments"
-"""The group of deltas that reproduce one table or figure each."""
+EXPERIMENTS = "experiments"  # The group of deltas that reproduce one table or figure each
 
-LISTED = (*GROUPS, EXPERIMENTS)
-"""Every group that has choices."""
+LISTED = (*GROUPS, EXPERIMENTS)  # Every group that has choices
 
+# Groups of which one command can take every choice; a snapshot has to be named, so not every memory can be taken.
 SWEPT = tuple(group for group in GROUPS if group not in ("launcher", "memory"))
-"""Groups of which one command can take every choice; a snapshot has to be named, so not every memory can be taken."""
 
-ALL = "all"
-"""The word for every choice of a group; no YAML may be called so."""
+ALL = "all"  # The word for every choice of a group; no YAML may be called so
 
+# The methods of the paper's comparison, in its order; some may have no YAML yet.
 COMPARED = ("fcfs", "idfst", "mcts", "coop_game", "madqn", "dilu", "codriving")
-"""The methods of the paper's comparison, in its order; some may have no YAML yet."""
 
+# The methods by which each CAV is on its own, in the order of the authors' extra comparison, against codriving.
 SINGLE_VEHICLE = ("pidm", "noncoop_game", "ppo", "tell", "dilu", "codriving")
-"""The methods by which each CAV is on its own, in the order of the authors' extra comparison, against codriving."""
 
+# The methods of each table, in its order: those of the paper, then those for a single vehicle, then codriving.
 TAKING_PART = {
     "baselines": COMPARED,
     "single-vehicle": SINGLE_VEHICLE,
     "all": (*dict.fromkeys((*COMPARED[:-1], *SINGLE_VEHICLE)),),
     "load": COMPARED,
 }
-"""The methods of each table, in its order: those of the paper, then those for a single vehicle, then codriving."""
 
+# What `codriving compare` makes.
 TABLES = {
     "baselines": "The methods of the paper's comparison, each against codriving.",
     "single-vehicle": "The methods for a single vehicle, each against codriving.",
     "all": "The methods of both tables, each against codriving.",
     "load": "The methods of the first table with 4, 6, 8 and 12 CAVs.",
 }
-"""What `codriving compare` makes."""
 
+# Choices that come before the others: in the paper's order, or from the least to the most; the rest goes by name.
 FIRST = {
     "scenario": ("intersection", "roundabout", "highway", "merge"),
     "method": TAKING_PART["all"],
@@ -49,7 +47,6 @@ FIRST = {
     "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),
 }
-"""Choices that come before the others: in the paper's order, or from the least to the most; the rest goes by name."""
 
 _LINE = re.compile(r"^(\w+):[^\S\n]*([^#\n]*)", re.MULTILINE)
 _PARENT = re.compile(r"\[(_\w+), _self_\]")

@@ -94,11 +94,7 @@ def _check_together(resolved: Mapping[str, Any], choices: Mapping[str, str]) -> 
 
 
 def _check_secrets(resolved: Mapping[str, Any]) -> None:
-    """Refuse what may be a key where the name of its variable belongs; the message leaves the value out.
-
-    Raises:
-        ConfigError: If a setting that ends in ``_env`` is not the name of a variable, or an address has a password.
-    """
+    """Refuse what may be a key where the name of its variable belongs; the message leaves the value out."""
     for key, value in sorted(texts(resolved), key=lambda pair: pair[0].count(".")):
         if key.endswith("_env") and not _VARIABLE.fullmatch(value):
             raise ConfigError(

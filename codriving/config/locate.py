@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-PACKAGE = Path(__file__).resolve().parent.parent
-"""The installed or checked-out package `codriving`."""
+PACKAGE = Path(__file__).resolve().parent.parent  # The installed or checked-out package `codriving`
 
 _INSTALLED = (PACKAGE / "_conf").is_dir()
 

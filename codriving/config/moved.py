@@ -8,19 +8,13 @@ from pathlib import Path
 
 from codriving.config.locate import PACKAGE
 
-FACES = ("scenarios", "ordering")
-"""Modules from which plug-ins are meant to import; what these offer is named by them."""
+FACES = ("scenarios", "ordering")  # Modules from which plug-ins are meant to import; what these offer is named by them
 
-RENAMED = {"Entrant": "ApproachingVehicle", "Metrics": "Metric", "Reasoner": "Model"}
-"""Names that were changed, too."""
+RENAMED = {"Entrant": "ApproachingVehicle", "Metrics": "Metric", "Reasoner": "Model"}  # Names that were changed, too
 
 
 def new_place(name: str) -> str | None:
-    """Find where a class, function or constant of ours is now.
-
-    Returns:
-        Its full name; None if there is none of this name, or more than one.
-    """
+    """Find where a class, function or constant of ours is now."""
     name = RENAMED.get(name, name)
     for face in FACES:
         if f'    "{name}",' in (PACKAGE / f"{face}.py").read_text(encoding="utf-8"):
@@ -34,11 +28,7 @@ def new_place(name: str) -> str | None:
 
 
 def moved_imports(err: ImportError) -> str:
-    """Say in one line what a plug-in imports from an old place, and where each name is now.
-
-    Returns:
-        Nothing if this was not why the import failed.
-    """
+    """Say in one line what a plug-in imports from an old place, and where each name is now."""
     if err.name is None or not err.name.startswith("codriving."):
         return ""
     frames = [frame for frame in traceback.extract_tb(err.__traceback__) if not frame.filename.startswith("<")]

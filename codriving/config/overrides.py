@@ -20,12 +20,6 @@ def prepare(token: str, config_dir: Path | None = None) -> str:
 
     Hydra refuses an unknown key unless it has a ``+``, and then accepts any. So every key gets its ``++`` here, and the
     checks after composing refuse what nobody reads: one rule and one message for both spellings.
-
-    Args:
-        token: ``key=value`` as typed.
-
-    Raises:
-        ConfigError: If it is not ``key=value``, or names a choice that there is not.
     """
     override = parse(token)
     key = override.key_or_group
@@ -51,20 +45,12 @@ def prepare(token: str, config_dir: Path | None = None) -> str:
 
 
 def shown(token: str) -> str:
-    """Give an override for a message.
-
-    Args:
-        token: ``key=value`` as typed.
-    """
+    """Give an override for a message."""
     return f"{token.partition('=')[0]}=..." if may_be_secret(token) else token
 
 
 def may_be_secret(token: str) -> bool:
-    """Tell whether an override may hold a secret, by the name of its key.
-
-    Args:
-        token: ``key=value`` as typed.
-    """
+    """Tell whether an override may hold a secret, by the name of its key."""
     return _SECRET.search(token.partition("=")[0]) is not None
 
 

@@ -10,20 +10,13 @@ from typing import Any
 from codriving.config.schema import ROOT
 from codriving.errors import ConfigError
 
-PLUGINS = "plugins"
-"""The key of the root; a YAML that holds a ``_target_`` may have it, too, for what it names itself."""
+PLUGINS = "plugins"  # The key of the root; a YAML that holds a ``_target_`` may have it, too, for what it names itself
 
 
 def gathered(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Take the key ``plugins`` out of every node and add what it lists to that of the root.
 
     So a YAML of the user's says itself what it needs, and in a sweep each cell has what its own files ask for.
-
-    Returns:
-        The config; ``plugins`` are at its root alone, each once.
-
-    Raises:
-        ConfigError: If a node's ``plugins`` is no list of package names.
     """
     found: list[str] = []
     nodes = {n: node if n == PLUGINS else _without(node, str(n), found) for n, node in resolved.items()}

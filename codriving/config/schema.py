@@ -8,17 +8,14 @@ from typing import Any
 
 from codriving.errors import ConfigError
 
+# The choices that the command line names; one YAML a choice.
 GROUPS = ("scenario", "method", "executor", "cda", "llm", "memory", "metrics", "launcher")
-"""The choices that the command line names; one YAML a choice."""
 
-NODES = (*GROUPS, "environment")
-"""The keys of the root that hold a constructor call."""
+NODES = (*GROUPS, "environment")  # The keys of the root that hold a constructor call
 
-OPTIONAL = ("memory",)
-"""Those of them that may be null."""
+OPTIONAL = ("memory",)  # Those of them that may be null
 
-LARGEST_SEED = 2**31 - 1
-"""Seeds beyond this are refused by some of the generators below us."""
+LARGEST_SEED = 2**31 - 1  # Seeds beyond this are refused by some of the generators below us
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,11 +79,7 @@ ROOT = {key.name: key for key in KEYS}
 
 
 def unknown(key: str, known: Iterable[str], where: str) -> ConfigError:
-    """Make the error for a key that nobody reads.
-
-    Args:
-        key: The full key that was given, for instance ``scenario.typo``.
-    """
+    """Make the error for a key that nobody reads."""
     names = sorted(known)
     node, dot, last = key.rpartition(".")
     close = difflib.get_close_matches(last, names, n=1)
@@ -107,11 +100,7 @@ def texts(node: object, key: str = "") -> Iterator[tuple[str, str]]:
 
 
 def check_root(resolved: Mapping[str, Any]) -> None:
-    """Check the keys, types and ranges of the root.
-
-    Raises:
-        ConfigError: If a key is unknown or missing, or a value breaks its rule.
-    """
+    """Check the keys, types and ranges of the root."""
     known = (*ROOT, *NODES)
     if strange := [str(name) for name in resolved if name not in known]:
         raise unknown(strange[0], known, "the config")

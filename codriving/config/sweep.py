@@ -12,9 +12,9 @@ from codriving.config.overrides import TEXT_WITH_COMMAS, check_choice, may_be_se
 from codriving.config.schema import ROOT
 from codriving.errors import ConfigError
 
-MOST = 1000
-"""Configs of one command; more than these are a slip of the keyboard."""
+MOST = 1000  # Configs of one command; more than these are a slip of the keyboard
 
+# What belongs to the run as a whole, and why it cannot differ between its cells.
 ONE_VALUE = {
     "run": "a sweep is one run under one name",
     "output": "all cells of a run are written under one folder",
@@ -26,7 +26,6 @@ ONE_VALUE = {
     "plugins": "it holds a list already, as in plugins=[a,b]",
     "render": "it changes no result",
 }
-"""What belongs to the run as a whole, and why it cannot differ between its cells."""
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,7 @@ OURS = "codriving"
 
 
 def find_class(target: object, key: str, plugins: Sequence[str] = ()) -> type:
-    """Import the class that a config node names.
-
-    Args:
-        target: Full name of the class, for instance ``codriving.metrics.standard.StandardMetrics``.
-
-    Raises:
-        ConfigError: If the package is not allowed, or there is no such class in it.
-    """
+    """Import the class that a config node names."""
     if not isinstance(target, str) or "." not in target:
         raise ConfigError(f"{key}._target_ must be the full name of a class, got {target!r}")
     allowed = (OURS, *plugins)

@@ -10,8 +10,7 @@ from codriving.config.overrides import parse, shown
 from codriving.config.schema import unknown
 from codriving.errors import ConfigError
 
-TRAININGS = "train"
-"""The folder of these configs; it is no group, since a run has no training."""
+TRAININGS = "train"  # The folder of these configs; it is no group, since a run has no training
 
 
 def trainings(config_dir: Path | None = None) -> dict[str, Path]:

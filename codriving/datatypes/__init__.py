@@ -1,1 +1,64 @@
 """The nouns: frozen dataclasses that every room speaks in."""
+
+from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Memory, Verdict
+from codriving.datatypes.order import (
+    ApproachingVehicle,
+    Conflict,
+    Instance,
+    Pair,
+    PassingOrder,
+    Precedence,
+    Relation,
+    Severity,
+)
+from codriving.datatypes.parts import Account, CaseMemory, Chat, Method, Metric, Model, RuleModel, Scenario, Simulator
+from codriving.datatypes.record import (
+    Collision,
+    Ending,
+    EpisodeRecord,
+    NamedNumber,
+    Outcome,
+    Participant,
+    Pet,
+    Score,
+    Track,
+    Trajectory,
+    TravelScore,
+)
+from codriving.datatypes.road import (
+    Arc,
+    Block,
+    Lane,
+    LaneId,
+    LaneShape,
+    Line,
+    Point,
+    Road,
+    Route,
+    Sine,
+    Straight,
+    Turn,
+    beside,
+)
+from codriving.datatypes.situation import (
+    ActionAssessment,
+    Decision,
+    Deliberation,
+    LaneChange,
+    ReasonedDeliberation,
+    Role,
+    SceneDescription,
+    Situation,
+    TrackedVehicle,
+)
+from codriving.datatypes.world import Action, DrivingModel, Intent, Kind, Scene, Start, VehicleState, WorldState
+
+__all__ = [
+    "Account", "Action", "ActionAssessment", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat", "Collision",
+    "Conflict", "Decision", "Deliberation", "Description", "DrivingModel", "Effect", "Ending", "EpisodeRecord",
+    "Experience", "Instance", "Intent", "Interaction", "Kind", "Lane", "LaneChange", "LaneId", "LaneShape", "Line",
+    "Memory", "Method", "Metric", "Model", "NamedNumber", "Outcome", "Pair", "Participant", "PassingOrder", "Pet",
+    "Point", "Precedence", "ReasonedDeliberation", "Relation", "Road", "Role", "Route", "RuleModel", "Scenario",
+    "Scene", "SceneDescription", "Score", "Severity", "Simulator", "Sine", "Situation", "Start", "Straight", "Track",
+    "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleState", "Verdict", "WorldState", "beside",
+]  # fmt: skip

@@ -68,8 +68,7 @@ class PassingOrder:
         return None
 
 
-Pair = tuple[str, str]
-"""Two vehicles, the first of which passes first."""
+Pair = tuple[str, str]  # Two vehicles, the first of which passes first
 
 
 @dataclass(slots=True)

@@ -11,17 +11,15 @@ from codriving.datatypes.road import Road
 from codriving.datatypes.situation import Deliberation, Situation
 from codriving.datatypes.world import Action, DrivingModel, Scene, WorldState
 
+# The precomputed road, of which this room may not know: ``codriving.geometry.road_map.RoadMap``.
 RoadMap: TypeAlias = Any
-"""The precomputed road, of which this room may not know: ``codriving.geometry.road_map.RoadMap``."""
 
-Pace: TypeAlias = Any
-"""The settings that all scenarios share, likewise: ``codriving.scenarios.Pace``."""
+Pace: TypeAlias = Any  # The settings that all scenarios share, likewise: ``codriving.scenarios.Pace``
 
-Chat: TypeAlias = Any
-"""The client of a language model, likewise: ``codriving.llm.question.Chat``."""
+Chat: TypeAlias = Any  # The client of a language model, likewise: ``codriving.llm.question.Chat``
 
+# Counters by column, and lines of ``transcript.jsonl``.
 Account: TypeAlias = tuple[dict[str, float], list[dict[str, Any]]]
-"""Counters by column, and lines of ``transcript.jsonl``."""
 
 
 class Scenario(ABC):

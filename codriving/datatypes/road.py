@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-LaneId = tuple[str, str, int]
-"""Start node, end node and index from the left of a lane."""
+LaneId = tuple[str, str, int]  # Start node, end node and index from the left of a lane
 
-Point = tuple[float, float]
-"""x and y [m]; y grows to the right of an observer who looks along x, as in highway-env."""
+Point = tuple[float, float]  # x and y [m]; y grows to the right of an observer who looks along x, as in highway-env
 
 
 class Turn(StrEnum):

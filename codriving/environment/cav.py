@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from highway_env.road.road import Road
 from highway_env.vehicle.controller import MDPVehicle
 
-from codriving.datatypes.world import Action, Kind, Start
+from codriving.datatypes import Action, Kind, Start
 from codriving.environment.settings import ControlGains, Corrections
 from codriving.environment.traffic.route_following import RouteFollower, RoutePath
 
@@ -25,21 +25,13 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
         gains: ControlGains,
         corrections: Corrections,
     ) -> "ConnectedVehicle":
-        """Put a CAV on the road.
-
-        Args:
-            target_speeds: Speeds that FASTER and SLOWER step through [m/s].
-        """
+        """Put a CAV on the road."""
         vehicle = cls.place(road, start, route_paths, corrections, target_speeds=list(target_speeds))
         gains.apply(vehicle)
         return vehicle
 
     def act(self, action: str | None = None) -> None:
-        """Take a decision, or go on with the last one.
-
-        Args:
-            action: Name of the action; None lets the controllers work towards the last one.
-        """
+        """Take a decision, or go on with the last one."""
         if action in (Action.LANE_LEFT, Action.LANE_RIGHT):
             super().act(action)
             if self.corrections.route_lane:

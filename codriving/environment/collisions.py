@@ -5,24 +5,17 @@ from itertools import combinations
 
 from highway_env.vehicle.objects import RoadObject
 
-from codriving.datatypes.record import Collision
+from codriving.datatypes import Collision
 from codriving.environment.traffic.route_following import RouteFollower
-from codriving.geometry.box import corners, overlap
-from codriving.geometry.curve import FloatArray
+from codriving.geometry import FloatArray, corners, overlap
 
-PUSHED = 3.0
-"""How far highway-env pushes two crashed cars apart at most [m]."""
+PUSHED = 3.0  # How far highway-env pushes two crashed cars apart at most [m]
 
 
 def find_collisions(
     vehicles: list[RouteFollower], time: float, dt: float, by_footprint: bool
 ) -> list[tuple[tuple[RouteFollower, ...], Collision]]:
-    """Find every pair of vehicles that have collided.
-
-    Args:
-        time: Present time, for the record [s].
-        dt: Time since the last search [s].
-    """
+    """Find every pair of vehicles that have collided."""
     found: list[tuple[tuple[RouteFollower, ...], Collision]] = []
     pushed = 0.0 if by_footprint else PUSHED
     placed = [(vehicle, *vehicle.position.tolist(), float(vehicle.diagonal) / 2) for vehicle in vehicles]
@@ -56,14 +49,11 @@ def _overlap(one: RoadObject, other: RoadObject) -> bool:
     return overlap(*boxes)
 
 
-HALVINGS = 20
-"""Bisections of a simulation step; finds the first touch to a micrometre."""
+HALVINGS = 20  # Bisections of a simulation step; finds the first touch to a micrometre
 
-CORNER = 0.1
-"""A contact this close to the front edge is at the front, even at the very corner [m]."""
+CORNER = 0.1  # A contact this close to the front edge is at the front, even at the very corner [m]
 
-MOVING = 0.1
-"""Slower vehicles do not strike others [m/s]."""
+MOVING = 0.1  # Slower vehicles do not strike others [m/s]
 
 Point = tuple[float, float]
 
@@ -73,9 +63,6 @@ def responsibility(one: RouteFollower, other: RouteFollower, dt: float) -> tuple
 
     A vehicle strikes if its front is in the contact and the other one's front is not. Else, as when two meet head-on or
     scrape along each other, it is the one that moved faster towards the other.
-
-    Args:
-        dt: Time since they were last known not to overlap [s].
     """
     back = _since_touch(one, other, dt)
     contact = _contact(one, other, back)

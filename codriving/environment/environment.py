@@ -4,9 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from codriving.datatypes.parts import Scenario, Simulator
-from codriving.datatypes.record import Outcome, Trajectory
-from codriving.datatypes.world import Action, DrivingModel, Kind, Scene, WorldState
+from codriving.datatypes import Action, DrivingModel, Kind, Outcome, Scenario, Scene, Simulator, Trajectory, WorldState
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.network import build_network
 from codriving.environment.recorder import Recorder, snapshot
@@ -16,7 +14,7 @@ from codriving.environment.traffic.human_driver import HumanDriver
 from codriving.environment.traffic.route_following import RoutePath, route_path
 from codriving.environment.traffic.traffic import Traffic
 from codriving.errors import EpisodeError
-from codriving.geometry.road_map import road_map
+from codriving.geometry import road_map
 
 
 class Environment(Simulator):
@@ -124,11 +122,7 @@ def spawn(
     control: ControlGains,
     drivers: DriverProfile,
 ) -> None:
-    """Put all vehicles on the road, in the order of the scene.
-
-    Args:
-        target_speeds: Speeds that a CAV's FASTER and SLOWER step through [m/s].
-    """
+    """Put all vehicles on the road, in the order of the scene."""
     corrections = traffic.corrections
     for start in scene.starts:
         traffic.vehicles.append(

@@ -7,15 +7,14 @@ import numpy as np
 from highway_env.road.lane import AbstractLane
 from numpy.typing import NDArray
 
-from codriving.datatypes.road import LaneId
+from codriving.datatypes import LaneId
 
 if TYPE_CHECKING:
     from highway_env.vehicle.controller import ControlledVehicle as _Base
 else:
     _Base = object
 
-STANDSTILL = 1e-2
-"""Speeds are taken at least this large where something is divided by them, as highway-env does [m/s]."""
+STANDSTILL = 1e-2  # Speeds are taken at least this large where something is divided by them, as highway-env does [m/s]
 
 
 class PlainMotion(_Base):

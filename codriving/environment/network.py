@@ -8,7 +8,7 @@ from highway_env.road.lane import AbstractLane, CircularLane, LineType, SineLane
 from highway_env.road.road import LaneIndex, RoadNetwork
 from numpy.typing import NDArray
 
-from codriving.datatypes.road import Arc, Lane, Line, Road, Sine
+from codriving.datatypes import Arc, Lane, Line, Road, Sine
 from codriving.errors import ScenarioError
 
 PAINT = {
@@ -36,11 +36,7 @@ def build_lane(lane: Lane) -> AbstractLane:
 
 
 def build_network(road: Road) -> RoadNetwork:
-    """Turn a road into highway-env's network, lanes in their order.
-
-    Raises:
-        ScenarioError: If parallel lanes are not given from index 0 upwards; highway-env counts them in their order.
-    """
+    """Turn a road into highway-env's network, lanes in their order."""
     network = RoadNetwork()
     for lane in road.lanes:
         start, end, index = lane.id
@@ -76,11 +72,9 @@ class PlainCircularLane(CircularLane):
         return self.direction * (phase - self.start_phase) * self.radius, self.direction * (self.radius - radius)
 
 
-JOINT = 0.5
-"""Largest distance between the end of a lane and the start of one that continues it [m]."""
+JOINT = 0.5  # Largest distance between the end of a lane and the start of one that continues it [m]
 
-BEND = 0.3
-"""Largest difference of their headings [rad]."""
+BEND = 0.3  # Largest difference of their headings [rad]
 
 
 def continues(lane: AbstractLane, following: AbstractLane) -> bool:
@@ -91,11 +85,7 @@ def continues(lane: AbstractLane, following: AbstractLane) -> bool:
 
 
 def connected(network: RoadNetwork, index: LaneIndex, planned: Sequence[str]) -> list[tuple[AbstractLane, float]]:
-    """Find the lanes that physically precede and follow a lane.
-
-    Returns:
-        Each lane with the offset that turns its arc length into that of the given lane [m].
-    """
+    """Find the lanes that physically precede and follow a lane."""
     start, end, _ = index
     lane = network.get_lane(index)
     found = []

@@ -4,8 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from codriving.datatypes.record import Track, Trajectory
-from codriving.datatypes.world import Intent, Kind, VehicleState, WorldState
+from codriving.datatypes import Intent, Kind, Track, Trajectory, VehicleState, WorldState
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.traffic.route_following import RouteFollower, plain
 from codriving.environment.traffic.traffic import Traffic

@@ -16,9 +16,6 @@ class ControlGains:
         speed: K_a in a = K_a (v_r - v) [1/s]; the paper's value is 1.6.
         heading: K_h in delta = arcsin(K_h (phi_r - phi) l / 2v) [1/s]; the paper's value is 5.
         lateral: Gain from the lateral offset to the lateral speed that sets phi_r [1/s]; highway-env's value is 1/0.6.
-
-    Raises:
-        ConfigError: If a gain is not positive or makes the controller unstable.
     """
 
     speed: float
@@ -71,9 +68,6 @@ class DriverProfile:
         sight: How far ahead along the route a driver looks for bodies [m].
         gain_threshold: MOBIL's smallest gain for a lane change [m/s2].
         safe_braking: MOBIL's hardest braking imposed on the new follower [m/s2].
-
-    Raises:
-        ConfigError: If a value is out of range.
     """
 
     acceleration: float
@@ -102,11 +96,7 @@ class DriverProfile:
             require_range(f"drivers.{name}", getattr(self, name), low, high)
 
     def apply(self, driver: IDMVehicle, to_class: bool) -> None:
-        """Set the parameters.
-
-        Args:
-            to_class: Set them on the class instead, as highway-env's intersection does (a fault kept for comparison).
-        """
+        """Set the parameters."""
         target = type(driver) if to_class else driver
         target.COMFORT_ACC_MAX, target.COMFORT_ACC_MIN = self.acceleration, -self.deceleration
         target.ACC_MAX, target.POLITENESS = self.limit, self.politeness

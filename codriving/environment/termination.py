@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from codriving.datatypes.record import Collision, Ending, Outcome
+from codriving.datatypes import Collision, Ending, Outcome
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.collisions import find_block_collisions, find_collisions
 from codriving.environment.traffic.route_following import RouteFollower
@@ -11,10 +11,6 @@ from codriving.environment.traffic.traffic import Traffic
 
 class Termination:
     """Watches one episode and takes vehicles off the road that have arrived, left or been towed away.
-
-    Args:
-        time_limit: Longest duration [s].
-        dt: Simulation step [s].
 
     Attributes:
         arrivals: Arrival time of each CAV that has arrived [s], by id. An arrival is latched: nothing takes it back.

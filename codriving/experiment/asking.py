@@ -2,20 +2,15 @@
 
 from collections.abc import Iterable
 
-from codriving.datatypes.parts import Chat, Model
+from codriving.datatypes import Chat, Model
 from codriving.experiment.cells import Cell
 from codriving.experiment.objects import model_of
 
-REPLAY = "replay"
-"""The setting of ``llm.cache`` with which no server is asked."""
+REPLAY = "replay"  # The setting of ``llm.cache`` with which no server is asked
 
 
 class Asked:
-    """The models of some cells.
-
-    Raises:
-        ConfigError: If a model cannot be built.
-    """
+    """The models of some cells."""
 
     def __init__(self, cells: Iterable[Cell]) -> None:
         found = {cell.folder: model_of(cell.resolved) for cell in cells}
@@ -40,11 +35,7 @@ class Asked:
         return max((model.max_concurrency for model in self.models.values()), default=1)
 
     def preflight(self) -> None:
-        """Refuse what cannot be reached before anything is driven; what is replayed needs no server.
-
-        Raises:
-            ModelError: With what to set.
-        """
+        """Refuse what cannot be reached before anything is driven; what is replayed needs no server."""
         for client in _clients(model for model in self.models.values() if model.cache != REPLAY):
             client.preflight()
 

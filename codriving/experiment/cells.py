@@ -5,18 +5,15 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from codriving.config.build import build
-from codriving.config.compose import show
-from codriving.config.sweep import Point
-from codriving.datatypes.parts import Scenario
+from codriving.config import Point, build, show
+from codriving.datatypes import Scenario
 from codriving.errors import ConfigError
 from codriving.experiment.contents import contents
 from codriving.experiment.episode import Labels
 from codriving.experiment.naming import folder_name, swept_values
 from codriving.experiment.objects import make_method, memory_of, model_of
 from codriving.experiment.scoring import scorers_of, settings_of_metric
-from codriving.runs.identity import CHOICES, CellEntry, NamedFile, fingerprint, settings_of
-from codriving.runs.redaction import redact
+from codriving.runs import CHOICES, CellEntry, NamedFile, fingerprint, redact, settings_of
 
 
 @dataclass(frozen=True)
@@ -84,14 +81,7 @@ class Cell:
 def make_cell(
     resolved: Mapping[str, Any], point: Point | None = None, choices: Mapping[str, str] | None = None
 ) -> Cell:
-    """Make the cell of a config; its labels are what its objects call themselves.
-
-    Args:
-        choices: Name of the YAML of each group.
-
-    Raises:
-        ConfigError: If an object cannot be built or has no name.
-    """
+    """Make the cell of a config; its labels are what its objects call themselves."""
     scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
     method = make_method(resolved, model_of(resolved), memory_of(resolved))
     (scorer,) = scorers_of(resolved).values()

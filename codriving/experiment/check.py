@@ -5,19 +5,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from codriving.config.build import build, validate
-from codriving.config.choices import choices
-from codriving.config.compose import compose
-from codriving.datatypes.parts import Model, RuleModel, Scenario
+from codriving.config import build, choices, compose, validate
+from codriving.datatypes import Model, RuleModel, Scenario
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError
 from codriving.experiment.asking import REPLAY
 from codriving.experiment.objects import make_objects, model_of
 
-SEED, STEP = 10_001, 4
-"""The scene: four CAVs and three human drivers before an intersection, most of them in conflict."""
+SEED, STEP = 10_001, 4  # The scene: four CAVs and three human drivers before an intersection, most of them in conflict
 
-LONGEST = 300
-"""Characters of an answer that are shown."""
+LONGEST = 300  # Characters of an answer that are shown
 
 _NAMES = {"negotiate": "Negotiation", "decide": "Decision"}
 
@@ -92,17 +88,7 @@ def _is_open(line: Mapping[str, Any]) -> bool:
 
 
 def report(transcript: Sequence[Mapping[str, Any]]) -> tuple[int, list[str]]:
-    """Say what was answered, and whether it could be used.
-
-    Args:
-        transcript: What was asked and answered, as in ``transcript.jsonl``.
-
-    Returns:
-        The exit code, 1 if a fallback was needed, and what to print.
-
-    Raises:
-        ModelError: If nothing was asked.
-    """
+    """Say what was answered, and whether it could be used."""
     if not transcript:
         raise ModelError("the model was not asked anything in this scene; leave scenario= and cda= out")
     lines = [text for line in transcript for text in [*_answer(line), ""]]

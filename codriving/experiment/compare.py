@@ -7,44 +7,40 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from codriving.config.choices import TABLES, TAKING_PART, choices
-from codriving.config.locate import experiments_dir
-from codriving.config.overrides import check_choice, parse
-from codriving.config.sweep import Point, expand
+from codriving.config import TABLES, TAKING_PART, Point, check_choice, choices, expand, experiments_dir, parse
 from codriving.errors import ConfigError
 from codriving.experiment.cells import Cell
 from codriving.experiment.drive import Driven, Outputs, drive
 from codriving.experiment.plan import make_plan
 from codriving.experiment.run import Command
-from codriving.reports.comparison import (
+from codriving.reports import (
     METHOD_CHOICE,
+    CellResults,
     comparison_rows,
     comparison_table,
+    cpu_per_decision,
+    load_figure,
     load_rows,
     load_table,
+    markdown_text,
     print_comparison,
     print_loads,
     print_pairs,
+    read_paper,
 )
-from codriving.reports.episodes import cpu_per_decision
-from codriving.reports.figures import load_figure
-from codriving.reports.paper import read_paper
-from codriving.reports.printed import markdown_text
-from codriving.reports.results import CellResults
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 BASELINES, SINGLE_VEHICLE, ALL, LOAD = "baselines", "single-vehicle", "all", "load"
 
+# The folder of each table's runs, if the user names none.
 EXPERIMENT = {BASELINES: "compare", SINGLE_VEHICLE: "compare-single-vehicle", ALL: "compare-all", LOAD: "load"}
-"""The folder of each table's runs, if the user names none."""
 
-CAVS = "scenario.cavs"
-"""The key that the load is."""
+CAVS = "scenario.cavs"  # The key that the load is
 
+# What `codriving compare load` drives, as far as the user does not set it.
 LOADED = ("scenario=intersection,roundabout", f"{CAVS}=4,6,8,12")
-"""What `codriving compare load` drives, as far as the user does not set it."""
 
 
 @dataclass(frozen=True)
@@ -62,11 +58,7 @@ class Comparison:
 
 
 def compare(table: str | None) -> Command:
-    """Return the command of a table of ``codriving compare``.
-
-    Raises:
-        ConfigError: If there is no such table.
-    """
+    """Return the command of a table of ``codriving compare``."""
     if table is None or table not in TABLES:
         given = "compare needs the name of a table" if table is None else f"unknown table {table!r}"
         raise ConfigError(f"{given}; write codriving compare TABLE [KEY=VALUE]..., tables: {', '.join(TABLES)}")
@@ -95,12 +87,6 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
     """Find out what a comparison consists of.
 
     Every method of the table that has a YAML takes part. ``method=`` adds others to them.
-
-    Args:
-        overrides: ``key=value`` tokens that hold for every cell; with several values, for one block of rows each.
-
-    Raises:
-        ConfigError: If an override cannot be read.
     """
     keys = [parse(token).key_or_group for token in overrides]
     added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
@@ -133,11 +119,7 @@ def setting(resolved: Mapping[str, Any]) -> str:
 
 
 def make_comparison(table: str, driven: Driven) -> Outputs:
-    """Make a comparison of methods.
-
-    Returns:
-        ``comparison.csv`` and ``comparison.md``, and what is printed: the same with computing times.
-    """
+    """Make a comparison of methods."""
     paper, metrics = read_paper(experiments_dir()), driven.metrics
     blocks: dict[str, list[CellResults]] = {}
     for cell, results in _results(driven):
@@ -153,11 +135,7 @@ def make_comparison(table: str, driven: Driven) -> Outputs:
 
 
 def make_loads(driven: Driven) -> Outputs:
-    """Make the table and the figure of loads.
-
-    Returns:
-        ``load.csv``, ``load.md`` and ``figures/load.*``, and what is printed: the table with computing times.
-    """
+    """Make the table and the figure of loads."""
     cells = [(int(cell.resolved["scenario"]["cavs"]), results) for cell, results in _results(driven, without=CAVS)]
     loads = list(dict.fromkeys(cavs for cavs, _ in cells))
     rows = load_rows(cells, TAKING_PART[LOAD])

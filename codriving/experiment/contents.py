@@ -5,19 +5,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from codriving.runs.identity import MEMORY, NamedFile, driving_values, files_of, snapshot_of
-from codriving.runs.redaction import flat
+from codriving.runs import MEMORY, NamedFile, driving_values, files_of, flat, snapshot_of
 
 
 def contents(resolved: Mapping[str, Any], own: Mapping[str, Path]) -> tuple[NamedFile, ...]:
-    """Read what a cell is told by beside names and values.
-
-    Args:
-        own: Files that the method says it uses, by what they are.
-
-    Raises:
-        OSError: If one cannot be read.
-    """
+    """Read what a cell is told by beside names and values."""
     sources = {f"plug-in {name}": path for plugin in resolved["plugins"] for name, path in _sources(plugin)}
     named = {key: path for key, path in _values(resolved).items() if path not in own.values()}
     return files_of({**named, **own, **sources}) + snapshot_of(resolved)

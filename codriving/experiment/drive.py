@@ -8,8 +8,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from codriving.config.locate import experiments_dir
-from codriving.datatypes.record import Ending, EpisodeRecord
+from codriving.config import experiments_dir
+from codriving.datatypes import Ending, EpisodeRecord
 from codriving.errors import ModelError, ModelUnavailableError
 from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell, with_metrics
@@ -23,20 +23,36 @@ from codriving.experiment.remembering import growing, learns
 from codriving.experiment.scoring import scored
 from codriving.experiment.threads import Threads
 from codriving.experiment.worker import Job, Objects, Report, SaveEpisode, Unit
-from codriving.reports.columns import Table, table
-from codriving.reports.episodes import TimedEpisode, seconds_per_decision, timing_columns
-from codriving.reports.paper import read_paper
-from codriving.reports.printed import PrintedTable
-from codriving.reports.results import CellResults
-from codriving.reports.summary import RunTables, run_tables
-from codriving.runs.atomic import whole_file, write_text
-from codriving.runs.continuation import changed_versions
-from codriving.runs.episode_folder import Timing, read_timing
-from codriving.runs.identity import BEHAVIOUR
-from codriving.runs.manifest import FORMAT, MANIFEST, Manifest
-from codriving.runs.provenance import commit, machine, versions
-from codriving.runs.redaction import variables_in
-from codriving.runs.run_folder import RunFolder, new_run_path, unwritable
+from codriving.reports import (
+    CellResults,
+    PrintedTable,
+    RunTables,
+    Table,
+    TimedEpisode,
+    read_paper,
+    run_tables,
+    seconds_per_decision,
+    table,
+    timing_columns,
+)
+from codriving.runs import (
+    BEHAVIOUR,
+    FORMAT,
+    MANIFEST,
+    Manifest,
+    RunFolder,
+    Timing,
+    changed_versions,
+    commit,
+    machine,
+    new_run_path,
+    read_timing,
+    unwritable,
+    variables_in,
+    versions,
+    whole_file,
+    write_text,
+)
 
 
 class Interrupted(KeyboardInterrupt):
@@ -89,11 +105,7 @@ class Outputs:
     tables: tuple[Table, ...] = ()
 
     def write(self, folder: Path) -> None:
-        """Write the files, each whole or not at all.
-
-        Raises:
-            OSError: If one cannot be written.
-        """
+        """Write the files, each whole or not at all."""
         for name, content in self.files.items():
             path = folder / name
             path.parent.mkdir(exist_ok=True)
@@ -132,17 +144,7 @@ def drive(
     make_outputs: Callable[[Driven], Outputs] = lambda _: Outputs(),
     build: Callable[[Mapping[str, Mapping[str, Any]]], Callable[[str], Objects]] | None = None,
 ) -> Finished:
-    """Drive a plan, or what is missing of it, with a progress display; prints no table.
-
-    Args:
-        make_outputs: What the command makes of its episodes.
-        build: What gives the function that builds the objects of a cell.
-
-    Raises:
-        UserError: If the folder cannot be used, the objects cannot be built or a language model cannot be reached.
-        HaltedError: If the language model must not be used any more; finished episodes are kept.
-        Interrupted: If the user stops it; finished episodes are kept.
-    """
+    """Drive a plan, or what is missing of it, with a progress display; prints no table."""
     is_new = plan.run is None or not (plan.output / plan.experiment / plan.run / MANIFEST).exists()
     if is_new:
         # Before the folder is made: a model that cannot be reached leaves nothing behind.
@@ -245,11 +247,7 @@ def _places(
 
 
 def side_by_side(workers: int | str, concurrency: int) -> int:
-    """Return the number of episodes that ask a language model to drive at once.
-
-    Args:
-        workers: A number, or ``auto`` for as many as requests may be under way.
-    """
+    """Return the number of episodes that ask a language model to drive at once."""
     return concurrency if workers == "auto" else min(int(workers), concurrency)
 
 
@@ -261,11 +259,7 @@ class FailuresInARow:
         self._failures: Counter[str] = Counter()
 
     def note(self, report: Report) -> None:
-        """Take note of an episode that has ended.
-
-        Raises:
-            ModelError: If its model has failed too often in a row.
-        """
+        """Take note of an episode that has ended."""
         model = self._models.get(report.unit.cell)
         if model is None:
             return

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from time import perf_counter, thread_time
 from typing import Any
 
-from codriving.datatypes.parts import Method, Simulator
-from codriving.datatypes.record import Ending, EpisodeRecord, Outcome, Participant, Score, Trajectory
+from codriving.datatypes import Ending, EpisodeRecord, Method, Outcome, Participant, Score, Simulator, Trajectory
 from codriving.errors import ModelError, ModelUnavailableError
-from codriving.metrics.scorer import Scorer
+from codriving.metrics import Scorer
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,13 +81,6 @@ def run_episode(
 
     What goes wrong becomes a record that ends in ``error``. An interruption by the user passes through, and so does a
     language model that must not be used any more: neither is this episode's fault.
-
-    Args:
-        metrics: By the name of their scores.
-        go_on: Called before each decision; raises what is no ``Exception`` to give the episode up.
-
-    Raises:
-        ModelError: If the language model must not be used any more.
     """
     log = _EpisodeLog()
     started = perf_counter()
@@ -169,11 +161,7 @@ def _record(
 
 
 def _failure(error: BaseException, time: float) -> Outcome:
-    """The outcome of an episode that could not go on, with type and text of the error on one line.
-
-    Args:
-        time: Simulated time of the last decision [s].
-    """
+    """The outcome of an episode that could not go on, with type and text of the error on one line."""
     # It may quote what a server said, and ends up in tables and on terminals.
     text = " ".join("".join(c for c in str(error) if c.isprintable() or c.isspace()).split())
     message = f"{type(error).__name__}: {text}" if text else type(error).__name__

@@ -8,20 +8,16 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from codriving.config.build import build
-from codriving.datatypes.parts import Scenario
-from codriving.datatypes.record import Ending
+from codriving.config import build
+from codriving.datatypes import Ending, Scenario
 from codriving.errors import UserError
 from codriving.experiment.stored import read_film
 from codriving.experiment.worker import AfterEpisode, Unit
-from codriving.runs.atomic import whole_file, write_text
-from codriving.runs.episode_folder import RECORD, episode_folder, read_record
-from codriving.runs.trajectory_file import TRAJECTORY
+from codriving.runs import RECORD, TRAJECTORY, episode_folder, read_record, whole_file, write_text
 
 FILM, FILM_ERROR = "replay.mp4", "replay-error.txt"
 
-_RATE = Fraction(25)
-"""Frames a second."""
+_RATE = Fraction(25)  # Frames a second
 
 
 @dataclass(frozen=True)
@@ -41,11 +37,7 @@ class FilmEpisode(AfterEpisode):
         return (folder / TRAJECTORY).exists() and not self.path(unit).exists()
 
     def saved(self, unit: Unit) -> Ending | None:
-        """Tell how an episode ended that need not be driven again.
-
-        Returns:
-            Its ending; None if it has not been driven, or ended in an error.
-        """
+        """Tell how an episode ended that need not be driven again."""
         folder = self._place(unit)
         ending = read_record(folder).outcome.ending if (folder / RECORD).exists() else Ending.ERROR
         return None if ending is Ending.ERROR else ending

@@ -11,11 +11,7 @@ class Launcher(ABC):
     """Drives units somewhere; results are saved by the job, so they do not depend on where."""
 
     def prepare(self, workers: int | str, units: int, preload: Sequence[str]) -> None:
-        """Get ready in the background.
-
-        Args:
-            workers: A number, or ``auto`` for one a core.
-        """
+        """Get ready in the background."""
         return None
 
     @abstractmethod
@@ -25,13 +21,6 @@ class Launcher(ABC):
         """Drive units.
 
         When the iterator is closed, by an exception or otherwise, units in flight are lost.
-
-        Args:
-            workers: A number, or ``auto`` for one a core.
-            preload: Modules that a new process imports once.
-
-        Raises:
-            UserError: If the batch has to stop.
         """
 
 
@@ -47,11 +36,7 @@ class Serial(Launcher):
 
 
 def worker_count(workers: int | str, units: int) -> int:
-    """Return how many workers to use, at least 1.
-
-    Args:
-        workers: A number, or ``auto`` for one a core that this process may use.
-    """
+    """Return how many workers to use, at least 1."""
     wanted = available_cores() if workers == "auto" else int(workers)
     return max(1, min(wanted, units))
 

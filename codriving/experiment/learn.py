@@ -6,29 +6,30 @@ from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
-from codriving.config.locate import experiments_dir
-from codriving.config.overrides import parse
-from codriving.config.sweep import Point, expand
+from codriving.config import Point, expand, experiments_dir, parse
 from codriving.errors import ConfigError
 from codriving.experiment.drive import Driven, HaltedError, Interrupted, Outputs, drive
 from codriving.experiment.memory_build import FIRST_SEED, MOST, refuse_forgetful, split_interactions
 from codriving.experiment.plan import make_plan
 from codriving.experiment.remembering import memory_file
 from codriving.experiment.run import print_configs, report, resume_command, stopped
-from codriving.reports.figures import learning_figure
-from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
-from codriving.reports.paper import read_learning
-from codriving.reports.printed import markdown_text
-from codriving.reports.results import CellResults
+from codriving.reports import (
+    CellResults,
+    LearningRow,
+    learning_figure,
+    learning_rows,
+    learning_table,
+    markdown_text,
+    print_learning,
+    read_learning,
+)
 
-SIZES = (0, 2, 5, 10, 20)
-"""Interactions after which is tested, unless the user says otherwise."""
+SIZES = (0, 2, 5, 10, 20)  # Interactions after which is tested, unless the user says otherwise
 
-KEY = "memory.interactions"
-"""The key that is swept."""
+KEY = "memory.interactions"  # The key that is swept
 
+# CDA levels, unless the user names some: everything, nothing negotiated, and only states shared.
 LEVELS = "cda=full,intent_sharing,status_sharing"
-"""CDA levels, unless the user names some: everything, nothing negotiated, and only states shared."""
 
 
 def run_learn(overrides: Sequence[str], config_dir: Path | None = None, show_only: bool = False) -> int:
@@ -70,14 +71,7 @@ def run_learn(overrides: Sequence[str], config_dir: Path | None = None, show_onl
 
 
 def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:
-    """Give the settings that are learnt and tested in, one config each, without a memory.
-
-    Args:
-        overrides: ``key=value`` tokens without ``interactions``.
-
-    Raises:
-        ConfigError: If a token cannot be used.
-    """
+    """Give the settings that are learnt and tested in, one config each, without a memory."""
     keys = [parse(token).key_or_group for token in overrides]
     if "memory" in keys:
         raise ConfigError("codriving learn sets memory itself; memory.shots and memory.least_similarity can be given")
@@ -111,11 +105,7 @@ def frozen_points(points: Sequence[Point], files: Sequence[Path], sizes: Sequenc
 
 
 def learned(driven: Driven, settings: int) -> Outputs:
-    """Make the learning table and figure.
-
-    Returns:
-        ``learn.csv``, ``learn.md``, ``figures/learn.*`` and what is printed.
-    """
+    """Make the learning table and figure."""
     paper = read_learning(experiments_dir())
     each = len(driven.cells) // settings
     cells = []

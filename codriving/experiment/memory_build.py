@@ -3,39 +3,26 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from codriving.config.overrides import parse
-from codriving.config.sweep import Point, expand
+from codriving.config import Point, expand, parse
 from codriving.errors import ConfigError
 from codriving.experiment.drive import Driven, Outputs
 from codriving.experiment.plan import Plan
 from codriving.experiment.remembering import learns, memory_file
 from codriving.experiment.run import Command
-from codriving.memory.reading import read_memory
-from codriving.reports.built_memory import BuiltMemory, print_built
-from codriving.reports.printed import markdown_text
+from codriving.memory import read_memory
+from codriving.reports import BuiltMemory, markdown_text, print_built
 
-INTERACTIONS = "interactions"
-"""The word for how many episodes to learn from."""
+INTERACTIONS = "interactions"  # The word for how many episodes to learn from
 
-FIRST_SEED = 20_000
-"""Seed of the first episode to learn from, if the user names none."""
+FIRST_SEED = 20_000  # Seed of the first episode to learn from, if the user names none
 
-TABLE_SEEDS = range(1000)
-"""Seeds that tables are made with."""
+TABLE_SEEDS = range(1000)  # Seeds that tables are made with
 
-MOST = 10_000
-"""Most interactions of one command."""
+MOST = 10_000  # Most interactions of one command
 
 
 def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
-    """Find out what is to be driven.
-
-    Args:
-        overrides: ``key=value`` tokens, among them ``interactions=N``.
-
-    Raises:
-        ConfigError: If a token cannot be used, or a seed belongs to the tables.
-    """
+    """Find out what is to be driven."""
     given, others = split_interactions(overrides)
     keys = {token: parse(token).key_or_group for token in others}
     named = set(keys.values())
@@ -66,22 +53,14 @@ def split_interactions(overrides: Sequence[str]) -> tuple[list[str], list[str]]:
 
 
 def interactions_of(text: str) -> int:
-    """Read a number of interactions.
-
-    Raises:
-        ConfigError: If it is none.
-    """
+    """Read a number of interactions."""
     if not text.isdigit() or not 1 <= int(text) <= MOST:
         raise ConfigError(f"interactions must be a whole number, 1 to {MOST}, got {text!r}")
     return int(text)
 
 
 def built(driven: Driven) -> Outputs:
-    """Say what was learnt.
-
-    Returns:
-        ``memory.md`` and what is printed.
-    """
+    """Say what was learnt."""
     rows = []
     for cell in driven.cells:
         named = (cell.resolved.get("memory") or {}).get("file")
@@ -94,11 +73,7 @@ def built(driven: Driven) -> Outputs:
 
 
 def refuse_forgetful(plan: Plan) -> None:
-    """Refuse a method that would remember nothing.
-
-    Raises:
-        ConfigError: If the method of a cell has no memory that learns.
-    """
+    """Refuse a method that would remember nothing."""
     for cell in plan.cells:
         if not learns(cell.resolved):
             raise ConfigError(f"method {cell.labels.method!r} has no memory to build; choose one that has")

@@ -5,11 +5,9 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from codriving.datatypes.experience import Interaction
+from codriving.datatypes import Interaction
 from codriving.errors import ConfigError, MemoryFileError
-from codriving.memory.reading import Reading, own_embedder, read_memory, search
-from codriving.memory.snapshot import StoredExperience
-from codriving.memory.store import merge
+from codriving.memory import Reading, StoredExperience, merge, own_embedder, read_memory, search
 
 WIDTH = 110
 

@@ -7,28 +7,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from codriving.config.choices import LISTED
+from codriving.config import LISTED
 from codriving.experiment.episode import Labels
 from codriving.experiment.scoring import names_of_scores
-from codriving.runs.redaction import redact
+from codriving.runs import redact
 
 if TYPE_CHECKING:
     from codriving.experiment.cells import Cell
 
-LONGEST = 100
-"""Characters of a folder's name; Windows allows 260 for a whole path."""
+LONGEST = 100  # Characters of a folder's name; Windows allows 260 for a whole path
 
 _LABELS = {"scenario": "scenario", "method": "method"}
+# The label in which a group, or a key of it, may show.
 _LABELS_BELOW = {"cda": "variant", "method": "variant", "llm": "reasoner"}
-"""The label in which a group, or a key of it, may show."""
 
 
 def folder_name(labels: Labels, swept: Mapping[str, str] | None = None, reasoner: bool = False) -> str:
-    """Name the folder of a cell.
-
-    Returns:
-        ``<scenario>-<method>-<variant>``, then ``-<key>=<value>`` for each swept key, with everything unusual replaced.
-    """
+    """Name the folder of a cell."""
     words = [labels.scenario, labels.method, labels.variant, *([labels.reasoner] if reasoner else [])]
     plain = [re.sub(r"[^A-Za-z0-9._]+", "_", word).lstrip(".") for word in words if word]
     values = {key: re.sub(r"[^A-Za-z0-9._+-]+", "_", text).strip("_") for key, text in (swept or {}).items()}
@@ -111,11 +106,7 @@ def _config_value(node: object, key: str, typed: str) -> str:
 
 
 def shown_apart(cells: Sequence[tuple[Labels, Mapping[str, str]]]) -> list[dict[str, str]]:
-    """Keep of the swept keys those that need a column of their own.
-
-    Returns:
-        The values of these keys for each cell, by the head of their column.
-    """
+    """Keep of the swept keys those that need a column of their own."""
     keys = list(dict.fromkeys(key for _, swept in cells for key in swept))
     kept = [key for key in keys if _needs_column(key, cells)]
     # A choice of scenario may have the name of another one: two files for one class.

@@ -4,28 +4,20 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from codriving.config.build import asks_for, build, targets
-from codriving.datatypes.parts import CaseMemory, Method, Model, Simulator
+from codriving.config import asks_for, build, targets
+from codriving.datatypes import CaseMemory, Method, Model, Simulator
 from codriving.experiment.scoring import scorers_of
 from codriving.experiment.worker import Objects
 
 
 def model_of(config: Mapping[str, Any]) -> Model | None:
-    """Build the language model that the method of a config asks for; None if it asks for none.
-
-    Raises:
-        ConfigError: If it cannot be built.
-    """
+    """Build the language model that the method of a config asks for; None if it asks for none."""
     plugins = config["plugins"]
     return build(config["llm"], Model, "llm", plugins) if asks_for(config["method"], Model, plugins) else None
 
 
 def memory_of(config: Mapping[str, Any]) -> CaseMemory | None:
-    """Build the memory that the method of a config asks for; None if it asks for none, or none is chosen.
-
-    Raises:
-        ConfigError: If it cannot be built.
-    """
+    """Build the memory that the method of a config asks for; None if it asks for none, or none is chosen."""
     node, plugins = config["memory"], config["plugins"]
     if node is None or not asks_for(config["method"], CaseMemory, plugins):
         return None
@@ -33,23 +25,12 @@ def memory_of(config: Mapping[str, Any]) -> CaseMemory | None:
 
 
 def make_method(config: Mapping[str, Any], llm: Model | None, memory: CaseMemory | None) -> Method:
-    """Build the method of a config, which is handed what it asks for.
-
-    Raises:
-        ConfigError: If it cannot be built.
-    """
+    """Build the method of a config, which is handed what it asks for."""
     return build(config["method"], Method, "method", config["plugins"], {Model: llm, CaseMemory: memory})
 
 
 def make_objects(config: Mapping[str, Any], llm: Model | None = None) -> Objects:
-    """Build the objects of a config; llm and memory are built once.
-
-    Args:
-        llm: The model that reasons in the place of the one that the config chooses.
-
-    Raises:
-        ConfigError: If one of them cannot be built.
-    """
+    """Build the objects of a config; llm and memory are built once."""
     plugins = config["plugins"]
     llm, memory = llm or model_of(config), memory_of(config)
     return Objects(
@@ -68,11 +49,7 @@ class BuildObjects:
     configs: Mapping[str, Mapping[str, Any]]
 
     def __call__(self, cell: str) -> Objects:
-        """Build them.
-
-        Raises:
-            ConfigError: If one of them cannot be built.
-        """
+        """Build them."""
         return make_objects(self.configs[cell])
 
 

@@ -7,22 +7,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from codriving.config.build import build, validate
-from codriving.config.compose import compose_named
-from codriving.config.schema import ROOT
-from codriving.config.sweep import Point
+from codriving.config import ROOT, Point, build, compose_named, validate
 from codriving.errors import ConfigError
 from codriving.experiment.cells import Cell, make_cell
 from codriving.experiment.launchers import Launcher
 from codriving.experiment.naming import distinct, repeated
 from codriving.experiment.objects import modules_to_preload
 from codriving.experiment.remembering import pinned
-from codriving.runs.redaction import MASK, redact
+from codriving.runs import MASK, redact
 
 T = TypeVar("T")
 
+# What all cells of a run have in common; classes may belong to one scenario alone, templates to one cell.
 SHARED = (*(name for name in ROOT if name not in ("plugins", "prompts")), "launcher")
-"""What all cells of a run have in common; classes may belong to one scenario alone, templates to one cell."""
 
 
 @dataclass(frozen=True)
@@ -62,11 +59,7 @@ class Plan:
 
 
 def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
-    """Plan a run with one cell a point.
-
-    Raises:
-        ConfigError: If an override, a value or a combination cannot be used.
-    """
+    """Plan a run with one cell a point."""
     configs, choices = composed(points, config_dir)
     first = configs[0]
     launcher = build(first["launcher"], Launcher, "launcher", first["plugins"])
@@ -107,14 +100,7 @@ def _is_complete(config: Mapping[str, Any], cells: int) -> bool:
 def composed(
     points: Sequence[Point], config_dir: Path | None = None
 ) -> tuple[list[dict[str, Any]], list[dict[str, str]]]:
-    """Compose the config of every cell; one after another, since Hydra's state is global.
-
-    Returns:
-        The configs, and of each the names of its YAMLs.
-
-    Raises:
-        ConfigError: If one cannot be composed, or what belongs to the run as a whole differs between cells.
-    """
+    """Compose the config of every cell; one after another, since Hydra's state is global."""
     pairs = each_cell(points, points, lambda point: compose_named(point.overrides, config_dir))
     configs = [config for config, _ in pairs]
     for point, config in zip(points, configs, strict=True):
@@ -129,20 +115,12 @@ def composed(
 
 
 def validated(points: Sequence[Point], configs: Sequence[Mapping[str, Any]]) -> None:
-    """Check every node of every cell by building it.
-
-    Raises:
-        ConfigError: With the full key, the rule, the value that broke it and the cell.
-    """
+    """Check every node of every cell by building it."""
     each_cell(points, configs, validate)
 
 
 def each_cell(points: Sequence[Point], given: Sequence[Any], work: Callable[[Any], T]) -> list[T]:
-    """Do the same for every cell.
-
-    Raises:
-        ConfigError: The first refusal, with the cell it is about, unless all cells are refused for one reason.
-    """
+    """Do the same for every cell."""
     done: list[T] = []
     refusals: dict[int, ConfigError] = {}
     for index, item in enumerate(given):

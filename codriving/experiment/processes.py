@@ -18,8 +18,7 @@ from codriving.errors import UserError
 from codriving.experiment.launchers import Launcher, Serial, worker_count
 from codriving.experiment.worker import Job, Report, Unit, Worker
 
-ATTEMPTS = 2
-"""How often a unit may take its process down: once can be the machine's fault, twice is the unit's."""
+ATTEMPTS = 2  # How often a unit may take its process down: once can be the machine's fault, twice is the unit's
 
 
 class Processes(Launcher):
@@ -102,12 +101,7 @@ class WorkerProcess:
             self.connection.send(unit)
 
     def receive(self) -> Report:
-        """Take the report of the unit.
-
-        Raises:
-            WorkerDied: If the process is gone.
-            UserError: If the batch has to stop.
-        """
+        """Take the report of the unit."""
         try:
             answer = self.connection.recv()
         except (EOFError, OSError):

@@ -6,8 +6,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TextIO, TypeAlias
 
-Update: TypeAlias = Callable[[str, bool], None]
-"""Takes note that an episode has ended: its cell, and whether it failed."""
+Update: TypeAlias = Callable[[str, bool], None]  # Takes note that an episode has ended: its cell, and whether it failed
 
 
 class _Count:

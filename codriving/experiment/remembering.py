@@ -6,21 +6,13 @@ from typing import Any
 
 from codriving.experiment.objects import memory_of
 
-MEMORIES = "memory"
-"""Folder, in the run folder, of the memories that grow in it; one file a cell."""
+MEMORIES = "memory"  # Folder, in the run folder, of the memories that grow in it; one file a cell
 
 AUTO = "auto"
 
 
 def pinned(resolved: Mapping[str, Any]) -> dict[str, Any]:
-    """Note in a config what the snapshot of its memory holds, so that no other is taken for it later.
-
-    Returns:
-        The config with the SHA-256 of the snapshot in place of ``auto``.
-
-    Raises:
-        UserError: If the snapshot cannot be read.
-    """
+    """Note in a config what the snapshot of its memory holds, so that no other is taken for it later."""
     node = resolved["memory"]
     memory = memory_of(resolved) if node is not None and node.get("snapshot") == AUTO else None
     return dict(resolved) if memory is None else {**resolved, "memory": {**node, "snapshot": memory.digest}}

@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING
 
 from codriving.errors import ConfigError, RunFolderError
 from codriving.experiment.stored import find_episode, read_film, road_of
-from codriving.runs.atomic import whole_file
+from codriving.runs import whole_file
 
 if TYPE_CHECKING:
-    from codriving.animation.film import Frame
+    from codriving.animation import Frame
 
 FORMATS = ("mp4", "gif")
+# Most frames a second; a GIF counts in hundredths of a second, and viewers slow down what is shorter than two.
 FASTEST = {"mp4": 60.0, "gif": 50.0}
-"""Most frames a second; a GIF counts in hundredths of a second, and viewers slow down what is shorter than two."""
 
-RATES = {"mp4": 25.0, "gif": 10.0}
-"""Frames a second, if none are asked for."""
+RATES = {"mp4": 25.0, "gif": 10.0}  # Frames a second, if none are asked for
 
 SPEEDS, SCALES = (0.05, 50.0), (0.5, 4.0)
 
@@ -65,7 +64,7 @@ def replay(run: Path, options: ReplayOptions) -> str:
     try:
         with whole_file(path) as partial:
             if options.frame is not None:
-                from codriving.animation.film import write_png
+                from codriving.animation import write_png
 
                 write_png(partial, show.frame(options.frame))
                 return f"Wrote {path}: {options.frame:g} s of seed {episode.seed}."

@@ -8,23 +8,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from codriving.config.compose import show
-from codriving.config.sweep import Point, expand
+from codriving.config import Point, expand, show
 from codriving.errors import ConfigError, ModelError
 from codriving.experiment.cells import Cell
 from codriving.experiment.drive import Driven, Finished, HaltedError, Interrupted, Outputs, drive
 from codriving.experiment.plan import Plan, cell_name, composed, make_plan, validated
-from codriving.reports.printed import print_table
+from codriving.reports import print_table
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-INTERRUPTED = 130
-"""Exit code of a process that the user stopped (128 + SIGINT)."""
+INTERRUPTED = 130  # Exit code of a process that the user stopped (128 + SIGINT)
 
+# The readings of "each CAV generates its expected passing order"; all are reported, none is chosen afterwards.
 OWN_ORDERS = ("own_view", "same_rule", "independent")
-"""The readings of "each CAV generates its expected passing order"; all are reported, none is chosen afterwards."""
 
+# What each cell of the ablation changes (paper, ablation study).
 REMOVALS: tuple[tuple[str, ...], ...] = (
     (),
     ("cda.state_sharing=false",),
@@ -33,7 +32,6 @@ REMOVALS: tuple[tuple[str, ...], ...] = (
     *(("cda.negotiation=false", "cda.binding=false", f"cda.own_order={order}") for order in OWN_ORDERS),
     ("cda.safety_check=false",),
 )
-"""What each cell of the ablation changes (paper, ablation study)."""
 
 
 @dataclass(frozen=True)
@@ -110,14 +108,7 @@ def run_frames(*overrides: str, config_dir: Path | None = None) -> Results:
 
 
 def ablation_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
-    """Take the sub-modules of the reasoning module out of each config in turn.
-
-    Args:
-        overrides: ``key=value`` tokens that hold for every cell; with several values, for one ablation each.
-
-    Returns:
-        The cells, those of one config together and the full method first.
-    """
+    """Take the sub-modules of the reasoning module out of each config in turn."""
     points = expand(overrides, config_dir)
     base = () if any(token.lstrip("+").startswith("experiment=") for token in overrides) else ("experiment=ablate",)
     return [Point((*base, *p.overrides, *removal), p.swept, removal) for p in points for removal in REMOVALS]
@@ -141,11 +132,7 @@ ABLATE = Command("ablate", ablation_points, _refuse_alike)
 
 
 def print_configs(points: Sequence[Point], config_dir: Path | None = None) -> None:
-    """Print the composed config of every cell, once all of them are known to be valid.
-
-    Raises:
-        ConfigError: If one of them cannot be used.
-    """
+    """Print the composed config of every cell, once all of them are known to be valid."""
     configs, _ = composed(points, config_dir)
     validated(points, configs)
     for index, (point, config) in enumerate(zip(points, configs, strict=True)):
@@ -155,17 +142,7 @@ def print_configs(points: Sequence[Point], config_dir: Path | None = None) -> No
 
 
 def stopped(stop: Interrupted | HaltedError, again: str) -> int:
-    """Say how to go on with a run that has been stopped.
-
-    Args:
-        again: The command.
-
-    Returns:
-        Exit code, if it was the user who stopped it.
-
-    Raises:
-        ModelError: If it was the language model.
-    """
+    """Say how to go on with a run that has been stopped."""
     if isinstance(stop, HaltedError):
         raise ModelError(f"{stop.text}; go on with: {again}") from stop
     print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)
@@ -181,11 +158,7 @@ def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None,
 
 
 def report(finished: Finished, again: str) -> int:
-    """Print what a finished run has to say; the last line tells its folder.
-
-    Returns:
-        Exit code: 0, or 1 if episodes ended in an error or could not be filmed.
-    """
+    """Print what a finished run has to say; the last line tells its folder."""
     if not finished.driven and not finished.filmed:
         print(f"Nothing to do: all {finished.kept} episodes of this run are finished already.")
     for index, printed in enumerate(finished.printed):

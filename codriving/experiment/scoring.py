@@ -6,27 +6,15 @@ from math import isclose
 from pathlib import Path
 from typing import Any
 
-from codriving.config.build import TARGET, build
-from codriving.datatypes.parts import Metric, Scenario
-from codriving.datatypes.record import Ending, EpisodeRecord
+from codriving.config import TARGET, build
+from codriving.datatypes import Ending, EpisodeRecord, Metric, Scenario
 from codriving.errors import RunFolderError
-from codriving.metrics.scorer import Scorer
-from codriving.runs.atomic import write_text
-from codriving.runs.episode_folder import RECORD, UNNAMED
-from codriving.runs.json_files import encode
-from codriving.runs.redaction import flat
-from codriving.runs.trajectory_file import read_trajectory
+from codriving.metrics import Scorer
+from codriving.runs import RECORD, UNNAMED, encode, flat, read_trajectory, write_text
 
 
 def scorers_of(config: Mapping[str, Any]) -> dict[str, Scorer]:
-    """Build the metrics of a cell, by the name of their scores.
-
-    Args:
-        config: Its resolved config; ``metrics`` is one metric, or several by name.
-
-    Raises:
-        ConfigError: If one cannot be built.
-    """
+    """Build the metrics of a cell, by the name of their scores."""
     node, plugins = config["metrics"], config["plugins"]
     nodes = {"": node} if TARGET in node else node
     made = {
@@ -44,13 +32,6 @@ def scored(episodes: Iterable[tuple[Path, EpisodeRecord]], config: Mapping[str, 
     """Score what has been driven by the metrics that it has no score of.
 
     The record is written again, whole or not at all; that of an episode of release 0.1 stays as it is.
-
-    Args:
-        episodes: Folder and record of each episode of one cell.
-        config: Its resolved config; ``metrics`` holds metrics by the name of their scores.
-
-    Raises:
-        RunFolderError: If a trajectory is damaged, cannot be scored, or a record cannot be written.
     """
     found, road, scorers = [], None, None
     for folder, record in episodes:

@@ -5,20 +5,24 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from codriving.config.build import TARGET, build
-from codriving.config.choices import choices
-from codriving.config.compose import compose
-from codriving.datatypes.parts import Scenario
-from codriving.datatypes.road import Road
+from codriving.config import TARGET, build, choices, compose
+from codriving.datatypes import Road, Scenario
 from codriving.errors import RunFolderError
-from codriving.runs.episode_folder import EPISODES, read_decisions, read_record
-from codriving.runs.identity import CellEntry
-from codriving.runs.manifest import MANIFEST, Manifest, read_manifest
-from codriving.runs.redaction import nested
-from codriving.runs.trajectory_file import TRAJECTORY, read_trajectory
+from codriving.runs import (
+    EPISODES,
+    MANIFEST,
+    TRAJECTORY,
+    CellEntry,
+    Manifest,
+    nested,
+    read_decisions,
+    read_manifest,
+    read_record,
+    read_trajectory,
+)
 
 if TYPE_CHECKING:
-    from codriving.animation.film import EpisodeFilm
+    from codriving.animation import EpisodeFilm
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,11 +35,7 @@ class StoredEpisode:
 
 
 def find_run(run: Path) -> tuple[Path, Manifest]:
-    """Find a run folder by its path, or by its name below ``outputs/``.
-
-    Raises:
-        RunFolderError: If there is no run there, or its manifest is damaged.
-    """
+    """Find a run folder by its path, or by its name below ``outputs/``."""
     named = sorted(Path("outputs").glob(f"*/{run}")) if len(run.parts) == 1 and not run.exists() else []
     places = [run] if run.exists() else [place for place in named if (place / MANIFEST).is_file()]
     if len(places) > 1:
@@ -52,15 +52,7 @@ def find_run(run: Path) -> tuple[Path, Manifest]:
 
 
 def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode:
-    """Find an episode.
-
-    Args:
-        cell: Name of the cell or a part of it that no other has; None if there is but one.
-        seed: Seed; None takes the first that was driven.
-
-    Raises:
-        RunFolderError: If there is no such episode; the message lists what there is.
-    """
+    """Find an episode."""
     run, manifest = find_run(run)
     entry = _cell(run, manifest, cell)
     episodes = run / EPISODES / entry.folder
@@ -78,12 +70,8 @@ def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode
 
 
 def read_film(folder: Path, road: Road, scale: float = 1.0) -> "EpisodeFilm":
-    """Read an episode for its pictures.
-
-    Raises:
-        RunFolderError: If there is nothing to show, or a file is damaged.
-    """
-    from codriving.animation.film import EpisodeFilm
+    """Read an episode for its pictures."""
+    from codriving.animation import EpisodeFilm
 
     record = read_record(folder)
     trajectory = read_trajectory(folder, record)
@@ -94,15 +82,7 @@ def read_film(folder: Path, road: Road, scale: float = 1.0) -> "EpisodeFilm":
 
 
 def road_of(cell: CellEntry, config_dir: Path | None = None) -> Road:
-    """Build the road of a cell: the class is that of the scenario's YAML, only the values are from the manifest.
-
-    Args:
-        config_dir: Folder with YAMLs of the user's.
-
-    Raises:
-        RunFolderError: If there is no such YAML, or no value in the manifest.
-        ConfigError: If the scenario cannot be built any more, for instance since its package is missing.
-    """
+    """Build the road of a cell: the class is that of the scenario's YAML, only the values are from the manifest."""
     values = nested({key: value for key, value in cell.settings.items() if key.startswith("scenario.")})
     if not values:
         raise RunFolderError(f"the manifest does not say what scenario {cell.folder} was; drive it again")

@@ -10,8 +10,7 @@ from codriving.experiment.episode import EpisodeResult
 from codriving.experiment.launchers import Launcher, worker_count
 from codriving.experiment.worker import Job, Objects, Report, Unit, Worker
 
-POLL = 0.5
-"""How long to wait before looking again [s]; where Ctrl-C does not end a wait, it is noticed after this."""
+POLL = 0.5  # How long to wait before looking again [s]; where Ctrl-C does not end a wait, it is noticed after this
 
 
 class Threads(Launcher):

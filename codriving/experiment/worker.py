@@ -7,16 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from codriving.datatypes.parts import CaseMemory, Method, Model, Simulator
-from codriving.datatypes.record import Ending
+from codriving.datatypes import CaseMemory, Ending, Method, Model, Simulator
 from codriving.errors import UserError
 from codriving.experiment.episode import EpisodeResult, Labels, failed_result, run_episode
-from codriving.metrics.scorer import Scorer
-from codriving.runs.episode_folder import episode_folder, timing_of, write_episode
-from codriving.runs.redaction import secrets_of
+from codriving.metrics import Scorer
+from codriving.runs import episode_folder, secrets_of, timing_of, write_episode
 
-CELLS_AT_ONCE = 4
-"""Cells whose objects a worker holds."""
+CELLS_AT_ONCE = 4  # Cells whose objects a worker holds
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +46,7 @@ class SaveEpisode:
     variables: tuple[str, ...] = ()
 
     def __call__(self, unit: Unit, result: EpisodeResult) -> None:
-        """Write one episode, whole or not at all.
-
-        Raises:
-            RunFolderError: If the disk refuses.
-            ValueError: If the result cannot be written as it is.
-        """
+        """Write one episode, whole or not at all."""
         write_episode(
             episode_folder(self.run, unit.cell, unit.seed),
             result.record,
@@ -111,23 +103,14 @@ class Job:
 
 
 class Worker:
-    """Drives units one after another, with objects of its own.
-
-    Args:
-        go_on: Called before each decision; raises what is no ``Exception`` to give the episode up.
-    """
+    """Drives units one after another, with objects of its own."""
 
     def __init__(self, job: Job, go_on: Callable[[], None] = lambda: None) -> None:
         self._job, self._go_on = job, go_on
         self._objects: dict[str, Objects] = {}
 
     def run(self, unit: Unit) -> Report:
-        """Drive one unit and save it.
-
-        Raises:
-            UserError: If the config cannot be built, the result cannot be saved, or the language model must not be used
-                any more: the whole batch has to stop.
-        """
+        """Drive one unit and save it."""
         job, labels = self._job, self._job.labels[unit.cell]
         ending = job.saved(unit)
         if ending is not None:
@@ -146,11 +129,7 @@ class Worker:
         return report
 
     def abandon(self, unit: Unit, error: Exception) -> Report:
-        """Save a unit as failed without driving it.
-
-        Raises:
-            UserError: If the record cannot be saved.
-        """
+        """Save a unit as failed without driving it."""
         ending = self._job.saved(unit)
         if self._job.after and ending is not None:
             self._job.after.abandon(unit, error)

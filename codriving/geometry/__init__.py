@@ -1,1 +1,13 @@
 """Shapes: paths by arc length, oriented boxes, and the conflict zones between routes."""
+
+from codriving.geometry.box import PLANNING, TRUE, Footprint, corners, overlap
+from codriving.geometry.curve import FloatArray
+from codriving.geometry.lane_path import lane_path, lane_starts
+from codriving.geometry.path import Path, progress
+from codriving.geometry.road_map import RoadMap, road_map
+from codriving.geometry.zone import ConflictZone
+
+__all__ = [
+    "PLANNING", "TRUE", "ConflictZone", "FloatArray", "Footprint", "Path", "RoadMap", "corners", "lane_path",
+    "lane_starts", "overlap", "progress", "road_map",
+]  # fmt: skip

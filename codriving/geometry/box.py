@@ -18,11 +18,10 @@ class Footprint:
     width: float
 
 
+# For planning and scheduling: vehicles cut corners by up to 0.8 m. Wider than 3.2 m, opposite 4 m lanes conflict.
 PLANNING = Footprint(6.0, 3.2)
-"""For planning and scheduling: vehicles cut corners by up to 0.8 m. Wider than 3.2 m, opposite 4 m lanes conflict."""
 
-TRUE = Footprint(5.0, 2.0)
-"""For measuring: collisions and post-encroachment times."""
+TRUE = Footprint(5.0, 2.0)  # For measuring: collisions and post-encroachment times
 
 
 def corners(x: ArrayLike, y: ArrayLike, heading: ArrayLike, length: float, width: float) -> FloatArray:
@@ -47,12 +46,7 @@ def overlap(corners_a: FloatArray, corners_b: FloatArray) -> bool:
 
 
 def overlaps(corners_a: FloatArray, corners_b: FloatArray) -> BoolArray:
-    """Return whether many boxes overlap, pair by pair.
-
-    Args:
-        corners_a: Corner points (..., 4, 2) [m].
-        corners_b: Corner points (..., 4, 2) [m], broadcast against `corners_a`.
-    """
+    """Return whether many boxes overlap, pair by pair."""
     sides = (c[..., 1:3, :] - c[..., 0:2, :] for c in (corners_a, corners_b))
     axes = np.concatenate(np.broadcast_arrays(*sides), axis=-2)
     a = np.einsum("...kc,...pc->...kp", axes, corners_a)
@@ -66,14 +60,6 @@ def separation(dx: FloatArray, dy: FloatArray, cos: FloatArray, sin: FloatArray,
 
     The value is negative exactly if the boxes overlap and changes continuously with their places, so that the limit
     of an overlap can be interpolated.
-
-    Args:
-        dx: Second centre minus first, in the frame of the first box, along its heading [m].
-        dy: The same across its heading [m].
-        footprint: Size of both boxes [m].
-
-    Returns:
-        Largest gap over the four axes, in the shape of the arguments [m].
     """
     length, width = footprint.length / 2, footprint.width / 2
     c, s = np.abs(cos), np.abs(sin)

@@ -11,11 +11,10 @@ from codriving.geometry.path import Path
 
 IntArray = NDArray[np.intp]
 
+# Footprints that overlap by no more than this only touch [m]; rounding must not decide over a whole row of cells.
 TOUCH = 1e-9
-"""Footprints that overlap by no more than this only touch [m]; rounding must not decide over a whole row of cells."""
 
-_BLOCK = 16
-"""Path points that are first compared as one disc, so that long paths need little memory."""
+_BLOCK = 16  # Path points that are first compared as one disc, so that long paths need little memory
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,11 +52,7 @@ def cell_separation(path_i: Path, path_j: Path, cells: Cells, footprint: Footpri
 
 
 def components(cells: Cells) -> IntArray:
-    """Number the connected parts of a set of cells; cells that touch at a side or a corner are connected.
-
-    Returns:
-        Number of the part of each cell (n,), counted from 0 in the order of first appearance.
-    """
+    """Number the connected parts of a set of cells; cells that touch at a side or a corner are connected."""
     if not len(cells.i):
         return np.empty(0, dtype=np.intp)
     breaks = np.flatnonzero((np.diff(cells.j) != 0) | (np.diff(cells.i) != 1)) + 1

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.road import Arc, LaneShape, Point, Sine, Straight
+from codriving.datatypes import Arc, LaneShape, Point, Sine, Straight
 
 FloatArray = NDArray[np.float64]
 
-_FINE = 0.02
-"""Step of the numeric integration of arc length [m]."""
+_FINE = 0.02  # Step of the numeric integration of arc length [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,10 +42,6 @@ def bridge(start: Point, heading: float, end: Point, end_heading: float) -> Curv
     """Return the smooth way over a gap between two lanes, a cubic Hermite curve.
 
     Networks such as highway-env's roundabout leave metres between the end of a lane and the start of the next.
-
-    Args:
-        heading: Heading at the start [rad].
-        end_heading: Heading at the end [rad].
     """
     p, q = np.array(start), np.array(end)
     chord = float(np.hypot(*(q - p)))
@@ -73,11 +68,7 @@ def bridge(start: Point, heading: float, end: Point, end_heading: float) -> Curv
 
 
 def taper(left: Curve, entered: Curve, length: float) -> Curve:
-    """Return the way from the end of one lane over to the lane beside it, half a cosine across.
-
-    Args:
-        length: How much of the lane that is left it takes, at most all of it [m].
-    """
+    """Return the way from the end of one lane over to the lane beside it, half a cosine across."""
     share = min(length / left.length, 1.0)
 
     def point(u: FloatArray) -> FloatArray:

@@ -4,31 +4,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codriving.datatypes.order import Relation
+from codriving.datatypes import Relation
 from codriving.geometry.box import Footprint
 from codriving.geometry.collision_set import Cells, IntArray, cell_separation, collision_set, components
 from codriving.geometry.curve import FloatArray
 from codriving.geometry.path import Path
 from codriving.geometry.zone import Band, ConflictZone
 
+# A zone in which the footprints overlap by no more than this anywhere is none [m]. Tails swing out on turns: at 6.0 x
+# 3.2 m, cars that turn right out of neighbouring legs graze by 3 cm. Whether a grid of 0.5 m sees that is chance, and
+# the footprint carries more than half a metre of margin at each side.
 _GRAZE = 0.05
-"""A zone in which the footprints overlap by no more than this anywhere is none [m].
 
-Tails swing out on turns: at 6.0 x 3.2 m, cars that turn right out of neighbouring legs graze by 3 cm. Whether a grid
-of 0.5 m sees that is chance, and the footprint carries more than half a metre of margin at each side.
-"""
+_OFFSET = 0.3  # Centre lines closer than this coincide [m]
 
-_OFFSET = 0.3
-"""Centre lines closer than this coincide [m]."""
+_ANGLE = np.radians(15.0)  # Centre lines that differ less in heading than this coincide [rad]
 
-_ANGLE = np.radians(15.0)
-"""Centre lines that differ less in heading than this coincide [rad]."""
+_SHORTEST = 5.0  # A shorter common stretch is a mere crossing [m]
 
-_SHORTEST = 5.0
-"""A shorter common stretch is a mere crossing [m]."""
-
-_END = 1.0
-"""A stretch that comes this near to the end of a route touches it [m]."""
+_END = 1.0  # A stretch that comes this near to the end of a route touches it [m]
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,24 +3,19 @@
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from codriving.datatypes.road import Lane, LaneId, Route, beside
+from codriving.datatypes import Lane, LaneId, Route, beside
 from codriving.geometry.box import TRUE
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.path import Path
 
-_REMEMBERED = 10_000
-"""Places on lanes that are remembered."""
+_REMEMBERED = 10_000  # Places on lanes that are remembered
 
+# A body that comes this near to a lane counts as reaching onto it [m]; drivers who change lanes are seen early.
 _LEANS = 0.6
-"""A body that comes this near to a lane counts as reaching onto it [m]; drivers who change lanes are seen early."""
 
 
 class LaneChanges:
-    """The lane changes that routes ask for, and what lies on the lanes beside them.
-
-    Args:
-        starts: Arc length at which each lane of a route begins on it, by route and lane [m].
-    """
+    """The lane changes that routes ask for, and what lies on the lanes beside them."""
 
     def __init__(
         self, lanes: Mapping[LaneId, Lane], routes: Mapping[str, Route], starts: Mapping[tuple[str, LaneId], float]
@@ -31,15 +26,7 @@ class LaneChanges:
         self._beside: dict[tuple[str, LaneId], tuple[tuple[str, LaneId], ...]] = {}
 
     def ahead(self, route_id: str, s: float) -> tuple[LaneId, float, float] | None:
-        """Return the next lane change that a route asks for.
-
-        Args:
-            s: Arc length on it [m].
-
-        Returns:
-            The lane to change to, the arc length by which to have begun, the middle of the taper, and that at which
-            the present lane ends [m]; None if there is no change ahead.
-        """
+        """Return the next lane change that a route asks for."""
         route = self.routes[route_id]
         for lane, other in pairwise(route.lanes):
             latest = self._starts[route_id, other]
@@ -64,15 +51,7 @@ class LaneChanges:
         return self._beside[key]
 
     def covered(self, route_id: str, lane: LaneId, x: float, y: float) -> tuple[tuple[str, float], ...]:
-        """Return the routes beside a route onto whose lanes a body still or already reaches.
-
-        Args:
-            x: Centre of the body [m].
-            y: Centre of the body [m].
-
-        Returns:
-            Id of each route and arc length of the place on it [m].
-        """
+        """Return the routes beside a route onto whose lanes a body still or already reaches."""
         found = []
         for name, other in self.routes_beside(route_id, lane):
             along, lateral = self._on_lane(other, x, y)

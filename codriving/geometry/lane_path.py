@@ -5,15 +5,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from codriving.datatypes.road import Lane, beside
+from codriving.datatypes import Lane, beside
 from codriving.geometry.curve import Curve, FloatArray, bridge, first_part, lane_curve, taper
 from codriving.geometry.path import Path
 
-SPACING = 0.5
-"""Nominal distance between two path points [m]."""
+SPACING = 0.5  # Nominal distance between two path points [m]
 
-JOINED = 1e-3
-"""Lanes whose ends are closer than this are joined without a bridge [m]."""
+JOINED = 1e-3  # Lanes whose ends are closer than this are joined without a bridge [m]
 
 
 def lane_path(lane: Lane, spacing: float = SPACING) -> Path:
@@ -22,11 +20,7 @@ def lane_path(lane: Lane, spacing: float = SPACING) -> Path:
 
 
 def route_path(lanes: Sequence[Lane], change: float = 0.0, spacing: float = SPACING) -> Path:
-    """Join lanes into one path; a gap between two of them is bridged smoothly, a lane change is a taper.
-
-    Args:
-        change: Length of the way from a lane to the one beside it, at the end of the one that is left [m].
-    """
+    """Join lanes into one path; a gap between two of them is bridged smoothly, a lane change is a taper."""
     return _sample([curve for _, curve in joined_curves(lanes, change)], spacing)
 
 

@@ -6,17 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from codriving.datatypes.road import Lane, LaneId, Route, beside
+from codriving.datatypes import Lane, LaneId, Route, beside
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.path import Path
 
 
 class Nearby:
-    """Looks up the routes that pass by a place, all of them at once.
-
-    Args:
-        starts: Arc length at which each lane of a route begins on it, by route and lane [m].
-    """
+    """Looks up the routes that pass by a place, all of them at once."""
 
     def __init__(
         self,
@@ -37,18 +33,7 @@ class Nearby:
     def routes(
         self, x: float, y: float, heading: float | None, tolerance: float = 2.0, angle: float = math.pi / 3
     ) -> tuple[tuple[str, float], ...]:
-        """Return the routes that pass by a place, as far as the place and heading of a vehicle tell.
-
-        Args:
-            x: Place [m].
-            y: Place [m].
-            heading: Heading of the vehicle [rad]; None if any direction will do.
-            tolerance: Largest distance of the centre line [m].
-            angle: Largest difference of the headings [rad].
-
-        Returns:
-            Id of each route and arc length of the place on it [m], in order of id.
-        """
+        """Return the routes that pass by a place, as far as the place and heading of a vehicle tell."""
         dx, dy = self._x - x, self._y - y
         square = dx * dx + dy * dy
         if heading is not None:

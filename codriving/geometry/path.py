@@ -8,8 +8,7 @@ from numpy.typing import ArrayLike
 
 from codriving.geometry.curve import FloatArray
 
-_BEHIND, _AHEAD = 5.0, 30.0
-"""How far around the expected place a projection looks [m]."""
+_BEHIND, _AHEAD = 5.0, 30.0  # How far around the expected place a projection looks [m]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

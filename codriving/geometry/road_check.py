@@ -5,28 +5,20 @@ from collections import Counter
 from collections.abc import Iterable
 from itertools import pairwise
 
-from codriving.datatypes.road import Arc, Lane, Road, Route, beside
+from codriving.datatypes import Arc, Lane, Road, Route, beside
 from codriving.errors import ScenarioError
 from codriving.geometry.curve import lane_curve
 from codriving.geometry.lane_path import end_of, route_path
 
-_LONGEST_GAP = 15.0
-"""Longest gap between two lanes that is bridged [m]."""
+_LONGEST_GAP = 15.0  # Longest gap between two lanes that is bridged [m]
 
-_SIDEWAYS = math.radians(60.0)
-"""Steepest direction over a gap against the heading of either lane [rad]."""
+_SIDEWAYS = math.radians(60.0)  # Steepest direction over a gap against the heading of either lane [rad]
 
-_ROUGH = 0.5
-"""Gaps shorter than this may lie in any direction [m]."""
+_ROUGH = 0.5  # Gaps shorter than this may lie in any direction [m]
 
 
 def check_road(road: Road) -> None:
-    """Refuse a road that is not consistent in itself.
-
-    Raises:
-        ScenarioError: If there is no route, an id is used twice, a lane has no length, a route names a lane that does
-            not exist or two lanes that are not connected, or its entry and goal are not on it in this order.
-    """
+    """Refuse a road that is not consistent in itself."""
     if not road.routes:
         raise ScenarioError(f"road {road.name!r} has no routes; nobody could drive on it")
     _unique(road, "lane", (lane.id for lane in road.lanes))

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from codriving.datatypes.road import Lane, LaneId, Road, Route
+from codriving.datatypes import Lane, LaneId, Road, Route
 from codriving.geometry.box import PLANNING, Footprint
 from codriving.geometry.find_zones import find_zones
 from codriving.geometry.lane_changes import LaneChanges
@@ -15,8 +15,7 @@ from codriving.geometry.path import Path
 from codriving.geometry.road_check import check_road
 from codriving.geometry.zone import ConflictZone, following_zone
 
-_REMEMBERED = 10_000
-"""Projections that are remembered; many vehicles need the same ones within a decision step."""
+_REMEMBERED = 10_000  # Projections that are remembered; many vehicles need the same ones within a decision step
 
 
 class RoadMap:

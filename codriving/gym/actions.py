@@ -6,12 +6,12 @@ from operator import index
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.config.schema import LARGEST_SEED
-from codriving.datatypes.world import Action
+from codriving.config import LARGEST_SEED
+from codriving.datatypes import Action
 from codriving.errors import EpisodeError
 
+# Smallest seed that is drawn; tables use smaller ones, so no training drives the episodes of a table.
 FIRST_DRAWN = 1_000_000
-"""Smallest seed that is drawn; tables use smaller ones, so no training drives the episodes of a table."""
 
 
 def draw_seed(rng: np.random.Generator) -> int:
@@ -28,36 +28,23 @@ def _whole(number: object) -> int:
 
 
 def check_seed(seed: object) -> int:
-    """Return a seed that was given as a plain number.
-
-    Raises:
-        EpisodeError: If it is not a whole number of at least 0.
-    """
+    """Return a seed that was given as a plain number."""
     number = _whole(seed)
     if number < 0:
         raise EpisodeError(f"seed must be a whole number of at least 0, or None to draw one, got {seed!r}")
     return number
 
 
-ACTIONS = tuple(Action)
-"""What the numbers 0 to 4 mean."""
+ACTIONS = tuple(Action)  # What the numbers 0 to 4 mean
 
 
 def action_mask(available: Collection[Action]) -> NDArray[np.int8]:
-    """Mark the actions that the road allows.
-
-    Returns:
-        1 where the action of that number is allowed, else 0 (5,).
-    """
+    """Mark the actions that the road allows."""
     return np.array([action in (available or (Action.IDLE,)) for action in ACTIONS], dtype=np.int8)
 
 
 def action_of(agent: str, number: object) -> Action:
-    """Return the action of a number.
-
-    Raises:
-        EpisodeError: If it is not the number of an action.
-    """
+    """Return the action of a number."""
     found = _whole(number)
     if not 0 <= found < len(ACTIONS):
         names = ", ".join(f"{i} {action}" for i, action in enumerate(ACTIONS))

@@ -7,32 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from codriving.config.build import build
-from codriving.config.choices import check_config_dir, choices
-from codriving.config.compose import compose
-from codriving.datatypes.parts import Scenario
-from codriving.environment.environment import Environment
+from codriving.config import build, check_config_dir, choices, compose
+from codriving.datatypes import Scenario
+from codriving.environment import Environment
 from codriving.errors import ConfigError
-from codriving.reasoning.sharing.sharing import CdaLevel
+from codriving.reasoning import CdaLevel
 
-READ = ("scenario", "environment", "cda", "plugins")
-"""Keys of the root that make a difference here."""
+READ = ("scenario", "environment", "cda", "plugins")  # Keys of the root that make a difference here
 
-CHOSEN = ("scenario", "cda")
-"""Groups that are chosen by an argument, and not by an override."""
+CHOSEN = ("scenario", "cda")  # Groups that are chosen by an argument, and not by an override
 
 
 def configured(
     name: str, overrides: Sequence[str], cda: str, config_dir: str | Path | None, settings: Mapping[str, Any]
 ) -> tuple[Environment, CdaLevel]:
-    """Build the environment of a scenario.
-
-    Args:
-        overrides: ``key=value`` tokens.
-
-    Raises:
-        ConfigError: If anything cannot be used, with the key and the rule.
-    """
+    """Build the environment of a scenario."""
     folder = None if config_dir is None else Path(config_dir)
     if folder is not None:
         check_config_dir(folder)

@@ -3,9 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from codriving.datatypes.record import Ending
-from codriving.datatypes.world import Action, Kind, WorldState
-from codriving.environment.environment import Environment
+from codriving.datatypes import Action, Ending, Kind, WorldState
+from codriving.environment import Environment
 from codriving.errors import EpisodeError, ScenarioError
 from codriving.gym.actions import action_mask, action_of
 from codriving.gym.observation import FloatArray, Observer
@@ -40,11 +39,7 @@ class AgentEpisode:
         self._views: dict[str, FloatArray] = {}
 
     def begin(self, seed: int) -> None:
-        """Begin an episode.
-
-        Raises:
-            ScenarioError: If the vehicles cannot be placed, or the CAVs are not those of every other seed.
-        """
+        """Begin an episode."""
         self.world, self.driving, self.actions = None, [], {}
         world = self.environment.reset(seed)
         if sorted(world.available) != sorted(self.cavs):
@@ -57,11 +52,7 @@ class AgentEpisode:
         self._views = self.observer.observe(world)
 
     def step(self, actions: Mapping[str, object]) -> StepResult:
-        """Carry out one decision of every CAV on the road.
-
-        Raises:
-            EpisodeError: If no episode is going on, or an action is missing, unknown, or of no CAV.
-        """
+        """Carry out one decision of every CAV on the road."""
         before = self.world
         if before is None or not self.driving:
             raise EpisodeError("no episode is going on; call reset() before step(actions)")
@@ -80,11 +71,7 @@ class AgentEpisode:
         )
 
     def observations(self, names: Sequence[str]) -> dict[str, FloatArray]:
-        """Return what CAVs observe now; zeros for those that have left the road.
-
-        Returns:
-            A matrix (rows, 6) of its own each, by id.
-        """
+        """Return what CAVs observe now; zeros for those that have left the road."""
         views = self._views
         return {name: views[name].copy() if name in views else self.observer.nothing() for name in names}
 

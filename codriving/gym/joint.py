@@ -16,15 +16,7 @@ from codriving.gym.parallel import METADATA, ParallelDriving
 
 
 class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
-    """One agent that decides for all CAVs: observations and actions are the products of theirs (paper Section II).
-
-    Args:
-        overrides: ``key=value`` tokens, as for ``codriving.parallel_env``.
-        **settings: The other arguments of ``codriving.parallel_env``.
-
-    Raises:
-        ConfigError: If a setting cannot be used.
-    """
+    """One agent that decides for all CAVs: observations and actions are the products of theirs (paper Section II)."""
 
     metadata = METADATA
 
@@ -35,36 +27,14 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         self.action_space = MultiDiscrete([len(ACTIONS)] * len(self.parallel.possible_agents))
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[FloatArray, Info]:
-        """Begin an episode.
-
-        Args:
-            seed: Begins exactly the episode that `codriving run` drives with this seed, and seeds the generator from
-                which later episodes are drawn; None draws one.
-
-        Returns:
-            Joint observation (cavs, rows, 6) and info.
-
-        Raises:
-            EpisodeError: If the seed is not a whole number of at least 0.
-            ScenarioError: If the vehicles cannot be placed.
-        """
+        """Begin an episode."""
         given = None if seed is None else check_seed(seed)
         super().reset(seed=given)
         self.parallel.reset(draw_seed(self.np_random) if given is None else given)
         return self.parallel.state(), self._info()
 
     def step(self, action: NDArray[np.int64]) -> tuple[FloatArray, float, bool, bool, Info]:
-        """Carry out one decision of every CAV.
-
-        Args:
-            action: A number of ``ACTIONS`` for each CAV (cavs,); those of CAVs that have arrived are ignored.
-
-        Returns:
-            Joint observation (cavs, rows, 6), mean reward of all CAVs, terminated, truncated, info.
-
-        Raises:
-            EpisodeError: If no episode is going on, or there is not one action for each CAV.
-        """
+        """Carry out one decision of every CAV."""
         agents = self.parallel.possible_agents
         numbers = np.asarray(action).tolist()
         if not isinstance(numbers, list) or len(numbers) != len(agents):
@@ -76,14 +46,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         return self.parallel.state(), reward, not late and not self.parallel.agents, late, self._info()
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Draw the world as it is now.
-
-        Returns:
-            A picture (height, width, 3), RGB; None without a render mode.
-
-        Raises:
-            EpisodeError: If no episode has begun.
-        """
+        """Draw the world as it is now."""
         return self.parallel.render()
 
     def close(self) -> None:

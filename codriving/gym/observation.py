@@ -11,14 +11,11 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
-from codriving.datatypes.road import LaneId, Route, beside
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import DrivingModel, Intent, VehicleState, WorldState
-from codriving.environment.scenarios.pace import TOP_SPEED
+from codriving.datatypes import DrivingModel, Intent, LaneId, Route, TrackedVehicle, VehicleState, WorldState, beside
+from codriving.environment import TOP_SPEED
 from codriving.errors import ConfigError
-from codriving.geometry.lane_path import lane_path
-from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, CdaLevel, SensedStates, SharedStates
+from codriving.geometry import RoadMap, lane_path
+from codriving.reasoning import HIDDEN_INTENTS, SHARED_INTENTS, CdaLevel, SensedStates, SharedStates
 
 
 class Intention(IntEnum):
@@ -51,14 +48,13 @@ def _side(lane: LaneId, other: LaneId) -> Intention:
     return Intention.LEFT if other[2] < lane[2] else Intention.RIGHT
 
 
-FEATURES = ("x", "y", "vx", "vy", "lane", "intention")
-"""The columns of an observation (paper Section II)."""
+FEATURES = ("x", "y", "vx", "vy", "lane", "intention")  # The columns of an observation (paper Section II)
 
 COORDINATES = ("relative", "absolute")
 MOST_ROWS = 100
 
+# A vehicle is at most this far from the nearest centre line: a collision or leaving the road ends the episode [m].
 MARGIN = 10.0
-"""A vehicle is at most this far from the nearest centre line: a collision or leaving the road ends the episode [m]."""
 
 FloatArray = NDArray[np.float32]
 
@@ -69,9 +65,6 @@ class Layout:
 
     Attributes:
         coordinates: ``relative``: places of others are seen from the ego vehicle; ``absolute``: on the map.
-
-    Raises:
-        ConfigError: If a setting is not one of the allowed values.
     """
 
     rows: int = 8
@@ -138,11 +131,7 @@ class CdaObserver(Observer):
         return np.zeros(self._layout.shape, dtype=np.float32)
 
     def observe(self, world: WorldState) -> dict[str, FloatArray]:
-        """Return what each CAV on the road observes.
-
-        Returns:
-            A matrix (rows, 6) a CAV, by id: the CAV itself, then the others from near to far, then zeros.
-        """
+        """Return what each CAV on the road observes."""
         views = self._states.detections(world, self._model)
         intents = self._intents.intents(world)
         return {cav.id: self._matrix(cav, world.intents[cav.id], views[cav.id], intents) for cav in world.cavs}

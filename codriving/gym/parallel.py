@@ -9,8 +9,8 @@ from gymnasium.spaces import Box, Discrete
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
-from codriving.animation.live import LivePicture
-from codriving.datatypes.world import WorldState
+from codriving.animation import LivePicture
+from codriving.datatypes import WorldState
 from codriving.errors import ConfigError, EpisodeError
 from codriving.gym.actions import ACTIONS, check_seed, draw_seed
 from codriving.gym.configured import configured

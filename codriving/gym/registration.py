@@ -4,7 +4,7 @@ from pathlib import Path
 
 import gymnasium
 
-from codriving.config.choices import choices
+from codriving.config import choices
 from codriving.gym.joint import JointDriving
 
 
@@ -14,11 +14,7 @@ def env_id(scenario: str) -> str:
 
 
 def register_scenarios(config_dir: str | Path | None = None) -> None:
-    """Register every scenario with Gymnasium; those that it knows already stay as they are.
-
-    Args:
-        config_dir: A folder of the user's own YAMLs; its scenarios are registered, too.
-    """
+    """Register every scenario with Gymnasium; those that it knows already stay as they are."""
     ours, folder = choices("scenario"), None if config_dir is None else Path(config_dir)
     for name in choices("scenario", folder):
         if env_id(name) not in gymnasium.registry:

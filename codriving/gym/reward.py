@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 from math import isfinite
 from typing import Any
 
-from codriving.datatypes.world import Action, VehicleState
+from codriving.datatypes import Action, VehicleState
 from codriving.errors import ConfigError
 
 
@@ -71,12 +71,7 @@ def reward_weights(given: RewardWeights | Mapping[str, Any] | None) -> RewardWei
 
 
 def rewards(weights: RewardWeights, driven: Sequence[CavStep], duration: float, top_speed: float) -> list[float]:
-    """Reward one decision step.
-
-    Args:
-        duration: Simulated time of the step [s].
-        top_speed: Highest target speed [m/s].
-    """
+    """Reward one decision step."""
     own = [_reward(weights, one, duration, top_speed) for one in driven]
     if not own or not weights.cooperation:
         return own

@@ -8,18 +8,15 @@ import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Discrete
 
-from codriving.datatypes.parts import Scenario
-from codriving.datatypes.road import Road
-from codriving.datatypes.world import Action, Kind, Scene
-from codriving.environment.environment import Environment
+from codriving.datatypes import Action, Kind, Road, Scenario, Scene
+from codriving.environment import Environment
 from codriving.gym.actions import ACTIONS, check_seed, draw_seed
 from codriving.gym.configured import configured
 from codriving.gym.episode import AgentEpisode, Info
 from codriving.gym.observation import FloatArray, Observer
 from codriving.gym.reward import RewardWeights, reward_weights
 
-DRAW = 2
-"""Key of the random numbers that choose the CAV, apart from those of the scene and of the drivers."""
+DRAW = 2  # Key of the random numbers that choose the CAV, apart from those of the scene and of the drivers
 
 
 class OneCav(Scenario):
@@ -35,11 +32,7 @@ class OneCav(Scenario):
         return self.scenario.road
 
     def scene(self, seed: int) -> Scene:
-        """Draw the scene, and which of the CAVs is the one that is left; it is called ``CAV1`` always.
-
-        Raises:
-            ScenarioError: If the vehicles cannot be placed.
-        """
+        """Draw the scene, and which of the CAVs is the one that is left; it is called ``CAV1`` always."""
         scene = self.scenario.scene(seed)
         cavs = [start for start in scene.starts if start.kind is Kind.CAV]
         rng = np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(DRAW,)))
@@ -49,8 +42,7 @@ class OneCav(Scenario):
         return Scene(scene.seed, (replace(chosen, id="CAV1"), *humans))
 
 
-ObserverFactory: TypeAlias = Callable[[Environment], Observer]
-"""Makes the observer of an environment."""
+ObserverFactory: TypeAlias = Callable[[Environment], Observer]  # Makes the observer of an environment
 
 
 class SingleDriving(gymnasium.Env[FloatArray, np.int64]):

@@ -1,1 +1,28 @@
 """Questions to a language model and its answers: prompts, requests, retries, limits, costs and parsing."""
+
+from codriving.llm.embeddings import EmbeddingModel
+from codriving.llm.ledger import Ledger
+from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for, one_line, seen_names
+from codriving.llm.prompts.render import Prompts, load_prompts, template_files
+from codriving.llm.prompts.replies import (
+    CorrectionReply,
+    DecisionReply,
+    LessonReply,
+    OrderReply,
+    correction_reply,
+    decision_reply,
+    first_of_pairs,
+    order_reply,
+)
+from codriving.llm.prompts.variables import decision_view, lane_views, negotiation_view, reflection_view, side_name
+from codriving.llm.prompts.views import MeaningView, SeenView, WayView
+from codriving.llm.question import Answer, Chat, Question
+from codriving.llm.sqlite_file import connect_sqlite, create_sqlite
+
+__all__ = [
+    "LONGEST_MEMORY", "Answer", "Chat", "CorrectionReply", "DecisionReply", "EmbeddingModel", "Ledger", "LessonReply",
+    "MeaningView", "Names", "OrderReply", "Prompts", "Question", "SeenView", "WayView", "connect_sqlite",
+    "correction_reply", "create_sqlite", "decision_reply", "decision_view", "first_of_pairs", "lane_views",
+    "load_prompts", "names_for", "negotiation_view", "one_line", "order_reply", "reflection_view", "seen_names",
+    "side_name", "template_files",
+]  # fmt: skip

@@ -40,11 +40,7 @@ class ConcurrencyLimit:
             self._wake()
 
     def shrink(self, ticket: int) -> None:
-        """Halve the number, once for all the requests that were under way together.
-
-        Args:
-            ticket: What ``slot`` gave to the request that was turned away.
-        """
+        """Halve the number, once for all the requests that were under way together."""
         if ticket == self._shrunk:
             self._shrunk += 1
             self._limit = max(1.0, self._limit / 2)
@@ -81,14 +77,11 @@ class ConcurrencyLimit:
 Result = TypeVar("Result")
 Sleep = Callable[[float], Awaitable[None]]
 
-_FIRST = 1.0
-"""Wait after the first attempt, before jitter; it doubles with every further one [s]."""
+_FIRST = 1.0  # Wait after the first attempt, before jitter; it doubles with every further one [s]
 
-_LONGEST = 30.0
-"""Longest wait of our own choice [s]."""
+_LONGEST = 30.0  # Longest wait of our own choice [s]
 
-PATIENCE = 120.0
-"""A server that asks for a longer wait than this is given up [s]."""
+PATIENCE = 120.0  # A server that asks for a longer wait than this is given up [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,14 +120,7 @@ class Retries:
     async def run(
         self, attempt: Callable[[], Awaitable[Result]], may_pass: Callable[[CallError], bool]
     ) -> tuple[Result, int]:
-        """Try until it works, fails for good, or the attempts are used up.
-
-        Returns:
-            The result, and how many attempts it took.
-
-        Raises:
-            CallError: The last failure; its ``attempts`` says how many there were.
-        """
+        """Try until it works, fails for good, or the attempts are used up."""
         made = 0
         while True:
             made += 1
@@ -152,9 +138,6 @@ class Retries:
         """Wait for one attempt and no longer than the deadline.
 
         A server that sends a byte now and then never makes a read time out; only this ends it.
-
-        Raises:
-            CallError: If it took too long, or failed by itself.
         """
         with suppress(TimeoutError):
             async with asyncio.timeout(self.deadline):

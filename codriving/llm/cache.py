@@ -11,15 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from codriving.errors import ModelError
-from codriving.llm.sqlite_file import connect, create
+from codriving.llm.sqlite_file import connect_sqlite, create_sqlite
 
 
 class AnswerCache:
-    """Replies by what was asked; any number of threads and processes may share the file, and may be killed at any time.
-
-    Args:
-        mode: ``use`` (answers from it where it has one, and into it where not) or ``replay`` (answers from it alone).
-    """
+    """Replies by question; any number of threads and processes may share the file, and may be killed at any time."""
 
     def __init__(self, path: Path | str, mode: str) -> None:
         # A connection must not cross a fork, and must not even be closed there; hence it is kept by process.
@@ -30,14 +26,7 @@ class AnswerCache:
         weakref.finalize(self, _close, self._connections)
 
     def find(self, request: Mapping[str, Any]) -> dict[str, Any] | None:
-        """Look a reply up.
-
-        Returns:
-            The reply; None if there is none and the model may be asked.
-
-        Raises:
-            ModelError: If there is none in replay, or the file cannot be used.
-        """
+        """Look a reply up."""
         fact = f"there is no answer cache {self.path}"
         if self.path.exists():
             key = key_of(request)
@@ -53,14 +42,7 @@ class AnswerCache:
         return None
 
     def keep(self, request: Mapping[str, Any], reply: Mapping[str, Any]) -> dict[str, Any]:
-        """Keep a reply, unless somebody else has kept one to the same request meanwhile.
-
-        Args:
-            request: What was asked, as for ``find``.
-
-        Raises:
-            ModelError: If the file cannot be used.
-        """
+        """Keep a reply, unless somebody else has kept one to the same request meanwhile."""
         if self.mode == "replay":
             return dict(reply)
         key, text = key_of(request), json.dumps(reply, allow_nan=False)
@@ -96,11 +78,7 @@ class AnswerCache:
 
 
 def key_of(request: Mapping[str, Any]) -> str:
-    """Give what a request is found by: the SHA-256 of its canonical JSON.
-
-    Returns:
-        64 hexadecimal digits; the same whatever the order of the keys.
-    """
+    """Give what a request is found by: the SHA-256 of its canonical JSON."""
     text = json.dumps(request, sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False)
     return hashlib.sha256(text.encode("ascii")).hexdigest()
 
@@ -121,33 +99,20 @@ def _reply_of(connection: sqlite3.Connection, key: str) -> dict[str, Any] | None
     return reply
 
 
-LAYOUT = 1
-"""Changes when an older version could not read the file any more."""
+LAYOUT = 1  # Changes when an older version could not read the file any more
 
-_LOG_PAGES = 64
-"""Pages of the log beside the file at which it is worked in: a copy of the file alone then lacks little."""
+_LOG_PAGES = 64  # Pages of the log beside the file at which it is worked in: a copy of the file alone then lacks little
 
 
 def open_to_write(path: Path) -> sqlite3.Connection:
-    """Open the file; it and its folder are made where they are missing.
-
-    Raises:
-        sqlite3.Error: If it is no such file.
-        OSError: If it cannot be made.
-        ValueError: If another version wrote it.
-    """
+    """Open the file; it and its folder are made where they are missing."""
     if not path.exists():
-        create(path, _fill)
+        create_sqlite(path, _fill)
     return _open(path.resolve().as_uri(), "PRAGMA synchronous = NORMAL", f"PRAGMA wal_autocheckpoint = {_LOG_PAGES}")
 
 
 def open_to_read(path: Path) -> sqlite3.Connection:
-    """Open the file without ever changing it; it may lie where not even the lock beside it can be written.
-
-    Raises:
-        sqlite3.Error: If it is no such file.
-        ValueError: If another version wrote it.
-    """
+    """Open the file without ever changing it; it may lie where not even the lock beside it can be written."""
     try:
         return _open(f"{path.resolve().as_uri()}?mode=ro")
     except sqlite3.OperationalError:
@@ -155,7 +120,7 @@ def open_to_read(path: Path) -> sqlite3.Connection:
 
 
 def _open(uri: str, *settings: str) -> sqlite3.Connection:
-    connection = connect(uri)
+    connection = connect_sqlite(uri)
     try:
         for setting in settings:
             connection.execute(setting)

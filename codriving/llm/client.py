@@ -20,8 +20,8 @@ from codriving.llm.send import Sender
 from codriving.llm.settings import ModelSettings, read_key
 from codriving.llm.spending import Spending, cost_of
 
+# Gives the reply to a conversation, and whether it came from the cache.
 Fetch = Callable[[tuple[Message, ...], Question], Awaitable[tuple[Reply, bool]]]
-"""Gives the reply to a conversation, and whether it came from the cache."""
 
 
 async def converse(question: Question, fetch: Fetch) -> Answer:
@@ -61,20 +61,15 @@ async def converse(question: Question, fetch: Fetch) -> Answer:
 
 _GREETING = (Message("system", "You check that a connection works."), Message("user", "Answer with the one word: yes"))
 
+# Failures that are replies of a kind, by the finish reason that they are given: the question has to change.
 _FINISH_REASONS = {FaultKind.TOO_LONG: TOO_LONG, FaultKind.FILTERED: "content_filter", FaultKind.UNREADABLE: UNREADABLE}
-"""Failures that are replies of a kind, by the finish reason that they are given: the question has to change."""
 
+# Failures that no later episode would escape, if nothing has worked yet.
 _FOR_GOOD = (FaultKind.KEY, FaultKind.QUOTA, FaultKind.MODEL, FaultKind.UNREACHABLE)
-"""Failures that no later episode would escape, if nothing has worked yet."""
 
 
 class ModelChat:
-    """A language model behind one client for the whole process; any thread may call it.
-
-    Args:
-        cache: Keeps replies; None keeps none.
-        spending: Adds up what replies cost; None for limits as in the settings.
-    """
+    """A language model behind one client for the whole process; any thread may call it."""
 
     def __init__(
         self,
@@ -96,25 +91,14 @@ class ModelChat:
         self._under_way: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
-        """Ask several questions at once and wait for all answers.
-
-        Raises:
-            ModelError: If nothing has worked yet and the user has to mend it: no key, no server, no such model.
-            ModelUnavailableError: If the server cannot be reached, refuses or is too slow, retries included.
-            SpendingLimitError: If the tokens or the money that may be spent are used up.
-        """
+        """Ask several questions at once and wait for all answers."""
         if not questions:
             return []
         self.spending.check()
         return loop().run(self._ask_all(questions))
 
     def preflight(self) -> None:
-        """Make one short call before the first episode, unless one has worked already or the cache alone answers.
-
-        Raises:
-            ModelError: If the model cannot be used; the message says what to set.
-            SpendingLimitError: If the tokens or the money that may be spent are used up.
-        """
+        """Make one short call before the first episode, unless one has worked already or the cache alone answers."""
         if self.settings.cache == "replay" or self._worked:
             return
         self.spending.check()
@@ -169,12 +153,7 @@ class ModelChat:
             return Reply.from_dict(cache.keep(wanted, asdict(reply))), False
 
     async def _fetch(self, request: ChatRequest) -> Reply:
-        """Ask the server in the strictest form that it takes, retry where that helps, and pay.
-
-        Raises:
-            CallError: If there is no reply, retries included.
-            ModelError: If the key is missing.
-        """
+        """Ask the server in the strictest form that it takes, retry where that helps, and pay."""
         await self._sender.load()
         begun, sent = time.perf_counter(), 0
         while True:

@@ -12,8 +12,7 @@ from codriving.llm.loop import loop
 from codriving.llm.send import NO_KEY, load_litellm, provider_of
 from codriving.llm.settings import check_address, read_key
 
-ATTEMPTS = 5
-"""How often a request is sent at most."""
+ATTEMPTS = 5  # How often a request is sent at most
 
 
 class EmbeddingModel:

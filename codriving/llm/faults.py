@@ -25,11 +25,7 @@ _SECRET = re.compile(r"\bsk-[\w*.\-]{6,}|\bAIza[\w\-]{20,}")
 
 
 def without_key(text: str, key: str | None) -> str:
-    """Take one key out of a text, as it is and as it stands in an address.
-
-    Args:
-        key: The key; None or empty takes nothing out.
-    """
+    """Take one key out of a text, as it is and as it stands in an address."""
     for written in {key, quote(key, safe="")} if key else ():
         text = text.replace(written, HIDDEN)
     return text

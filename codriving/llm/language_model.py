@@ -6,7 +6,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from codriving.datatypes.parts import Model, RuleModel
+from codriving.datatypes import Model, RuleModel
 from codriving.llm.settings import ModelSettings
 
 if TYPE_CHECKING:

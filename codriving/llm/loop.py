@@ -9,8 +9,7 @@ from typing import Any, TypeVar
 
 Result = TypeVar("Result")
 
-_PATIENCE = 5.0
-"""How long the end of the program waits for connections to close [s]."""
+_PATIENCE = 5.0  # How long the end of the program waits for connections to close [s]
 
 
 class Loop:

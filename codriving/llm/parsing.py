@@ -9,12 +9,10 @@ from pydantic import BaseModel, ValidationError
 from codriving.llm.question import Question
 from codriving.llm.request import TOO_LONG, UNREADABLE, Reply
 
-LONGEST = 20_000
-"""More of an answer is neither read nor written down [characters]."""
+LONGEST = 20_000  # More of an answer is neither read nor written down [characters]
 
 _LEFT_OUT = " ... "
-_WORDY = 2_000
-"""More of one text inside an answer is never used [characters]."""
+_WORDY = 2_000  # More of one text inside an answer is never used [characters]
 
 # Control and direction characters, and halves of surrogate pairs, which no file can hold; line ends and tabs stay.
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]")
@@ -30,9 +28,6 @@ def clean(text: str, longest: int = LONGEST) -> str:
     """Cap a text and take out the characters that neither a file nor a terminal should be given.
 
     What is too long loses its middle: an answer may stand at either end.
-
-    Args:
-        longest: How much of it is kept [characters].
     """
     if len(text) > longest:
         half = longest // 2
@@ -56,11 +51,7 @@ def is_page(text: str) -> bool:
 
 
 def last_object(text: str) -> dict[str, Any] | None:
-    """Read the last balanced JSON object of a text.
-
-    Returns:
-        The object, its texts without control characters; None if there is none.
-    """
+    """Read the last balanced JSON object of a text."""
     # What a reasoning model said to itself, whether or not it closed or opened its thoughts properly, is left out.
     text, found, start = _BEGUN.sub("", _ENDED.sub("", _THOUGHT.sub("", text))), None, 0
     while (start := text.find("{", start)) >= 0:
@@ -87,11 +78,7 @@ _FILTERED = ("content_filter", "safety", "refusal")
 
 
 def judge(reply: Reply, question: Question) -> tuple[BaseModel | None, str]:
-    """Read an answer out of a reply.
-
-    Returns:
-        The answer and an empty text, or None and what is wrong with the reply.
-    """
+    """Read an answer out of a reply."""
     problem = _unusable(reply)
     if problem:
         return None, problem

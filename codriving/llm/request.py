@@ -14,11 +14,10 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
 
+# Finish reason of a request that was longer than the model's context; ours, no server sends it.
 TOO_LONG = "context_length"
-"""Finish reason of a request that was longer than the model's context; ours, no server sends it."""
 
-UNREADABLE = "unreadable"
-"""Finish reason of a reply that is no chat completion, for instance a web page; ours."""
+UNREADABLE = "unreadable"  # Finish reason of a reply that is no chat completion, for instance a web page; ours
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,18 +60,13 @@ class Reply:
 
     @classmethod
     def from_dict(cls, stored: Mapping[str, Any]) -> "Reply":
-        """Read what ``asdict`` gave.
-
-        Raises:
-            ModelError: If it was not written by this version.
-        """
+        """Read what ``asdict`` gave."""
         with suppress(TypeError):
             return cls(**stored)
         raise ModelError("the file of llm.cache_file was written by another version; name another one")
 
 
-FORMS = ("json_schema", "json_object", "text")
-"""Strictest first."""
+FORMS = ("json_schema", "json_object", "text")  # Strictest first
 
 
 @lru_cache(maxsize=256)
@@ -101,12 +95,7 @@ def _strict(node: Any, names: bool = False) -> Any:  # noqa: ANN401 - any JSON
 
 
 def response_format(form: str, schema: Mapping[str, Any] | None) -> dict[str, Any] | None:
-    """Return what a request says about the form of its answer; None for nothing.
-
-    Args:
-        form: One of ``FORMS``.
-        schema: Schema of the answer; None if any text will do.
-    """
+    """Return what a request says about the form of its answer; None for nothing."""
     if schema is None or form == "text":
         return None
     if form == "json_object":
@@ -115,12 +104,7 @@ def response_format(form: str, schema: Mapping[str, Any] | None) -> dict[str, An
 
 
 def worded(messages: tuple[Message, ...], form: str, schema: Mapping[str, Any] | None) -> tuple[Message, ...]:
-    """Describe the schema in the first user message where the form does not carry it.
-
-    Args:
-        form: One of ``FORMS``.
-        schema: Schema of the answer; None if any text will do.
-    """
+    """Describe the schema in the first user message where the form does not carry it."""
     if schema is None or form == "json_schema":
         return messages
     wish = (
@@ -154,5 +138,4 @@ class Forms:
         return True
 
 
-KNOWN = Forms()
-"""What this process knows; changed on the one loop alone."""
+KNOWN = Forms()  # What this process knows; changed on the one loop alone

@@ -10,8 +10,8 @@ from codriving.llm.client import converse
 from codriving.llm.question import Answer, Message, Question
 from codriving.llm.request import Reply
 
+# Gives the answer to a question as an object or in a model's words; an exception is raised.
 Script = Callable[[Question], "BaseModel | str | Exception"]
-"""Gives the answer to a question as an object or in a model's words; an exception is raised."""
 
 
 class ScriptedChat:

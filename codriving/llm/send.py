@@ -16,11 +16,10 @@ from codriving.llm.loop import loop
 from codriving.llm.parsing import clean
 from codriving.llm.request import ChatRequest, Reply, response_format, worded
 
+# Sent where no key is named; without it LiteLLM would take one from the environment and give it to a stranger.
 NO_KEY = "none"
-"""Sent where no key is named; without it LiteLLM would take one from the environment and give it to a stranger."""
 
-_COMPATIBLE = "openai"
-"""LiteLLM's word for a server that speaks OpenAI's protocol."""
+_COMPATIBLE = "openai"  # LiteLLM's word for a server that speaks OpenAI's protocol
 
 
 class Sender:
@@ -31,14 +30,7 @@ class Sender:
         await load_litellm()
 
     async def send(self, request: ChatRequest, form: str, key: str | None, deadline: float) -> Reply:
-        """Send a request once.
-
-        Args:
-            deadline: How long one read may take [s].
-
-        Raises:
-            CallError: If there is no reply.
-        """
+        """Send a request once."""
         optional = {"temperature": request.temperature, "response_format": response_format(form, request.schema)}
         try:
             response = await _loaded[0].acompletion(
@@ -103,11 +95,7 @@ async def _import() -> ModuleType:
 
 
 def provider_of(model: str, api_base: str | None) -> str | None:
-    """Name the protocol where a server of one's own is given and the model's name does not say it.
-
-    Args:
-        api_base: Address of the server; None for the provider's own.
-    """
+    """Name the protocol where a server of one's own is given and the model's name does not say it."""
     if api_base is None:
         return None
     try:

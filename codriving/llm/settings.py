@@ -37,9 +37,6 @@ class ModelSettings:
         input_cost_per_token: Price of a token of the prompt [USD]; None takes LiteLLM's.
         output_cost_per_token: Price of a token of the answer [USD]; None takes LiteLLM's.
         prompts: Folder with templates that replace ours; None takes ours.
-
-    Raises:
-        ConfigError: If a setting breaks its rule.
     """
 
     model: str
@@ -87,14 +84,7 @@ class ModelSettings:
 
 
 def check_address(name: str, address: str | None) -> None:
-    """Check the address of a server, None being the provider's own.
-
-    Args:
-        name: The setting that holds it.
-
-    Raises:
-        ConfigError: If it is none, or holds more than an address.
-    """
+    """Check the address of a server, None being the provider's own."""
     if address is None:
         return
     parts = urlsplit(address)
@@ -106,18 +96,7 @@ def check_address(name: str, address: str | None) -> None:
 
 
 def read_key(variable: str | None, api_base: str | None, model: str, base_setting: str, key_setting: str) -> str | None:
-    """Read the key of a server from the environment.
-
-    Args:
-        variable: Name of the environment variable; None if no key is sent.
-        api_base: Address of the server; None for the provider's own.
-        model: The kind of model, for messages.
-        base_setting: The setting that holds ``api_base``, for messages.
-        key_setting: The setting that holds ``variable``, for messages.
-
-    Raises:
-        ModelError: If it is missing or cannot be one.
-    """
+    """Read the key of a server from the environment."""
     if variable is None:
         if api_base is None:
             raise ModelError(

@@ -33,10 +33,6 @@ class Spending:
 
     Calls that are under way when a limit is reached are still answered and paid for, so that it may be passed by as
     many of them as there are at once.
-
-    Args:
-        max_cost: Money that may be spent [USD]; None for any.
-        max_tokens_total: Tokens of prompts and answers that may be used; None for any.
     """
 
     def __init__(self, max_cost: float | None = None, max_tokens_total: int | None = None) -> None:
@@ -45,11 +41,7 @@ class Spending:
         self._lock = threading.Lock()
 
     def check(self) -> None:
-        """Let another call pass, or not.
-
-        Raises:
-            SpendingLimitError: If what may be spent is used up, or cannot be told.
-        """
+        """Let another call pass, or not."""
         spent = self.totals()
         if self.max_tokens_total is not None and spent.tokens >= self.max_tokens_total:
             raise SpendingLimitError(
@@ -71,11 +63,7 @@ class Spending:
             )
 
     def add(self, prompt_tokens: int, completion_tokens: int, cost: float | None) -> None:
-        """Add a call that was answered.
-
-        Args:
-            cost: What it cost [USD]; None where no price is known.
-        """
+        """Add a call that was answered."""
         with self._lock:
             past = self._totals
             self._totals = Totals(
@@ -90,8 +78,8 @@ class Spending:
         return self._totals
 
 
+# What LiteLLM's price map calls the two prices [USD/token]; the keys of the config are called alike.
 INPUT, OUTPUT = "input_cost_per_token", "output_cost_per_token"
-"""What LiteLLM's price map calls the two prices [USD/token]; the keys of the config are called alike."""
 
 
 def cost_of(
@@ -101,15 +89,7 @@ def cost_of(
     input_price: float | None = None,
     output_price: float | None = None,
 ) -> float | None:
-    """Work out what a call costs.
-
-    Args:
-        input_price: Price of the prompt by the config [USD/token]; None where it has none.
-        output_price: Price of the answer by the config [USD/token]; None where it has none.
-
-    Returns:
-        The cost [USD]; None where a price is not known.
-    """
+    """Work out what a call costs."""
     listed = _listed(model) if input_price is None or output_price is None else {}
     first = listed.get(INPUT) if input_price is None else input_price
     second = listed.get(OUTPUT) if output_price is None else output_price

@@ -7,16 +7,15 @@ from collections.abc import Callable
 from contextlib import closing, suppress
 from pathlib import Path
 
-BUSY = 60.0
-"""How long to wait for another process that is writing [s]."""
+BUSY = 60.0  # How long to wait for another process that is writing [s]
 
 
-def connect(uri: str) -> sqlite3.Connection:
+def connect_sqlite(uri: str) -> sqlite3.Connection:
     """Open a connection in which nothing begins a transaction by itself, so that a killed process leaves none open."""
     return sqlite3.connect(uri, uri=True, timeout=BUSY, isolation_level=None, check_same_thread=False)
 
 
-def create(path: Path, fill: Callable[[sqlite3.Connection], object]) -> None:
+def create_sqlite(path: Path, fill: Callable[[sqlite3.Connection], object]) -> None:
     """Make a file; if several processes do, the first wins, and half of it is never seen.
 
     Raises:
@@ -26,7 +25,7 @@ def create(path: Path, fill: Callable[[sqlite3.Connection], object]) -> None:
     partial = path.parent / f".partial-{path.name}-{uuid.uuid4().hex[:12]}"
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with closing(connect(partial.resolve().as_uri())) as connection:
+        with closing(connect_sqlite(partial.resolve().as_uri())) as connection:
             fill(connection)
         with suppress(FileExistsError):
             os.link(partial, path)

@@ -2,9 +2,7 @@
 
 from math import isfinite
 
-from codriving.datatypes.experience import Description
-from codriving.datatypes.situation import Role, SceneDescription, Situation
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Description, Role, SceneDescription, Situation
 
 DRIVERS = {"CAV": "CAV", "HDV": "human", None: "unknown"}
 

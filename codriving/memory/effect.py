@@ -5,42 +5,33 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import cos, sin
 
-from codriving.datatypes.experience import Effect, Verdict
-from codriving.datatypes.order import Conflict
-from codriving.datatypes.world import Action, VehicleState
+from codriving.datatypes import Action, Conflict, Effect, VehicleState, Verdict
 
-HORIZON = 3.0
-"""How far ahead a collision or needless waiting is put down to an action [s]."""
+HORIZON = 3.0  # How far ahead a collision or needless waiting is put down to an action [s]
 
+# Upper limits of the paper's bands of the difference of the TTCPs: serious, general and slight danger [s].
 BANDS = (2.0, 5.0, 8.0)
-"""Upper limits of the paper's bands of the difference of the TTCPs: serious, general and slight danger [s]."""
 
-CLEARLY = 0.3
-"""A narrower change of the difference of the TTCPs is none [s]."""
+CLEARLY = 0.3  # A narrower change of the difference of the TTCPs is none [s]
 
-HARD = 4.0
-"""From this mean deceleration on braking is hard [m/s2]."""
+HARD = 4.0  # From this mean deceleration on braking is hard [m/s2]
 
-STANDS = 0.5
-"""Below this speed a vehicle stands [m/s]."""
+STANDS = 0.5  # Below this speed a vehicle stands [m/s]
 
-SLOW = 3.0
-"""A CAV that keeps a lower speed than this waits [m/s]."""
+SLOW = 3.0  # A CAV that keeps a lower speed than this waits [m/s]
 
-BEHIND = 2.0
-"""A vehicle up to this time behind on the same lane is affected by a CAV that slows down or cuts in [s]."""
+BEHIND = 2.0  # A vehicle up to this time behind on the same lane is affected by a CAV that slows down or cuts in [s]
 
-FREE = 2.0
-"""A leader this far ahead leaves the way free, but never nearer than ten metres [s]."""
+FREE = 2.0  # A leader this far ahead leaves the way free, but never nearer than ten metres [s]
 
 SIDEWAYS = (Action.LANE_LEFT, Action.LANE_RIGHT)
 
+# The paper's comment, and its two counterparts; what is neutral is not kept.
 LESSONS: Mapping[Verdict, str] = {
     Verdict.INTENSIFIED: "Your action has intensified the conflict; similar actions should be avoided.",
     Verdict.EASED: "Your action has eased the conflict; similar actions are advisable.",
     Verdict.TOO_CAUTIOUS: "Your action was too cautious, nobody used the way; similar waiting should be cut short.",
 }
-"""The paper's comment, and its two counterparts; what is neutral is not kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,12 +107,6 @@ def own_change(before: Conflict, after: Conflict, kept: float) -> float:
 
     The difference as it is after the step is compared with what it would be had the CAV kept its speed. What the other
     one did is on both sides.
-
-    Args:
-        kept: How far the CAV would have got at the same speed [m].
-
-    Returns:
-        Time [s]; negative if the action narrowed it. 0 once either is in the zone.
     """
     if min(*before.distances, *after.distances) <= 0:
         return 0.0
@@ -148,11 +133,7 @@ def verdict_of(effect: Effect, action: Action) -> Verdict:
 
 
 def band(dttcp: float) -> int:
-    """Return the paper's band: 0 serious, 1 general, 2 slight, 3 no danger.
-
-    Args:
-        dttcp: Difference of the times to the conflict point [s].
-    """
+    """Return the paper's band: 0 serious, 1 general, 2 slight, 3 no danger."""
     return sum(dttcp > limit for limit in BANDS)
 
 

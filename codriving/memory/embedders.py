@@ -11,8 +11,7 @@ from math import asinh, cos, log, log1p, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.experience import Description
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Description
 from codriving.errors import ConfigError
 
 Vectors = NDArray[np.float32]
@@ -29,20 +28,12 @@ class Embedder:
         self.name, self.dimension = name, dimension
 
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
-        """Return one vector a description, each of length 1.
-
-        Returns:
-            Vectors (n, dimension); a description without anything to go by gives zeros.
-        """
+        """Return one vector a description, each of length 1."""
         raise NotImplementedError
 
 
 def unit(vectors: NDArray[np.float64]) -> Vectors:
-    """Scale each vector to length 1; zeros stay zeros.
-
-    Args:
-        vectors: Vectors (n, dimension).
-    """
+    """Scale each vector to length 1; zeros stay zeros."""
     norms = np.linalg.norm(vectors, axis=1, keepdims=True)
     scaled: Vectors = (vectors / np.where(norms > 0, norms, 1.0)).astype(np.float32)
     return scaled
@@ -64,9 +55,9 @@ class Number:
         return 2 * len(self.turns) + 1
 
 
-SHARP = (1, 3)
-"""Circles of the numbers that matter most."""
+SHARP = (1, 3)  # Circles of the numbers that matter most
 
+# The numbers of a description that are compared, in the order of their places in the vector.
 NUMBERS = (
     Number("dttcp", 3.0, 2.0, 20.0, SHARP),
     Number("later", 3.0, 2.0, 20.0, SHARP),
@@ -91,21 +82,19 @@ NUMBERS = (
     Number("room", 1.0, 20.0, 200.0),
     Number("before", 1.0, 1.0, 6.0),
 )
-"""The numbers of a description that are compared, in the order of their places in the vector."""
 
+# The kinds of a description, their weights and their words.
 KINDS: tuple[tuple[str, float, tuple[str, ...]], ...] = (
     ("relation", 3.0, ("none", "crossing", "converging", "weaving", "diverging", "following")),
     ("order", 3.0, ("none", "first", "second")),
     ("severity", 1.0, ("none", "serious danger", "general danger", "slight danger", "no danger")),
     ("driver", 1.0, ("CAV", "human", "unknown")),
 )
-"""The kinds of a description, their weights and their words."""
 
-ACTIONS, ALLOWED = tuple(str(action) for action in Action), 1.0
-"""What may be allowed, and the weight of that."""
+ACTIONS, ALLOWED = tuple(str(action) for action in Action), 1.0  # What may be allowed, and the weight of that
 
+# Share of its weight with which a number counts where it is not there: two empty lanes are alike, but not very.
 ABSENT = 0.2
-"""Share of its weight with which a number counts where it is not there: two empty lanes are alike, but not very."""
 
 
 class FeatureEmbedder(Embedder):
@@ -154,11 +143,9 @@ def _put(places: NDArray[np.float64], number: Number, value: float | None) -> No
 
 DIMENSION = 256
 
-LITELLM = "litellm"
-"""The word for an embedding model through LiteLLM."""
+LITELLM = "litellm"  # The word for an embedding model through LiteLLM
 
-CACHED = 20_000
-"""Texts whose vectors are remembered."""
+CACHED = 20_000  # Texts whose vectors are remembered
 
 _TOKEN = re.compile(r"-?\d+(?:\.\d+)?|[a-z]+(?:_[a-z]+)*", re.IGNORECASE)
 
@@ -190,11 +177,7 @@ class WordEmbedder(Embedder):
         return self.embed_texts([description.text for description in descriptions])
 
     def embed_texts(self, texts: Sequence[str]) -> Vectors:
-        """Return one vector a text, each of length 1; a text without words gives zeros.
-
-        Returns:
-            Vectors (n, 256).
-        """
+        """Return one vector a text, each of length 1; a text without words gives zeros."""
         rows = np.zeros((len(texts), DIMENSION))
         for row, text in zip(rows, texts, strict=True):
             for term, count in Counter(self._terms(text)).items():
@@ -217,27 +200,18 @@ class WordEmbedder(Embedder):
 
 
 class ModelEmbedder(Embedder):
-    """An embedding model through LiteLLM; a description's text goes to the server, each text once a process.
-
-    Raises:
-        ConfigError: If a setting breaks its rule.
-    """
+    """An embedding model through LiteLLM; a description's text goes to the server, each text once a process."""
 
     def __init__(self, server: EmbeddingServer) -> None:
         # What a server needs is imported only where there is one.
-        from codriving.llm.embeddings import EmbeddingModel
+        from codriving.llm import EmbeddingModel
 
         super().__init__(f"{LITELLM} {server.model}", None)
         self._model = EmbeddingModel(server.model, server.api_base, server.api_key_env, server.deadline)
         self._known: dict[str, list[float]] = {}
 
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
-        """Return one vector a description, each of length 1.
-
-        Raises:
-            ModelUnavailableError: If the server does not answer, retries included.
-            ModelError: If it must be mended: no key, no such model, vectors of different lengths.
-        """
+        """Return one vector a description, each of length 1."""
         texts = [description.text for description in descriptions]
         new = list(dict.fromkeys(text for text in texts if text not in self._known))
         if new:
@@ -252,20 +226,12 @@ class ModelEmbedder(Embedder):
         return unit(np.array([self._known[text] for text in texts], dtype=np.float64))
 
 
+# Embedders that need nothing else.
 OWN: dict[str, Callable[[], Embedder]] = {"features": FeatureEmbedder, "words": WordEmbedder}
-"""Embedders that need nothing else."""
 
 
 def make_embedder(name: str, server: EmbeddingServer) -> Embedder:
-    """Make an embedder.
-
-    Args:
-        name: ``features``, ``words`` or ``litellm``.
-        server: Where the model is, for ``litellm``.
-
-    Raises:
-        ConfigError: If there is no such embedder, or the server's settings cannot be used.
-    """
+    """Make an embedder."""
     if name in OWN:
         return OWN[name]()
     if name != LITELLM:

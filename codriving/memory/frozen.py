@@ -8,23 +8,11 @@ from codriving.memory.embedders import EmbeddingServer, make_embedder
 from codriving.memory.recall import RetrievalMemory
 from codriving.memory.snapshot import Snapshot, open_snapshot
 
-AUTO = "auto"
-"""The word for the snapshot as it is when a run begins."""
+AUTO = "auto"  # The word for the snapshot as it is when a run begins
 
 
 class FrozenMemory(RetrievalMemory):
-    """A snapshot, as ``codriving memory build`` leaves it.
-
-    Args:
-        snapshot: SHA-256 of its contents, or ``auto`` for what they are when a run begins.
-        interactions: How many of its first interactions count; None for all.
-        embedder: ``features``, ``words`` or ``litellm``; has to be the file's. The ``embedding_`` settings are for
-            ``litellm``, see ``EmbeddingServer``.
-
-    Raises:
-        ConfigError: If a setting breaks its rule.
-        MemoryFileError: If the file is missing, damaged, of another embedder or version, or not the snapshot.
-    """
+    """A snapshot, as ``codriving memory build`` leaves it."""
 
     def __init__(
         self,

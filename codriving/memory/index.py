@@ -7,14 +7,11 @@ from numpy.typing import NDArray
 
 from codriving.memory.embedders import Vectors
 
-_SPARE = 8
-"""Candidates beyond those wanted, among which ties are broken."""
+_SPARE = 8  # Candidates beyond those wanted, among which ties are broken
 
-_DIGITS = 6
-"""Digits of a similarity that count; what differs less is a tie."""
+_DIGITS = 6  # Digits of a similarity that count; what differs less is a tie
 
-Hit = tuple[int, float]
-"""Number of an experience and its cosine similarity."""
+Hit = tuple[int, float]  # Number of an experience and its cosine similarity
 
 
 class Index:
@@ -35,14 +32,7 @@ class Index:
         return len(self.ids)
 
     def add(self, ids: Sequence[int], vectors: Vectors) -> None:
-        """Add vectors of length 1.
-
-        Args:
-            vectors: Vectors (n, dimension).
-
-        Raises:
-            ValueError: If they have another length, or hold what is no finite number.
-        """
+        """Add vectors of length 1."""
         if vectors.ndim != 2 or vectors.shape != (len(ids), self.dimension):
             raise ValueError(f"vectors must be ({len(ids)}, {self.dimension}), got {vectors.shape}")
         if not np.isfinite(vectors).all():
@@ -56,12 +46,6 @@ class Index:
 
         FAISS gives equals in no useful order and cuts through them, so more are asked for until the last is less
         similar than the last one wanted.
-
-        Args:
-            queries: Vectors (n, dimension).
-
-        Raises:
-            ValueError: If the queries have another length, or hold what is no finite number.
         """
         if queries.ndim != 2 or queries.shape[1] != self.dimension:
             raise ValueError(f"queries must be (n, {self.dimension}), got {queries.shape}")

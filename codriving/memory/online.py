@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from codriving.datatypes.experience import Experience, Interaction
+from codriving.datatypes import Experience, Interaction
 from codriving.errors import ConfigError
 from codriving.memory.embedders import EmbeddingServer
 from codriving.memory.recall import RetrievalMemory
@@ -17,15 +17,6 @@ class OnlineMemory(RetrievalMemory):
 
     What an episode recalls is what episodes with smaller seeds have left; so a batch that was interrupted goes on as if
     it had not been, and an episode that is driven again replaces what it left before.
-
-    Args:
-        file: The file that it grows in; None takes one in the run folder.
-        reflection: Who writes the lessons: ``rules``, or ``llm`` for those of mistakes.
-        embedder: ``features``, ``words`` or ``litellm``. The ``embedding_`` settings are for ``litellm``, see
-            ``EmbeddingServer``.
-
-    Raises:
-        ConfigError: If a setting breaks its rule.
     """
 
     learns = True
@@ -57,20 +48,12 @@ class OnlineMemory(RetrievalMemory):
         self.reflections = reflections if reflection == "llm" else 0
 
     def begin(self, seed: int) -> None:
-        """Begin an episode: what was learnt with smaller seeds is what can be recalled.
-
-        Raises:
-            MemoryFileError: If the file cannot be used.
-        """
+        """Begin an episode: what was learnt with smaller seeds is what can be recalled."""
         with self._store() as store:
             self._snapshot = store.snapshot(before=seed)
 
     def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
-        """Keep what was learnt in an episode.
-
-        Raises:
-            MemoryFileError: If the file cannot be written.
-        """
+        """Keep what was learnt in an episode."""
         with self._store() as store:
             return store.add(interaction, experiences)
 

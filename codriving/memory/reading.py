@@ -5,7 +5,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from codriving.datatypes.experience import Interaction
+from codriving.datatypes import Interaction
 from codriving.errors import MemoryFileError
 from codriving.memory.embedders import LITELLM, OWN, Embedder, WordEmbedder
 from codriving.memory.snapshot import Snapshot, StoredExperience, load

@@ -2,9 +2,7 @@
 
 from collections.abc import Sequence
 
-from codriving.datatypes.experience import Memory
-from codriving.datatypes.parts import CaseMemory
-from codriving.datatypes.situation import Situation
+from codriving.datatypes import CaseMemory, Memory, Situation
 from codriving.errors import ConfigError
 from codriving.memory.describe import describe
 from codriving.memory.embedders import EmbeddingServer, make_embedder
@@ -12,11 +10,7 @@ from codriving.memory.snapshot import Snapshot
 
 
 class RetrievalMemory(CaseMemory):
-    """Memory retrieval (paper Section III-D.2): the most similar experiences by cosine.
-
-    Raises:
-        ConfigError: If a setting is out of range.
-    """
+    """Memory retrieval (paper Section III-D.2): the most similar experiences by cosine."""
 
     def __init__(self, shots: int, least_similarity: float, embedder: str, server: EmbeddingServer) -> None:
         if not 1 <= shots <= 50:
@@ -28,11 +22,7 @@ class RetrievalMemory(CaseMemory):
         self._snapshot: Snapshot | None = None
 
     def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
-        """Find what is similar to each situation.
-
-        Returns:
-            The memories of each, most similar first.
-        """
+        """Find what is similar to each situation."""
         if not self._snapshot or not situations:
             return [()] * len(situations)
         vectors = self._embedder.embed(list(map(describe, situations)))

@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 
-from codriving.datatypes.experience import Description
+from codriving.datatypes import Description
 from codriving.memory.embedders import Embedder
 from codriving.memory.index import Index
 
-NEAR = 1.0
-"""Differences of the times to the conflict point that are closer than this are similar [s]."""
+NEAR = 1.0  # Differences of the times to the conflict point that are closer than this are similar [s]
 
 
 def same_kind(one: Description, other: Description) -> bool:

@@ -9,8 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from codriving.datatypes.experience import Experience, Memory, Verdict
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Experience, Memory, Verdict
 from codriving.errors import MemoryFileError
 from codriving.memory.describe import brief
 from codriving.memory.embedders import Embedder, Vectors
@@ -55,13 +54,7 @@ class StoredExperience:
 
 
 class Snapshot:
-    """Experiences that can be searched; a file that grows meanwhile does not change it.
-
-    Args:
-        vectors: Their vectors (n, dimension).
-        digest: SHA-256 of the contents.
-        interactions: How many episodes they were made in.
-    """
+    """Experiences that can be searched; a file that grows meanwhile does not change it."""
 
     def __init__(
         self, experiences: Sequence[StoredExperience], vectors: Vectors, digest: str, interactions: int
@@ -77,14 +70,7 @@ class Snapshot:
         return len(self.experiences)
 
     def search(self, queries: Vectors, shots: int, least: float) -> list[tuple[Memory, ...]]:
-        """Find the most similar experiences.
-
-        Args:
-            queries: Vectors of the situations (n, dimension).
-
-        Returns:
-            At most so many for each, the most similar first.
-        """
+        """Find the most similar experiences."""
         hits = self._index.search(queries, shots)
         return [tuple(self._memory(*hit) for hit in found if hit[1] >= least) for found in hits]
 
@@ -94,14 +80,7 @@ class Snapshot:
 
 
 def open_snapshot(path: Path, embedder: Embedder, interactions: int | None = None) -> Snapshot:
-    """Read a file, or what it held after its first interactions.
-
-    Args:
-        interactions: How many interactions count; None for all.
-
-    Raises:
-        MemoryFileError: If the file is missing, damaged, or of another embedder or version, or has fewer interactions.
-    """
+    """Read a file, or what it held after its first interactions."""
     with closing(open_file(path, write=False)) as connection:
         dimension = check_embedder(path, about(connection), embedder)
         try:
@@ -118,12 +97,7 @@ def open_snapshot(path: Path, embedder: Embedder, interactions: int | None = Non
 
 
 def load(connection: sqlite3.Connection, dimension: int, embedder: str, chosen: Sequence[int]) -> Snapshot:
-    """Read what was experienced in some interactions.
-
-    Raises:
-        ValueError: If something in it cannot be read.
-        sqlite3.Error: If the file cannot be read.
-    """
+    """Read what was experienced in some interactions."""
     digest = hashlib.sha256(f"{embedder} {dimension}\n".encode())
     wanted = set(chosen)
     for row in connection.execute("SELECT * FROM interactions ORDER BY id"):

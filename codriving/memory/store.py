@@ -9,7 +9,7 @@ from typing import Self
 
 import numpy as np
 
-from codriving.datatypes.experience import Experience, Interaction
+from codriving.datatypes import Experience, Interaction
 from codriving.errors import MemoryFileError
 from codriving.memory.embedders import Embedder, Vectors
 from codriving.memory.index import Index
@@ -27,16 +27,11 @@ from codriving.memory.store_file import (
     vectors_of,
 )
 
-NEIGHBOURS = 16
-"""Nearest experiences among which one with the same action and verdict is looked for."""
+NEIGHBOURS = 16  # Nearest experiences among which one with the same action and verdict is looked for
 
 
 class MemoryStore:
-    """A file of memories that is open for writing; a context manager. Several may have the same file open.
-
-    Raises:
-        MemoryFileError: If the file cannot be used or written, or is of another embedder or version.
-    """
+    """A file of memories that is open for writing; a context manager. Several may have the same file open."""
 
     def __init__(self, path: Path, embedder: Embedder, duplicates: float) -> None:
         self.path, self.embedder, self.duplicates = path, embedder, duplicates
@@ -48,14 +43,7 @@ class MemoryStore:
             self._open()
 
     def add(self, interaction: Interaction, experiences: Sequence[Experience], vectors: Vectors | None = None) -> int:
-        """Add what was learnt in one episode, all of it or nothing; the same episode driven again replaces itself.
-
-        Args:
-            vectors: Their vectors (n, dimension), if they are known.
-
-        Raises:
-            MemoryFileError: If the file cannot be written, or a vector cannot be stored.
-        """
+        """Add what was learnt in one episode, all of it or nothing; the same episode driven again replaces itself."""
         made = self.embedder.embed([e.description for e in experiences]) if vectors is None else vectors
         if self._connection is None:
             self._open(made.shape[1] if len(made) else None)
@@ -71,14 +59,7 @@ class MemoryStore:
             return sum(self._keep(connection, number, *pair) for pair in zip(experiences, made, strict=True))
 
     def snapshot(self, before: int | None = None) -> Snapshot:
-        """Return what can be recalled now.
-
-        Args:
-            before: Only what was learnt with smaller seeds; None for everything.
-
-        Raises:
-            MemoryFileError: If the file is damaged.
-        """
+        """Return what can be recalled now."""
         if self._connection is None:
             return Snapshot((), np.zeros((0, self.embedder.dimension or 1), dtype=np.float32), "", 0)
         try:
@@ -186,14 +167,7 @@ def merge(sources: list[Path], target: Path, embedder: Embedder, duplicates: flo
 
 
 def read(path: Path, embedder: Embedder) -> Iterator[tuple[Interaction, list[Experience], Vectors]]:
-    """Read a memory interaction by interaction, with every sighting.
-
-    Yields:
-        An interaction, what was learnt in it, and the vectors of that (n, dimension).
-
-    Raises:
-        MemoryFileError: If the file cannot be used.
-    """
+    """Read a memory interaction by interaction, with every sighting."""
     with closing(open_file(path, write=False)) as connection:
         dimension = check_embedder(path, about(connection), embedder)
         query = (

@@ -9,18 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from codriving.datatypes.experience import Description, Effect, Experience, Verdict
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Description, Effect, Experience, Verdict
 from codriving.errors import MemoryFileError
-from codriving.llm import sqlite_file
+from codriving.llm import connect_sqlite, create_sqlite
 from codriving.memory.embedders import Embedder, Vectors
 
-LAYOUT = 1
-"""Changes when an older version could not read the file any more."""
+LAYOUT = 1  # Changes when an older version could not read the file any more
 
-APPLICATION = 0x43444D31
-"""What tells such a file from any other SQLite file ("CDM1")."""
+APPLICATION = 0x43444D31  # What tells such a file from any other SQLite file ("CDM1")
 
+# ``interactions`` are episodes, ``experiences`` what was kept of them, ``sightings`` where each of those was made.
 _TABLES = """
 CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE interactions (
@@ -38,15 +36,10 @@ CREATE TABLE sightings (
 ) WITHOUT ROWID;
 CREATE INDEX sightings_of ON sightings (experience);
 """
-"""``interactions`` are episodes, ``experiences`` what was kept of them, ``sightings`` where each of those was made."""
 
 
 def create(path: Path, embedder: str, dimension: int) -> None:
-    """Make an empty file; if several processes do, the first wins, and half of it is never seen.
-
-    Raises:
-        MemoryFileError: If it cannot be written.
-    """
+    """Make an empty file; if several processes do, the first wins, and half of it is never seen."""
 
     def fill(connection: sqlite3.Connection) -> None:
         connection.executescript(_TABLES)
@@ -56,7 +49,7 @@ def create(path: Path, embedder: str, dimension: int) -> None:
         connection.execute(f"PRAGMA user_version = {LAYOUT}")
 
     try:
-        sqlite_file.create(path, fill)
+        create_sqlite(path, fill)
     except (OSError, sqlite3.Error) as error:
         raise unwritable(path, error) from error
 
@@ -65,15 +58,12 @@ def open_file(path: Path, write: bool) -> sqlite3.Connection:
     """Open a file that is there.
 
     A writer that was killed may have left a journal beside it; opening it for writing puts it back as it was.
-
-    Raises:
-        MemoryFileError: If it is missing, no such file, or of another version.
     """
     if not path.is_file():
         raise MemoryFileError(f"there is no file of memories {path}; make one with codriving memory build")
     try:
         mode = "rw" if write or path.with_name(f"{path.name}-journal").exists() else "ro"
-        connection = sqlite_file.connect(f"{path.resolve().as_uri()}?mode={mode}")
+        connection = connect_sqlite(f"{path.resolve().as_uri()}?mode={mode}")
         try:
             (kind,) = connection.execute("PRAGMA application_id").fetchone()
             (layout,) = connection.execute("PRAGMA user_version").fetchone()
@@ -101,17 +91,7 @@ def about(connection: sqlite3.Connection) -> dict[str, str]:
 
 
 def check_embedder(path: Path, said: Mapping[str, str], embedder: Embedder) -> int:
-    """Refuse a file whose vectors are another embedder's.
-
-    Args:
-        said: What the file says of itself.
-
-    Returns:
-        Length of its vectors.
-
-    Raises:
-        MemoryFileError: If the embedder or the length differ.
-    """
+    """Refuse a file whose vectors are another embedder's."""
     name, dimension = said.get("embedder", "none"), said.get("dimension", "")
     if name != embedder.name:
         raise MemoryFileError(
@@ -136,16 +116,12 @@ def unwritable(path: Path, error: Exception) -> MemoryFileError:
     return MemoryFileError(f"cannot write the memory {path}: {error}; make room, or name another file")
 
 
+# The columns of ``experiences`` after the number, in their order.
 COLUMNS = ("vector", "action", "verdict", "scene", "conflict", "passing", "numbers", "kinds", "effect", "lesson")
-"""The columns of ``experiences`` after the number, in their order."""
 
 
 def to_row(experience: Experience, vector: Vectors) -> tuple[Any, ...]:
-    """Write an experience as the values of ``COLUMNS``.
-
-    Raises:
-        ValueError: If a number in it is not finite.
-    """
+    """Write an experience as the values of ``COLUMNS``."""
     d = experience.description
     labels = (str(experience.action), str(experience.verdict), d.scene, d.conflict, d.order)
     values = (_json(d.numbers), _json(d.kinds), _json(asdict(experience.effect)))
@@ -153,11 +129,7 @@ def to_row(experience: Experience, vector: Vectors) -> tuple[Any, ...]:
 
 
 def from_row(row: tuple[Any, ...], step: int = 0, ego: str = "") -> Experience:
-    """Read an experience from the values of ``COLUMNS``.
-
-    Raises:
-        ValueError: If something in it cannot be read.
-    """
+    """Read an experience from the values of ``COLUMNS``."""
     _, action, verdict, scene, conflict, passing, numbers, kinds, effect, lesson = row
     try:
         description = Description(scene, conflict, passing, json.loads(numbers), json.loads(kinds))
@@ -169,14 +141,7 @@ def from_row(row: tuple[Any, ...], step: int = 0, ego: str = "") -> Experience:
 
 
 def vectors_of(blobs: list[bytes], dimension: int) -> Vectors:
-    """Join vectors as they are stored into one array.
-
-    Returns:
-        Vectors (n, dimension).
-
-    Raises:
-        ValueError: If one has another length, or holds what is no finite number.
-    """
+    """Join vectors as they are stored into one array."""
     if any(len(blob) != 4 * dimension for blob in blobs):
         raise ValueError(f"a vector does not have {dimension} numbers")
     vectors = np.frombuffer(b"".join(blobs), dtype="<f4").reshape(len(blobs), dimension).astype(np.float32)

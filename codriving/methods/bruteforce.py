@@ -2,33 +2,23 @@
 
 from collections.abc import Sequence
 
-from codriving.datatypes.order import Instance
+from codriving.datatypes import Instance
 from codriving.errors import EpisodeError
 from codriving.methods.order_search import Coded, Found, Prefix, SearchedOrder
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
+from codriving.reasoning import JointPlanner, Ordering
 
-MOST = 10
-"""Vehicles that are ordered at most."""
+MOST = 10  # Vehicles that are ordered at most
 
-LESS = 1e-9
-"""An order is better only if it saves more than this [s]."""
+LESS = 1e-9  # An order is better only if it saves more than this [s]
 
 
 class BruteForce(SearchedOrder):
-    """Goes through all orders that what is physically fixed allows, except those that cannot be better.
-
-    Args:
-        hysteresis: J that another order must save to be taken, 0 to 10 [s].
-    """
+    """Goes through all orders that what is physically fixed allows, except those that cannot be better."""
 
     name = "bruteforce"
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
-        """Return the best order.
-
-        Raises:
-            EpisodeError: If more than ten vehicles are to be ordered.
-        """
+        """Return the best order."""
         if len(instance.vehicles) > MOST:
             many = f"at most {MOST} vehicles, got {len(instance.vehicles)}"
             raise EpisodeError(f"bruteforce orders {many}; take method=mcts or fewer vehicles")

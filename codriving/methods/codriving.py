@@ -2,37 +2,47 @@
 
 from collections.abc import Sequence
 
-from codriving.datatypes.parts import Account, CaseMemory, Model
-from codriving.datatypes.record import Outcome
-from codriving.datatypes.situation import Decision, ReasonedDeliberation, Situation
-from codriving.datatypes.world import DrivingModel, WorldState
+from codriving.datatypes import (
+    Account,
+    CaseMemory,
+    Decision,
+    DrivingModel,
+    Model,
+    Outcome,
+    ReasonedDeliberation,
+    Situation,
+    WorldState,
+)
 from codriving.errors import require_range
-from codriving.geometry.road_map import RoadMap
+from codriving.geometry import RoadMap
 from codriving.methods.experience_log import ConflictLog, learn
 from codriving.methods.language_model.prompted_model import ModelMethod, PromptedModel
 from codriving.methods.pipeline import Pipeline
-from codriving.reasoning.decision.rules import Decider, RuleDecider, decide_one
-from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator
-from codriving.reasoning.ordering.negotiation import AgreedOrder, OwnOrders
-from codriving.reasoning.perception import Perception
-from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.prediction.rollout import PLANS
-from codriving.reasoning.safety.assessment import NoCheck, ThreeLayers
-from codriving.reasoning.safety.safety_input import CONTINUATIONS
-from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, CdaLevel, SensedStates, SharedStates
-from codriving.reasoning.sharing.tracking import Tracking
+from codriving.reasoning import (
+    CONTINUATIONS,
+    HIDDEN_INTENTS,
+    PLANS,
+    SHARED_INTENTS,
+    AgreedOrder,
+    CdaLevel,
+    Coordinator,
+    Decider,
+    Forecast,
+    NoCheck,
+    OwnOrders,
+    Perception,
+    RuleCoordinator,
+    RuleDecider,
+    SensedStates,
+    SharedStates,
+    ThreeLayers,
+    Tracking,
+    decide_one,
+)
 
 
 class CoDriving(ModelMethod):
-    """The framework of the paper.
-
-    Args:
-        memory: Experiences to recall, and perhaps to learn from; None for the framework without its memory module.
-        margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
-
-    Raises:
-        ConfigError: If the margin is out of range.
-    """
+    """The framework of the paper."""
 
     name, asked, reflects = "codriving", ("negotiate", "decide"), "reflect"
 
@@ -102,11 +112,7 @@ class _ForOne(Decider):
 def ports(
     model: PromptedModel | None, ask_plain: bool, binding: bool, sees_conflicts: bool
 ) -> tuple[Coordinator, Decider]:
-    """Return what negotiates and what decides.
-
-    Args:
-        model: The language model; None for the built-in rules.
-    """
+    """Return what negotiates and what decides."""
     if model is None:
         return RuleCoordinator(binding), RuleDecider()
     # pydantic is needed only if a model is asked.

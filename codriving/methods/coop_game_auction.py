@@ -2,38 +2,26 @@
 
 from collections.abc import Mapping, Sequence
 
-from codriving.datatypes.order import ApproachingVehicle, Instance
+from codriving.datatypes import ApproachingVehicle, Instance
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.schedule import repaired, timed
-from codriving.reasoning.ordering.tickets import reasons
+from codriving.reasoning import JointPlanner, Ordering, OrderRule, reasons, repaired, timed
 
+# Speed below which a vehicle waits; no time to the conflict zone is worked out with a smaller one either [m/s].
 STANDING = 0.5
-"""Speed below which a vehicle waits; no time to the conflict zone is worked out with a smaller one either [m/s]."""
 
-WAITED, NEAR, SOON = 0.1, 3.0, 1.0
-"""What a bid counts: each second of waiting [1/s], nearness [m], and soonness [s]."""
+WAITED, NEAR, SOON = 0.1, 3.0, 1.0  # What a bid counts: each second of waiting [1/s], nearness [m], and soonness [s]
 
-NEAR_OFFSET, SOON_OFFSET = 2.0, 0.5
-"""What is added to the distance [m] and to the time [s], so that no bid is infinite."""
+NEAR_OFFSET, SOON_OFFSET = 2.0, 0.5  # What is added to the distance [m] and to the time [s], so that no bid is infinite
 
 
 def bid(vehicle: ApproachingVehicle, waited: float) -> float:
-    """Return what a vehicle bids for going first.
-
-    Args:
-        waited: How long it has been waiting [s].
-    """
+    """Return what a vehicle bids for going first."""
     soon = vehicle.distance / max(vehicle.speed, STANDING)
     return WAITED * waited + NEAR / (vehicle.distance + NEAR_OFFSET) + SOON / (soon + SOON_OFFSET)
 
 
 class Auction(OrderRule):
-    """Vehicles go by decreasing bid.
-
-    Raises:
-        ConfigError: If the hysteresis is out of range.
-    """
+    """Vehicles go by decreasing bid."""
 
     name = "coop_game"
     variant = "auction"

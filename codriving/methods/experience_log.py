@@ -4,24 +4,30 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from codriving.datatypes.experience import Experience, Interaction, Verdict
-from codriving.datatypes.parts import CaseMemory, Method
-from codriving.datatypes.record import Collision, Outcome
-from codriving.datatypes.situation import Decision, Role, Situation
-from codriving.datatypes.world import Action, DrivingModel, WorldState
-from codriving.geometry.road_map import RoadMap
-from codriving.memory.describe import describe
-from codriving.memory.effect import LESSONS, DecisionHistory, HistoryStep, OwnCollision, effect_of, verdict_of
-from codriving.reasoning.conflicts import find_conflicts
-from codriving.reasoning.sharing.scenes import describe_scenes
-from codriving.reasoning.sharing.sharing import SharedStates
-from codriving.reasoning.sharing.tracking import Tracking
+from codriving.datatypes import (
+    Action,
+    CaseMemory,
+    Collision,
+    Decision,
+    DrivingModel,
+    Experience,
+    Interaction,
+    Method,
+    Outcome,
+    Role,
+    Situation,
+    Verdict,
+    WorldState,
+)
+from codriving.geometry import RoadMap
+from codriving.memory import LESSONS, DecisionHistory, HistoryStep, OwnCollision, describe, effect_of, verdict_of
+from codriving.reasoning import SharedStates, Tracking, describe_scenes, find_conflicts
 
+# What would have been faster than an action.
 FASTER_THAN: Mapping[Action | None, tuple[Action, ...]] = {
     Action.SLOWER: (Action.IDLE, Action.FASTER),
     Action.IDLE: (Action.FASTER,),
 }
-"""What would have been faster than an action."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,11 +122,7 @@ class ConflictLog(ExperienceLog):
 
 
 def recall(memory: CaseMemory | None, situations: Sequence[Situation], most: int | None = None) -> list[Situation]:
-    """Put what is remembered of similar situations into each (paper Algorithm 1).
-
-    Args:
-        most: How many memories each situation gets; None for all that the memory recalls.
-    """
+    """Put what is remembered of similar situations into each (paper Algorithm 1)."""
     if memory is None or not situations:
         return list(situations)
     found = zip(situations, memory.recall(situations), strict=True)
@@ -130,10 +132,6 @@ def recall(memory: CaseMemory | None, situations: Sequence[Situation], most: int
 def learn(
     memory: CaseMemory, method: Method, scenario: str, seed: int, experiences: Sequence[Experience]
 ) -> dict[str, float]:
-    """Put the experiences of an episode into a memory.
-
-    Returns:
-        Counters by column.
-    """
+    """Put the experiences of an episode into a memory."""
     new = memory.learn(Interaction(scenario, seed, method.name, method.variant, method.reasoner), experiences)
     return {"experiences": len(experiences), "experiences_new": new}

@@ -3,27 +3,30 @@
 from collections.abc import Sequence
 from typing import Literal, get_args
 
-from codriving.datatypes.order import Instance
+from codriving.datatypes import Instance
 from codriving.errors import require
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request, in_order
-from codriving.reasoning.ordering.schedule import after_windows, inserted, sequence, timed
-from codriving.reasoning.ordering.tickets import CONTROL_RADIUS, TicketBook, by_slot, by_ticket, reasons
+from codriving.reasoning import (
+    CONTROL_RADIUS,
+    JointPlanner,
+    Ordering,
+    OrderRule,
+    Request,
+    TicketBook,
+    after_windows,
+    by_slot,
+    by_ticket,
+    in_order,
+    inserted,
+    reasons,
+    sequence,
+    timed,
+)
 
 Mode = Literal["conflict", "global", "reservation"]
 
 
 class FirstComeFirstServed(OrderRule):
-    """Right of way in the order of tickets.
-
-    Args:
-        control_radius: Distance to the reference point from which on a vehicle holds a ticket, 1 to 1000 [m].
-        mode: What a vehicle waits for. ``conflict``: those with earlier tickets that it is in conflict with.
-            ``global``: all of the group before; a group is a run of tickets of which no two are in conflict.
-            ``reservation``: it takes the earliest slot that those with earlier tickets leave, also between them.
-
-    Raises:
-        ConfigError: If the radius is out of range or the mode unknown.
-    """
+    """Right of way in the order of tickets."""
 
     name = "fcfs"
 
@@ -55,11 +58,7 @@ class FirstComeFirstServed(OrderRule):
 
 
 def group_times(instance: Instance, order: Sequence[str]) -> dict[str, float]:
-    """Schedule an order group by group: none passes before all of the group before have left their zones.
-
-    Returns:
-        When each vehicle passes, in that order [s].
-    """
+    """Schedule an order group by group: none passes before all of the group before have left their zones."""
     times: dict[str, float] = {}
     group: list[str] = []
     clear = float("-inf")

@@ -4,14 +4,26 @@ from collections.abc import Sequence
 from itertools import combinations
 from math import inf
 
-from codriving.datatypes.order import Instance, Pair
+from codriving.datatypes import Instance, Pair
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request
-from codriving.reasoning.ordering.schedule import LONGEST_WAIT, Objective, carried_over, inserted, sequence, timed
-from codriving.reasoning.ordering.tickets import CONTROL_RADIUS, TicketBook, by_slot, reasons
+from codriving.reasoning import (
+    CONTROL_RADIUS,
+    LONGEST_WAIT,
+    JointPlanner,
+    Objective,
+    Ordering,
+    OrderRule,
+    Request,
+    TicketBook,
+    by_slot,
+    carried_over,
+    inserted,
+    reasons,
+    sequence,
+    timed,
+)
 
-Windows = Sequence[tuple[float, float]]
-"""When human drivers block the reference point, (begin, end) [s]."""
+Windows = Sequence[tuple[float, float]]  # When human drivers block the reference point, (begin, end) [s]
 
 
 class SpanningTree(OrderRule):
@@ -19,14 +31,6 @@ class SpanningTree(OrderRule):
 
     A vehicle that is scheduled keeps its rank, a new one is inserted. All are scheduled anew if an earliest arrival
     or a window of a human driver has moved, or if what is physically fixed has changed.
-
-    Args:
-        control_radius: Distance to the reference point from which on a vehicle holds a ticket, 1 to 1000 [m].
-        drift: How far an earliest arrival or a window may move before all are scheduled anew, 0 to 10 [s].
-        hysteresis: Delay that a new schedule must save in all to be taken, 0 to 10 [s].
-
-    Raises:
-        ConfigError: If a value is out of range.
     """
 
     name = "idfst"
@@ -115,11 +119,7 @@ def moved_windows(one: Windows, other: Windows, most: float) -> bool:
 
 
 def clock_windows(windows: Windows, now: float) -> list[tuple[float, float]]:
-    """Put windows that are counted from now on the clock of the simulation, overlapping ones as one.
-
-    Returns:
-        Those that are not over, by begin; none begins before now, and an end that is out of sight is inf [s].
-    """
+    """Put windows that are counted from now on the clock of the simulation, overlapping ones as one."""
     joined: list[tuple[float, float]] = []
     seen = [(max(b, 0.0), e if e < LONGEST_WAIT else inf) for b, e in windows]
     for begin, end in sorted((b + now, e + now) for b, e in seen if e > b):

@@ -7,16 +7,11 @@ from random import Random
 from codriving.errors import require_range
 from codriving.methods.order_search import Coded, Found, Prefix, SearchedOrder
 
-STRIDE = 1_000_003
-"""Seeds of two episodes lie so far apart that their steps never share a seed."""
+STRIDE = 1_000_003  # Seeds of two episodes lie so far apart that their steps never share a seed
 
 
 class MonteCarloTreeSearch(SearchedOrder):
-    """Tries orders where good ones have been found.
-
-    Args:
-        hysteresis: J that another order must save to be taken, 0 to 10 [s].
-    """
+    """Tries orders where good ones have been found."""
 
     name = "mcts"
 

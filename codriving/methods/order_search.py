@@ -5,21 +5,24 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 
-from codriving.datatypes.order import Instance
+from codriving.datatypes import Instance
 from codriving.errors import require_range
-from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.schedule import (
+from codriving.reasoning import (
     LONGEST_WAIT,
+    JointPlanner,
     Objective,
+    Ordering,
+    OrderRule,
+    TicketBook,
     after_windows,
     carried_over,
     inserted,
     left,
+    reasons,
     repaired,
     sequence,
     timed,
 )
-from codriving.reasoning.ordering.tickets import TicketBook, reasons
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +45,6 @@ class SearchedOrder(OrderRule):
 
     The seeds are the order of tickets, that of the earliest free slots, and that of the last step, which stays unless
     the search finds one that is better by more than the hysteresis, or unless it has become impossible.
-
-    Args:
-        hysteresis: J that another order must save to be taken, 0 to 10 [s].
-
-    Raises:
-        ConfigError: If a value is out of range.
     """
 
     def __init__(

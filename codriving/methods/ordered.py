@@ -1,21 +1,34 @@
 """Methods that order: a rule says who passes first, an executor drives; everything else is shared by all of them."""
 
-from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.parts import Method
-from codriving.datatypes.situation import ActionAssessment, Decision, ReasonedDeliberation, Situation
-from codriving.datatypes.world import Action, DrivingModel, WorldState
-from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.execution.lane_requests import LaneRequests
-from codriving.reasoning.execution.planned import Drive, Executor
-from codriving.reasoning.ordering.coordinator import agreement
-from codriving.reasoning.ordering.problem import pose
-from codriving.reasoning.ordering.protocol import OrderRule
-from codriving.reasoning.perception import Moment, Perception
-from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.prediction.rollout import PLANS
-from codriving.reasoning.safety.safety_input import CONTINUATIONS, LONGITUDINAL
-from codriving.reasoning.sharing.sharing import SHARED_INTENTS, SharedStates
-from codriving.reasoning.sharing.tracking import Tracking
+from codriving.datatypes import (
+    Action,
+    ActionAssessment,
+    Decision,
+    DrivingModel,
+    Method,
+    PassingOrder,
+    ReasonedDeliberation,
+    Situation,
+    WorldState,
+)
+from codriving.geometry import RoadMap
+from codriving.reasoning import (
+    CONTINUATIONS,
+    LONGITUDINAL,
+    PLANS,
+    SHARED_INTENTS,
+    Drive,
+    Executor,
+    Forecast,
+    LaneRequests,
+    Moment,
+    OrderRule,
+    Perception,
+    SharedStates,
+    Tracking,
+    agreement,
+    pose,
+)
 
 
 class Ordered(Method):

@@ -3,20 +3,17 @@
 from dataclasses import dataclass
 from math import cos, inf
 
-from codriving.datatypes.order import Precedence
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Precedence
 from codriving.methods.single_vehicle.encounters import FRONT, Encounter, WaitingDriver, crossing_angle, leaders
 from codriving.methods.single_vehicle.method import Choice
-from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.prediction.idm import IntelligentDriver
-from codriving.reasoning.prediction.rollout import Plan, rollout
+from codriving.reasoning import Forecast, IntelligentDriver, Moment, Plan, rollout
 
 SPEED_ACTIONS = (Action.SLOWER, Action.IDLE, Action.FASTER)
 
+# Each action carried out once.
 ONCE: tuple[Plan, ...] = ((Action.SLOWER, Action.IDLE), (Action.IDLE,), (Action.FASTER, Action.IDLE))
-"""Each action carried out once."""
 
+# Least and largest value of each setting.
 LIMITS = {
     "acceleration": (0.1, 10.0),
     "deceleration": (0.1, 10.0),
@@ -32,28 +29,11 @@ LIMITS = {
     "window": (0.1, 5.0),
     "brake_at": (0.0, 10.0),
 }
-"""Least and largest value of each setting."""
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class ProjectedIdm(WaitingDriver):
-    """A driver who follows real leaders, and those whom it projects onto its lane (after Kreutz and Eggert, 2021).
-
-    Args:
-        acceleration: IDM, largest acceleration [m/s2].
-        deceleration: IDM, comfortable braking [m/s2].
-        hardest: IDM, hardest braking that is asked for [m/s2].
-        gap: IDM, distance kept at a standstill [m].
-        headway: IDM, desired time gap [s].
-        projection: Distance kept from a projected leader beyond a body length [m].
-        stop_gap: Distance from the zone at which the vehicle waits [m].
-        tie: Difference of the times to a zone up to which both count as there at once [s].
-        firm: Braking beyond which no vehicle is expected to wait any more [m/s2].
-        patience: Time after which a waiting vehicle may start into an empty zone [s].
-        clear: Time that a vehicle which moves towards that zone must be away from it beyond what the start takes [s].
-        window: Time over which what an action leads to is compared with what is wished [s].
-        brake_at: Braking beyond which the answer is always SLOWER [m/s2].
-    """
+    """A driver who follows real leaders, and those whom it projects onto its lane (after Kreutz and Eggert, 2021)."""
 
     name = "pidm"
     variant = ""
@@ -90,14 +70,7 @@ class ProjectedIdm(WaitingDriver):
     def wish(
         self, moment: Moment, ego: str, met: tuple[Encounter, ...], waited: float
     ) -> tuple[float, str, tuple[Precedence, ...]]:
-        """Return the acceleration that is wished.
-
-        Args:
-            waited: How long it has been standing [s].
-
-        Returns:
-            Acceleration [m/s2], why, and who goes first wherever it is open.
-        """
+        """Return the acceleration that is wished."""
         scene = moment.scenes[ego]
         speed, top = scene.ego.speed, moment.forecast.model.top_speed
         options = [(self.idm.accelerate(speed, top), "nobody holds it up")]
@@ -135,13 +108,7 @@ class ProjectedIdm(WaitingDriver):
 
 
 def mean_accelerations(forecast: Forecast, speed: float, target: float, window: float) -> tuple[float, float, float]:
-    """Return the mean acceleration that SLOWER, IDLE and FASTER lead to, each carried out once [m/s2].
-
-    Args:
-        speed: Speed now [m/s].
-        target: Target speed now [m/s].
-        window: Time over which the mean is taken [s].
-    """
+    """Return the mean acceleration that SLOWER, IDLE and FASTER lead to, each carried out once [m/s2]."""
     model = forecast.model
     steps = max(1, round(window / model.step))
     _, reached = rollout(model, [speed], [target], ONCE, steps)
@@ -154,11 +121,6 @@ def closest_action(wished: float, means: tuple[float, float, float], hard: float
 
     Who wishes to brake hard slows down whatever the means are, and who wishes to accelerate never does; of two that
     are equally close, the slower one is taken.
-
-    Args:
-        wished: Acceleration that is wished [m/s2].
-        means: Mean acceleration of SLOWER, IDLE and FASTER [m/s2].
-        hard: Braking beyond which the answer is always SLOWER [m/s2].
     """
     if wished < -hard:
         return Action.SLOWER

@@ -2,17 +2,19 @@
 
 from dataclasses import dataclass
 
-from codriving.datatypes.parts import CaseMemory
-from codriving.datatypes.situation import ReasonedDeliberation, Situation
-from codriving.datatypes.world import WorldState
-from codriving.llm.ledger import Ledger
+from codriving.datatypes import CaseMemory, ReasonedDeliberation, Situation, WorldState
+from codriving.llm import Ledger
 from codriving.methods.experience_log import recall
-from codriving.reasoning.decision.rules import Decider
-from codriving.reasoning.ordering.negotiation import Negotiation
-from codriving.reasoning.perception import Perception
-from codriving.reasoning.prediction.expectation import expect_all
-from codriving.reasoning.safety.assessment import SafetyCheck
-from codriving.reasoning.safety.safety_input import SafetyInput, clear_time, safety_input
+from codriving.reasoning import (
+    Decider,
+    Negotiation,
+    Perception,
+    SafetyCheck,
+    SafetyInput,
+    clear_time,
+    expect_all,
+    safety_input,
+)
 
 
 @dataclass(slots=True)

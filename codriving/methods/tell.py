@@ -11,12 +11,6 @@ class Tell(Learned):
     """A policy of a single vehicle that attends to others one by one; its teacher is not there any more.
 
     Nobody is asked while it drives, so that the reasoner is ``none``; the variant says who has taught it.
-
-    Args:
-        weights: File of weights of one's own; None takes those that are shipped for the family of the road.
-
-    Raises:
-        WeightsError: If the file is missing, damaged, or not of this method.
     """
 
     name = "tell"

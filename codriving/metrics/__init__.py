@@ -1,1 +1,6 @@
 """From a driven trajectory to its score: success, post-encroachment time, travel velocity."""
+
+from codriving.metrics.intervals import FEWEST, RESAMPLES, mcnemar, mean_interval, wilson_interval
+from codriving.metrics.scorer import Scorer
+
+__all__ = ["FEWEST", "RESAMPLES", "Scorer", "mcnemar", "mean_interval", "wilson_interval"]

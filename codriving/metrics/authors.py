@@ -9,11 +9,9 @@ from itertools import combinations
 
 import numpy as np
 
-from codriving.datatypes.parts import Metric
-from codriving.datatypes.record import Ending, Outcome, Pet, Score, Track, Trajectory, TravelScore
+from codriving.datatypes import Ending, Metric, Outcome, Pet, Score, Track, Trajectory, TravelScore
 from codriving.errors import ConfigError
-from codriving.geometry.curve import FloatArray
-from codriving.geometry.road_map import RoadMap
+from codriving.geometry import FloatArray, RoadMap
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,10 +45,6 @@ def encounters(logs: Sequence[Log], box: float, distance: float) -> tuple[Logged
     """Return the first encounter of every pair of vehicles that entered from different arms.
 
     The first is that of the earliest row of the one vehicle, and among these of the earliest row of the other.
-
-    Args:
-        box: Half the side of the square around the middle in which encounters count [m].
-        distance: Distance between the two centres below which they meet [m].
     """
     found = []
     for one, other in combinations(logs, 2):
@@ -82,15 +76,6 @@ class AuthorsMetrics(Metric):
 
     Every vehicle counts, human drivers too, and all of the log, second laps too. Positions are taken relative to the
     origin, which is the middle of the intersection; on roads without one there, PETs mean little.
-
-    Args:
-        row_interval: Time between two rows of the log [s].
-        box: Half the side of the square around the middle in which encounters count [m].
-        distance: Distance between two centres below which they meet [m].
-        rows: Number of rows over which the velocity is taken; None takes the whole log.
-
-    Raises:
-        ConfigError: If a number is not positive.
     """
 
     name = "authors"
@@ -110,11 +95,7 @@ class AuthorsMetrics(Metric):
         return self.score_logs(logs, outcome.ending is Ending.SUCCESS, stride * trajectory.step)
 
     def score_logs(self, logs: list[Log], success: bool, row_interval: float) -> Score:
-        """Return the score of logged vehicles.
-
-        Args:
-            row_interval: Time between two rows [s].
-        """
+        """Return the score of logged vehicles."""
         pets = []
         for met in encounters(logs, self.box, self.distance):
             order = (met.one, met.other) if met.row <= met.other_row else (met.other, met.one)

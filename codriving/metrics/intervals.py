@@ -6,14 +6,11 @@ from statistics import NormalDist
 
 import numpy as np
 
-RESAMPLES = 5000
-"""Resamples of one interval."""
+RESAMPLES = 5000  # Resamples of one interval
 
-FEWEST = 10
-"""Fewest pairs of which an interval is given; of fewer, resampling makes it much too narrow."""
+FEWEST = 10  # Fewest pairs of which an interval is given; of fewer, resampling makes it much too narrow
 
-_AT_ONCE = 1_000_000
-"""Numbers drawn at a time, which bounds the memory that many episodes take."""
+_AT_ONCE = 1_000_000  # Numbers drawn at a time, which bounds the memory that many episodes take
 
 
 def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> tuple[float, float]:

@@ -5,17 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from codriving.datatypes.order import Relation
-from codriving.datatypes.record import Pet, Track, Trajectory
-from codriving.datatypes.world import Kind
-from codriving.geometry.box import TRUE
-from codriving.geometry.curve import FloatArray
-from codriving.geometry.path import Path, progress
-from codriving.geometry.road_map import RoadMap
-from codriving.geometry.zone import ConflictZone
+from codriving.datatypes import Kind, Pet, Relation, Track, Trajectory
+from codriving.geometry import TRUE, ConflictZone, FloatArray, Path, RoadMap, progress
 
-BESIDE = 2.0
-"""Farther than this from the centre line of its route a vehicle is on another lane [m]."""
+BESIDE = 2.0  # Farther than this from the centre line of its route a vehicle is on another lane [m]
 
 
 class Passage(NamedTuple):

@@ -3,10 +3,8 @@
 from dataclasses import replace
 from typing import NamedTuple
 
-from codriving.datatypes.parts import Metric
-from codriving.datatypes.record import Outcome, Score, Trajectory
-from codriving.datatypes.road import Road
-from codriving.geometry.road_map import RoadMap, road_map
+from codriving.datatypes import Metric, Outcome, Road, Score, Trajectory
+from codriving.geometry import RoadMap, road_map
 
 
 class Scorer(NamedTuple):

@@ -2,24 +2,14 @@
 
 import numpy as np
 
-from codriving.datatypes.parts import Metric
-from codriving.datatypes.record import Ending, Outcome, Score, Trajectory, TravelScore
-from codriving.datatypes.world import Kind
+from codriving.datatypes import Ending, Kind, Metric, Outcome, Score, Trajectory, TravelScore
 from codriving.errors import ConfigError
-from codriving.geometry.road_map import RoadMap
+from codriving.geometry import RoadMap
 from codriving.metrics.pet import post_encroachment_times
 
 
 class StandardMetrics(Metric):
-    """Success, post-encroachment time of the true footprints, and travel velocity of the CAVs (paper Section IV-A).
-
-    Args:
-        free_speed: Speed of free flow that delays are counted against [m/s]; None takes the highest speed limit on
-            the route of each CAV.
-
-    Raises:
-        ConfigError: If the free speed is not positive.
-    """
+    """Success, post-encroachment time of the true footprints, and travel velocity of the CAVs (paper Section IV-A)."""
 
     name = "standard"
 
@@ -40,12 +30,7 @@ class StandardMetrics(Metric):
 
 
 def travels(trajectory: Trajectory, road: RoadMap, free_speed: float | None = None) -> tuple[TravelScore, ...]:
-    """Return how each CAV travelled; one that did not arrive is absent.
-
-    Args:
-        free_speed: Speed of free flow that delays are counted against [m/s]; None takes the highest speed limit on
-            the route of each CAV.
-    """
+    """Return how each CAV travelled; one that did not arrive is absent."""
     scores = []
     for track in trajectory.tracks:
         start = track.first_step * trajectory.step

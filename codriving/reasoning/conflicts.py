@@ -1,15 +1,12 @@
 """The conflict description: whose way ahead shares a zone with the ego vehicle's, and how soon (III-C.3, Eq. 3)."""
 
-from codriving.datatypes.order import Conflict, Relation, Severity
-from codriving.datatypes.situation import SceneDescription, TrackedVehicle
-from codriving.geometry.road_map import RoadMap
-from codriving.geometry.zone import ConflictZone
+from codriving.datatypes import Conflict, Relation, SceneDescription, Severity, TrackedVehicle
+from codriving.geometry import ConflictZone, RoadMap
 
-OPEN = (Relation.CROSSING, Relation.CONVERGING, Relation.WEAVING)
-"""Relations in which it is open who goes first."""
+OPEN = (Relation.CROSSING, Relation.CONVERGING, Relation.WEAVING)  # Relations in which it is open who goes first
 
+# Speed below which the time to the conflict point is counted as if at this speed [m/s]; at rest it has none.
 SLOWEST = 0.5
-"""Speed below which the time to the conflict point is counted as if at this speed [m/s]; at rest it has none."""
 
 
 def find_conflicts(scene: SceneDescription, road_map: RoadMap) -> tuple[Conflict, ...]:
@@ -75,11 +72,7 @@ def ttcp(distance: float, speed: float) -> float:
 
 
 def severity(dttcp: float) -> Severity:
-    """Put a difference of times to the conflict point into the paper's bands.
-
-    Args:
-        dttcp: Absolute difference [s].
-    """
+    """Put a difference of times to the conflict point into the paper's bands."""
     if dttcp <= 2.0:
         return Severity.SERIOUS
     if dttcp <= 5.0:

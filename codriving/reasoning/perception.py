@@ -3,10 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from codriving.datatypes.order import Conflict
-from codriving.datatypes.situation import SceneDescription, TrackedVehicle
-from codriving.datatypes.world import Action, WorldState
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Action, Conflict, SceneDescription, TrackedVehicle, WorldState
+from codriving.geometry import RoadMap
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts

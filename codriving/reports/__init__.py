@@ -1,1 +1,29 @@
 """Records to tables: everything a reader sees, redrawn from what is stored, without a simulator."""
+
+from codriving.reports.built_memory import BuiltMemory, print_built
+from codriving.reports.columns import Table, table
+from codriving.reports.comparison import (
+    METHOD_CHOICE,
+    comparison_rows,
+    comparison_table,
+    load_rows,
+    load_table,
+    print_comparison,
+    print_loads,
+    print_pairs,
+)
+from codriving.reports.episodes import TimedEpisode, cpu_per_decision, seconds_per_decision, timing_columns
+from codriving.reports.figures import learning_figure, load_figure
+from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
+from codriving.reports.paper import read_learning, read_paper
+from codriving.reports.printed import PrintedTable, markdown_text, print_table
+from codriving.reports.results import CellResults
+from codriving.reports.summary import RunTables, run_tables
+
+__all__ = [
+    "METHOD_CHOICE", "BuiltMemory", "CellResults", "LearningRow", "PrintedTable", "RunTables", "Table",
+    "TimedEpisode", "comparison_rows", "comparison_table", "cpu_per_decision", "learning_figure", "learning_rows",
+    "learning_table", "load_figure", "load_rows", "load_table", "markdown_text", "print_built", "print_comparison",
+    "print_learning", "print_loads", "print_pairs", "print_table", "read_learning", "read_paper", "run_tables",
+    "seconds_per_decision", "table", "timing_columns",
+]  # fmt: skip

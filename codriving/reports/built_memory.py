@@ -9,7 +9,7 @@ from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.wording import reasoner_text
 
 if TYPE_CHECKING:
-    from codriving.memory.reading import Reading
+    from codriving.memory import Reading
 
 EFFECTS = ("intensified", "eased", "too cautious")
 

@@ -13,11 +13,9 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-Value: TypeAlias = str | int | float | None
-"""What stands in a cell of a table; None where something is not defined."""
+Value: TypeAlias = str | int | float | None  # What stands in a cell of a table; None where something is not defined
 
-Row: TypeAlias = Mapping[str, Value]
-"""One row, by key of the column."""
+Row: TypeAlias = Mapping[str, Value]  # One row, by key of the column
 
 
 def plain(value: Value) -> str:
@@ -52,12 +50,7 @@ class Column(Generic[T]):
     swept: bool = False
 
     def of(self, part: Callable[[Any], T | None], key: str = "", head: str = "") -> "Column[Any]":
-        """The same column in a table whose rows have such a part; not defined for those that lack it.
-
-        Args:
-            key: Another key; empty takes its own.
-            head: Another head; empty takes its own.
-        """
+        """The same column in a table whose rows have such a part; not defined for those that lack it."""
 
         def value(item: object) -> Value:
             found = part(item)

@@ -6,7 +6,7 @@ from functools import cached_property
 from itertools import chain
 from typing import Any
 
-from codriving.metrics.intervals import FEWEST, RESAMPLES
+from codriving.metrics import FEWEST, RESAMPLES
 from codriving.reports.columns import Column, Table, Value, swept_columns, table
 from codriving.reports.episodes import number_columns
 from codriving.reports.pairs import PAIRED, PairedCells
@@ -25,20 +25,18 @@ from codriving.reports.wording import (
     two_digits,
 )
 
-REFERENCE = "codriving"
-"""The method that all others are compared with."""
+REFERENCE = "codriving"  # The method that all others are compared with
 
+# Whether a method could be driven; the last for one that goes by a language model, where rules stood in for it.
 DRIVEN, MISSING, QUOTED_ALONE = "driven", "not there yet", "only in the paper"
-"""Whether a method could be driven; the last for one that goes by a language model, where rules stood in for it."""
 
+# Methods that go by a language model; with rules in its place they are not set beside the paper's numbers.
 GUIDED = ("dilu", "tell")
-"""Methods that go by a language model; with rules in its place they are not set beside the paper's numbers."""
 
+# The swept key that two methods of one name are told apart by; it belongs to a row, all others to a block.
 METHOD_CHOICE = "method_choice"
-"""The swept key that two methods of one name are told apart by; it belongs to a row, all others to a block."""
 
-CPU = "CPU [ms]"
-"""Head of the column of computing time; on the screen alone, since it differs from machine to machine."""
+CPU = "CPU [ms]"  # Head of the column of computing time; on the screen alone, since it differs from machine to machine
 
 ALGORITHM = "Reasoner none: an algorithm that has no reasoner. Rules are never a language model."
 CPU_NOTE = "CPU: computing time of one decision for all CAVs, of this machine; it stands here and in timing.csv alone."
@@ -97,11 +95,7 @@ def _cells(rows: Iterable[Compared]) -> list[CellResults]:
 
 
 def status_columns(scenario: bool) -> list[Column[Any]]:
-    """Give the columns of labels and status, of what has a cell.
-
-    Args:
-        scenario: Whether the scenario is shown.
-    """
+    """Give the columns of labels and status, of what has a cell."""
     return [
         Column("scenario", lambda r: r.scenario, "scenario" if scenario else "", words=True),
         Column("method", lambda r: r.method, words=True),
@@ -188,11 +182,7 @@ def print_comparison(
 
 
 def notes_of(rows: Iterable[tuple[str, str, CellResults | None]], screen: bool) -> list[str]:
-    """Say what a reader has to know of reasoners, missing methods and computing times.
-
-    Args:
-        rows: Method, status and one cell of each row.
-    """
+    """Say what a reader has to know of reasoners, missing methods and computing times."""
     rows = list(rows)
     missing, alone = (
         ", ".join(dict.fromkeys(method for method, status, _ in rows if status == which))
@@ -247,8 +237,8 @@ LOAD_NOTE = (
     "Rates are over completed episodes, with Wilson 95 % intervals; velocity is the mean over successful episodes."
 )
 
+# What the CSV gives at each number of CAVs.
 AT_EACH = ("completed", "success_rate", "success_low", "success_high", "pet_mean", "pet_below_1_5", "velocity_mean")
-"""What the CSV gives at each number of CAVs."""
 
 
 @dataclass(frozen=True, slots=True)

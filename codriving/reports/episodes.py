@@ -4,12 +4,13 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from codriving.datatypes.record import Ending, EpisodeRecord, NamedNumber
+from codriving.datatypes import Ending, EpisodeRecord, NamedNumber
 from codriving.reports.columns import Column, mean, swept_columns
 from codriving.reports.results import LABELS, CellResults, ScoredEpisode, counter_names, named_numbers
 from codriving.reports.wording import two_digits
-from codriving.runs.episode_folder import Timing
+from codriving.runs import Timing
 
+# The columns that users rely on, in their fixed order.
 LEADING: tuple[Column[ScoredEpisode], ...] = (
     *(column.of(lambda e: e.record) for column in LABELS),
     Column("seed", lambda e: e.record.seed),
@@ -20,7 +21,6 @@ LEADING: tuple[Column[ScoredEpisode], ...] = (
     # How long something lasted that broke off says nothing.
     Column("duration", lambda e: None if e.record.outcome.ending is Ending.ERROR else e.record.outcome.time),
 )
-"""The columns that users rely on, in their fixed order."""
 
 FURTHER: tuple[Column[ScoredEpisode], ...] = (
     Column("pet_count", lambda e: len(e.pets) if e.score else None),
@@ -38,8 +38,8 @@ FURTHER: tuple[Column[ScoredEpisode], ...] = (
     Column("message", lambda e: e.record.outcome.message or None, words=True),
 )
 
+# What was recalled from; only where something was.
 MEMORY: Column[ScoredEpisode] = Column("memory", lambda e: e.record.memory or None, words=True)
-"""What was recalled from; only where something was."""
 
 
 def episode_columns(cells: Sequence[CellResults], swept: Iterable[str] = ()) -> list[Column[Any]]:

@@ -31,8 +31,8 @@ _SETTINGS = {
     "svg.hashsalt": "codriving",
 }
 
+# Colour, marker and stroke, in the palette of Okabe and Ito (2008); colour is never the only cue.
 Style: TypeAlias = tuple[str, str, str]
-"""Colour, marker and stroke, in the palette of Okabe and Ito (2008); colour is never the only cue."""
 
 METHODS: Mapping[str, Style] = {
     "fcfs": ("#0072b2", "o", "-"),
@@ -44,9 +44,10 @@ METHODS: Mapping[str, Style] = {
     "codriving": ("#000000", "*", "-"),
 }
 
+# For methods of the user's, in turn.
 OTHERS: Sequence[Style] = (("#7a7a7a", "X", "-"), ("#7a1f5c", "<", "--"), ("#5c4a00", ">", "-."), ("#3b5b92", "h", ":"))
-"""For methods of the user's, in turn."""
 
+# For the settings that are learnt in.
 LEVELS: Sequence[Style] = (
     ("#000000", "*", "-"),
     ("#0072b2", "o", "--"),
@@ -55,10 +56,9 @@ LEVELS: Sequence[Style] = (
     ("#cc79a7", "D", "-"),
     ("#e69f00", "v", "--"),
 )
-"""For the settings that are learnt in."""
 
+# Shift of one line against the next, as a share of the smallest step between loads or of 2, to part the intervals.
 _SPREAD = 0.06
-"""Shift of one line against the next, as a share of the smallest step between loads or of 2, to part the intervals."""
 
 
 @contextmanager

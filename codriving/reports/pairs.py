@@ -4,14 +4,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-from codriving.datatypes.record import Ending
-from codriving.metrics.intervals import FEWEST, mcnemar, mean_interval
+from codriving.datatypes import Ending
+from codriving.metrics import FEWEST, mcnemar, mean_interval
 from codriving.reports.columns import Column, Value, mean
 from codriving.reports.results import CellResults, ScoredEpisode
 from codriving.reports.wording import signed
 
-SIGNIFICANT = 0.05
-"""A p-value below this counts as a difference."""
+SIGNIFICANT = 0.05  # A p-value below this counts as a difference
 
 AGAINST = "against codriving"
 
@@ -121,6 +120,7 @@ def p_text(value: Value) -> str:
     return f"{value:.2g}" if isinstance(value, float) else "-"
 
 
+# Columns of the paired comparison; every difference is the method minus codriving.
 PAIRED: tuple[Column[PairedCells], ...] = (
     Column("pairs", lambda p: len(p.driven), "pairs"),
     Column("success_difference", lambda p: p.success, "success [points]", points),
@@ -142,4 +142,3 @@ PAIRED: tuple[Column[PairedCells], ...] = (
     Column("worse_in", lambda p: " ".join(p.worse), words=True),
     Column("against", str, AGAINST, words=True, csv=False),
 )
-"""Columns of the paired comparison; every difference is the method minus codriving."""

@@ -8,11 +8,9 @@ COMPARISON = "paper_comparison.csv"
 SINGLE_VEHICLE = "paper_single_vehicle.csv"
 ABLATION = "paper_ablation.csv"
 LEARNING = "paper_learning.csv"
-SEEDS = 20
-"""Seeds of each row of the paper's comparison."""
+SEEDS = 20  # Seeds of each row of the paper's comparison
 
-WHOLE = frozenset({"", "full"})
-"""Variants of which nothing has been removed."""
+WHOLE = frozenset({"", "full"})  # Variants of which nothing has been removed
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,22 +61,14 @@ class Paper:
     single_vehicle: tuple[PaperRow, ...] = ()
 
     def row(self, scenario: str, method: str, variant: str) -> PaperRow | None:
-        """Find the paper's row for one of ours.
-
-        Returns:
-            The row, or None if the paper has none.
-        """
+        """Find the paper's row for one of ours."""
         if variant not in WHOLE:
             return None
         rows = (*self.comparison, *self.single_vehicle)
         return next((row for row in rows if (row.scenario, row.method) == (scenario, method)), None)
 
     def statement(self, scenario: str, variant: str) -> str:
-        """Find what the paper says of an ablation.
-
-        Returns:
-            The claim, empty if there is none.
-        """
+        """Find what the paper says of an ablation."""
         removed = variant if variant in WHOLE else variant.partition("/")[0]
         if removed in WHOLE and variant not in WHOLE:
             return ""

@@ -8,11 +8,9 @@ from typing import Literal, TextIO
 
 from codriving.reports.columns import Row, Table
 
-_PIPE_WIDTH = 1000
-"""Columns of a pipe: wide enough that nothing wraps."""
+_PIPE_WIDTH = 1000  # Columns of a pipe: wide enough that nothing wraps
 
-_GAP = 2
-"""Characters between two columns on a terminal."""
+_GAP = 2  # Characters between two columns on a terminal
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,13 +50,7 @@ def printed(
     theirs: Mapping[int, Row] = MappingProxyType({}),
     screen: bool = False,
 ) -> PrintedTable:
-    """Prepare a table for people.
-
-    Args:
-        blocks: The block that each row belongs to.
-        theirs: The paper's rows, by number of the row that they stand below.
-        screen: Whether it is for the screen, which shows what differs from run to run, too.
-    """
+    """Prepare a table for people."""
     shown = [
         c
         for c in table.columns

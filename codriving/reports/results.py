@@ -6,26 +6,27 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from codriving.datatypes.record import Ending, EpisodeRecord, NamedNumber, Score
-from codriving.metrics.intervals import wilson_interval
+from codriving.datatypes import Ending, EpisodeRecord, NamedNumber, Score
+from codriving.metrics import wilson_interval
 from codriving.reports.columns import Column, Value, mean, share
 
+# The columns that every table begins with.
 LABELS: tuple[Column[EpisodeRecord], ...] = (
     Column("scenario", lambda record: record.scenario, words=True),
     Column("method", lambda record: record.method, words=True),
     Column("variant", lambda record: record.variant, words=True),
     Column("reasoner", lambda record: record.reasoner, words=True),
 )
-"""The columns that every table begins with."""
 
 COST = "cost_usd"
 
+# Time that a decision step waited for the model, on average [s]; of a cached answer, the time that it took then.
 SECONDS = "step_seconds"
-"""Time that a decision step waited for the model, on average [s]; of a cached answer, the time that it took then."""
 
+# Counter of the time that was waited for the model [s]; it has no column but the mean of a step.
 WAITED = "model_seconds"
-"""Counter of the time that was waited for the model [s]; it has no column but the mean of a step."""
 
+# The columns of every table of a run in which a language model reasons, in their fixed order.
 ASKED = (
     "model_calls",
     "prompt_tokens",
@@ -39,10 +40,8 @@ ASKED = (
     "plain_decisions",
     "kept_orders",
 )
-"""The columns of every table of a run in which a language model reasons, in their fixed order."""
 
-UNPRICED = "unpriced_calls"
-"""Counter of calls whose price is not known; it has no column, it empties that of the cost."""
+UNPRICED = "unpriced_calls"  # Counter of calls whose price is not known; it has no column, it empties that of the cost
 
 
 @dataclass(frozen=True)

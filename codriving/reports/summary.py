@@ -7,31 +7,30 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from codriving.datatypes.record import Ending
+from codriving.datatypes import Ending
 from codriving.reports.columns import Column, Row, Table, Value, mean, share, swept_columns, table
 from codriving.reports.episodes import counter_columns, episode_columns, number_columns, number_head
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.printed import PrintedTable, markdown_text, printed
 from codriving.reports.results import ASKED, COST, LABELS, CellResults, named_numbers, success_interval
 from codriving.reports.wording import interval_text, percent, stand_in_notes, three, title, two_digits
-from codriving.runs.atomic import write_text
+from codriving.runs import write_text
 
-SEVERE_PET = 1.5
-"""Below this a PET counts as severe in the paper [s]."""
+SEVERE_PET = 1.5  # Below this a PET counts as severe in the paper [s]
 
 NOTE = "Rates are over completed episodes, intervals are Wilson 95 %; PET and velocity are over successful episodes."
 
+# Share of the questions that the model gave no usable answer to, so that rules answered.
 FALLBACK_RATE = "fallback_rate"
-"""Share of the questions that the model gave no usable answer to, so that rules answered."""
 
 FALLBACK_NOTE = "Fallbacks: share of questions to which the model gave no usable answer, so that rules answered."
 STEP_NOTE = "Step: wall-clock time of one decision step, all CAVs and all questions together; see timing.csv."
 
-CLAIM = "the paper says"
-"""Head of the column of the paper's statements."""
+CLAIM = "the paper says"  # Head of the column of the paper's statements
 
 NAME: Column[CellResults] = Column("name", lambda c: c.name, "method", words=True, csv=False)
 
+# With the labels, the columns that users rely on, in their fixed order.
 MEASURED: tuple[Column[CellResults], ...] = (
     Column("episodes", lambda c: len(c.records)),
     Column("completed", lambda c: len(c.completed)),
@@ -56,7 +55,6 @@ MEASURED: tuple[Column[CellResults], ...] = (
     Column("velocity_min", lambda c: min(c.velocities, default=None)),
     Column("velocity", lambda c: _three(c.velocities), "velocity mean / max / min [m/s]", csv=False),
 )
-"""With the labels, the columns that users rely on, in their fixed order."""
 
 FURTHER: tuple[Column[CellResults], ...] = (
     Column("off_road_rate", lambda c: c.rate(Ending.OFF_ROAD)),
@@ -90,6 +88,7 @@ _LABELS = [column.of(lambda c: c.first) for column in LABELS]
 
 BY_KEY = {column.key: column for column in (*_LABELS, *MEASURED, *FURTHER, MEMORY, FALLBACKS)}
 
+# What a language model was asked, as people read it; nothing where none reasons.
 _ON_SCREEN: tuple[Column[CellResults], ...] = (
     Column("calls", lambda c: _if_asked(c, _thousands(c.counters.get("model_calls"))), "calls", csv=False),
     Column("tokens", lambda c: _if_asked(c, _tokens(c.counters)), "tokens prompt + completion", csv=False),
@@ -97,7 +96,6 @@ _ON_SCREEN: tuple[Column[CellResults], ...] = (
     Column("fallbacks_text", lambda c: _if_asked(c, percent(c.fallback_rate) or "-"), "fallbacks", csv=False),
     Column("step", lambda c: _if_asked(c, two_digits(c.seconds) or "-"), "step [s]", csv=False, page=False),
 )
-"""What a language model was asked, as people read it; nothing where none reasons."""
 
 
 def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Table:
@@ -123,11 +121,7 @@ def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Ta
 
 
 def labels(scenario: bool) -> list[Column[Any]]:
-    """Give the columns that tell rows apart.
-
-    Args:
-        scenario: Whether the scenario is shown.
-    """
+    """Give the columns that tell rows apart."""
     return [replace(_LABELS[0], head="scenario" if scenario else ""), *_LABELS[1:], NAME]
 
 
@@ -139,11 +133,7 @@ def print_summary(
     notes: Iterable[str] = (),
     screen: bool = False,
 ) -> PrintedTable:
-    """Prepare the summary for people: rounded, in percent, the paper's row beside ours.
-
-    Args:
-        screen: Whether it is for the screen, which shows times, too.
-    """
+    """Prepare the summary for people: rounded, in percent, the paper's row beside ours."""
     made = summary_table(cells, swept)
     claims = [paper.statement(cell.first.scenario, cell.first.variant) for cell in cells]
     # Where nothing has been removed there is nothing to compare the claim with.

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 
 from codriving.reports.columns import Value
 
+# What a method calls itself if built-in rules stand in for its language model, and what it would be with one.
 STANDS_IN = {"dilu-rule": "dilu"}
-"""What a method calls itself if built-in rules stand in for its language model, and what it would be with one."""
 
 
 def percent(value: Value) -> str:

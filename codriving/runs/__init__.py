@@ -1,1 +1,43 @@
 """What a run leaves on disk: whole or not at all, strict when read again."""
+
+from codriving.runs.atomic import whole_file, whole_folder, write_text
+from codriving.runs.continuation import changed_versions
+from codriving.runs.episode_folder import (
+    EPISODES,
+    RECORD,
+    UNNAMED,
+    Timing,
+    episode_folder,
+    read_decisions,
+    read_record,
+    read_timing,
+    timing_of,
+    write_episode,
+)
+from codriving.runs.identity import (
+    BEHAVIOUR,
+    CHOICES,
+    MEMORY,
+    CellEntry,
+    NamedFile,
+    driving_values,
+    files_of,
+    fingerprint,
+    settings_of,
+    snapshot_of,
+)
+from codriving.runs.json_files import encode
+from codriving.runs.manifest import FORMAT, MANIFEST, Manifest, read_manifest
+from codriving.runs.provenance import commit, machine, versions
+from codriving.runs.redaction import MASK, flat, nested, redact, secrets_of, variables_in
+from codriving.runs.run_folder import RunFolder, locked, new_run_path, unwritable
+from codriving.runs.trajectory_file import TRAJECTORY, read_trajectory
+
+__all__ = [
+    "BEHAVIOUR", "CHOICES", "EPISODES", "FORMAT", "MANIFEST", "MASK", "MEMORY", "RECORD", "TRAJECTORY", "UNNAMED",
+    "CellEntry", "Manifest", "NamedFile", "RunFolder", "Timing", "changed_versions", "commit", "driving_values",
+    "encode", "episode_folder", "files_of", "fingerprint", "flat", "locked", "machine", "nested", "new_run_path",
+    "read_decisions", "read_manifest", "read_record", "read_timing", "read_trajectory", "redact", "secrets_of",
+    "settings_of", "snapshot_of", "timing_of", "unwritable", "variables_in", "versions", "whole_file", "whole_folder",
+    "write_episode", "write_text",
+]  # fmt: skip

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-PARTIAL = ".partial-"
-"""Prefix of everything unfinished; a leading dot keeps it out of listings."""
+PARTIAL = ".partial-"  # Prefix of everything unfinished; a leading dot keeps it out of listings
 
 
 def _partial(path: Path) -> Path:

@@ -14,9 +14,6 @@ def continued(folder: Path, there: Manifest, here: Manifest) -> Manifest:
 
     Any number of episodes may be asked for, and cells beside those that are there, as long as one of them is there: it
     shows that the same experiment is meant. A cell keeps its folder, whatever it would be called now.
-
-    Raises:
-        RunFolderError: If no cell of the one is a cell of the other, or a file that one of them names has changed.
     """
     pairs = [(next((old for old in there.cells if same_cell(old, cell)), None), cell) for cell in here.cells]
     for old, cell in pairs:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from codriving.datatypes.record import EpisodeRecord, Trajectory
+from codriving.datatypes import EpisodeRecord, Trajectory
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import whole_folder
 from codriving.runs.json_files import damaged, decode, encode, lines_text, read_episode_text, read_lines
@@ -14,19 +14,15 @@ from codriving.runs.redaction import scrubbed
 from codriving.runs.trajectory_file import TRAJECTORY, trajectory_text
 
 RECORD = "record.json"
-DECISIONS = "decisions.jsonl"
-"""What was shared, negotiated, removed and decided, one line a decision step."""
+DECISIONS = "decisions.jsonl"  # What was shared, negotiated, removed and decided, one line a decision step
 
-TRANSCRIPT = "transcript.jsonl"
-"""What a language model was asked and what it answered, one line a question."""
+TRANSCRIPT = "transcript.jsonl"  # What a language model was asked and what it answered, one line a question
 
-TIMING = "timing.json"
-"""What an episode cost in time, kept apart from all that must repeat to the byte."""
+TIMING = "timing.json"  # What an episode cost in time, kept apart from all that must repeat to the byte
 
 ERROR = "error.txt"
 
-UNNAMED = ""
-"""Name of the metric of a record that release 0.1 wrote."""
+UNNAMED = ""  # Name of the metric of a record that release 0.1 wrote
 
 EPISODES = "episodes"
 
@@ -136,11 +132,7 @@ def read_decisions(folder: Path) -> tuple[dict[str, Any], ...]:
 
 
 def read_transcript(folder: Path) -> tuple[dict[str, Any], ...]:
-    """Read what a language model was asked in one episode; nothing where none was.
-
-    Raises:
-        RunFolderError: If it is damaged or cannot be read.
-    """
+    """Read what a language model was asked in one episode; nothing where none was."""
     path = folder / TRANSCRIPT
     return read_lines(path) if path.exists() else ()
 

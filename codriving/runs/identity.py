@@ -12,15 +12,14 @@ from typing import Any
 
 from codriving.runs.redaction import flat, redact
 
+# The behaviour number: raised by every commit that changes a hash in tests/sameness/golden. A run folder of another
+# number is replayed, scored and reported, but not extended. Release 0.1 drives behaviour 1.
 BEHAVIOUR = 1
-"""The behaviour number: raised by every commit that changes a hash in tests/sameness/golden.
 
-A run folder of another number is replayed, scored and reported, but not extended. Release 0.1 drives behaviour 1.
-"""
-
+# Keys that do not change what is driven; templates and plug-ins are told by their content, metrics by their scores.
 WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render", "prompts", "plugins", "metrics")
-"""Keys that do not change what is driven; templates and plug-ins are told by their content, metrics by their scores."""
 
+# Keys of ``llm`` likewise: with them a run goes on after a limit has been raised, or is replayed under its name.
 HOW_A_MODEL_IS_ASKED = (
     "api_key_env",
     "attempts",
@@ -32,17 +31,15 @@ HOW_A_MODEL_IS_ASKED = (
     "max_cost",
     "max_tokens_total",
 )
-"""Keys of ``llm`` likewise: with them a run goes on after a limit has been raised, or is replayed under its name."""
 
+# Groups whose choice stands for a class; all choices of ``cda`` are one class, so that their values tell them.
 CHOICES = ("scenario", "method", "executor", "llm", "memory")
-"""Groups whose choice stands for a class; all choices of ``cda`` are one class, so that their values tell them."""
 
 MEMORY = "memory"
-SNAPSHOT, AUTO = "snapshot", "auto"
-"""Where a memory's snapshot is told by its contents, its file may lie anywhere."""
+SNAPSHOT, AUTO = "snapshot", "auto"  # Where a memory's snapshot is told by its contents, its file may lie anywhere
 
+# Nodes of the root to which other nodes refer, and which therefore stand in these once more.
 _COPIED = (*CHOICES, "cda")
-"""Nodes of the root to which other nodes refer, and which therefore stand in these once more."""
 
 
 @dataclass(frozen=True, slots=True)

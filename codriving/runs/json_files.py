@@ -21,10 +21,10 @@ T = TypeVar("T")
 
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
+# What moves a cursor or turns text round, ends a line for some readers, or is no character at all.
 _HARMFUL = re.compile(
     "[\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u206f\ud800-\udfff\ufeff\ufff9-\ufffb\U000e0000-\U000e007f]"
 )
-"""What moves a cursor or turns text round, ends a line for some readers, or is no character at all."""
 
 
 @functools.cache
@@ -50,11 +50,7 @@ def encode(value: "DataclassInstance") -> str:
 
 
 def decode(kind: type[T], text: str) -> T:
-    """Read a dataclass from JSON.
-
-    Raises:
-        ValueError: If the text is not JSON, a field is missing, unknown, of another type, or not finite.
-    """
+    """Read a dataclass from JSON."""
     try:
         value: T = _adapter(kind).validate_json(f"[{text}]")[0]  # type: ignore[arg-type]
     except ValidationError as error:
@@ -65,15 +61,7 @@ def decode(kind: type[T], text: str) -> T:
 
 
 def lines_text(name: str, lines: Iterable[Mapping[str, object]]) -> str:
-    """Write a file of one JSON object a line, harmless on a terminal whatever a language model wrote.
-
-    Args:
-        name: Name of the file, for the error message.
-        lines: A number that is not finite (no conflict in sight, say) becomes null.
-
-    Raises:
-        ValueError: If a value has no place in JSON.
-    """
+    """Write a file of one JSON object a line, harmless on a terminal whatever a language model wrote."""
     return "".join(_line(name, line) + "\n" for line in lines)
 
 
@@ -103,11 +91,7 @@ def _finite(value: object) -> object:
 
 
 def read_episode_text(path: Path) -> str:
-    """Read a file of an episode.
-
-    Raises:
-        RunFolderError: If it is missing, is no text or cannot be read.
-    """
+    """Read a file of an episode."""
     try:
         return path.read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -119,11 +103,7 @@ def read_episode_text(path: Path) -> str:
 
 
 def read_lines(path: Path) -> tuple[dict[str, Any], ...]:
-    """Read a file of one JSON object a line.
-
-    Raises:
-        RunFolderError: If it is missing, damaged or cannot be read.
-    """
+    """Read a file of one JSON object a line."""
     try:
         # Not splitlines(): it knows line ends that may stand within a text.
         lines = [json.loads(line) for line in read_episode_text(path).split("\n") if line.strip()]

@@ -14,8 +14,7 @@ from codriving.runs.json_files import decode
 from codriving.runs.redaction import nested
 
 MANIFEST = "manifest.json"
-FORMAT = 3
-"""Layout of the run folder; raised when an older reader could no longer read a newer folder."""
+FORMAT = 3  # Layout of the run folder; raised when an older reader could no longer read a newer folder
 
 
 @dataclass(frozen=True, slots=True)

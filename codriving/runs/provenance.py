@@ -8,6 +8,7 @@ from functools import cache, partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+# Packages that can change a result.
 PACKAGES = (
     "codriving",
     "faiss-cpu",
@@ -21,7 +22,6 @@ PACKAGES = (
     "pettingzoo",
     "scipy",
 )
-"""Packages that can change a result."""
 
 
 def versions() -> dict[str, str]:

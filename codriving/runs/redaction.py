@@ -31,8 +31,8 @@ def _mask(name: str, value: object) -> object:
     return value
 
 
+# A value of fewer characters is no secret but a stand-in such as EMPTY, and would take whole words out of texts.
 SHORTEST = 8
-"""A value of fewer characters is no secret but a stand-in such as EMPTY, and would take whole words out of texts."""
 
 
 def variables_in(settings: object) -> tuple[str, ...]:

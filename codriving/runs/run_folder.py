@@ -9,7 +9,7 @@ from typing import Self
 
 from filelock import FileLock, Timeout
 
-from codriving.datatypes.record import Ending, EpisodeRecord
+from codriving.datatypes import Ending, EpisodeRecord
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import PARTIAL, sweep, write_text
 from codriving.runs.continuation import continued, other_behaviour
@@ -50,11 +50,7 @@ class RunFolder:
     """An open run folder; a context manager that holds the folder's lock."""
 
     def __init__(self, path: Path, manifest: Manifest, configs: Mapping[str, str]) -> None:
-        """Open a folder, making it or going on in it.
-
-        Raises:
-            RunFolderError: If it cannot be written, is in use, holds something else or a run of another config.
-        """
+        """Open a folder, making it or going on in it."""
         self.path = path
         with ExitStack() as opening:
             try:

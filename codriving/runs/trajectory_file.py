@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from codriving.datatypes.record import EpisodeRecord, Track, Trajectory
-from codriving.datatypes.world import Kind
+from codriving.datatypes import EpisodeRecord, Kind, Track, Trajectory
 from codriving.runs.json_files import damaged, read_episode_text
 
 TRAJECTORY = "trajectory.csv"
@@ -16,11 +15,7 @@ COLUMNS = ("time", "id", "kind", "x", "y", "heading", "speed", "acceleration", "
 
 
 def trajectory_text(trajectory: Trajectory) -> str:
-    """Return CSV with a header, rows by time and then in the order of the tracks; metres, radians, seconds.
-
-    Raises:
-        ValueError: If a value is not finite.
-    """
+    """Return CSV with a header, rows by time and then in the order of the tracks; metres, radians, seconds."""
     rows: dict[int, list[str]] = defaultdict(list)
     for track in trajectory.tracks:
         for step, row in enumerate(_track_rows(track, trajectory.step), start=track.first_step):

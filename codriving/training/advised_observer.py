@@ -2,12 +2,10 @@
 
 import numpy as np
 
-from codriving.datatypes.world import DrivingModel, WorldState
-from codriving.geometry.road_map import RoadMap
-from codriving.gym.observation import Observer
-from codriving.methods.learned.features import Features
-from codriving.methods.learned.layout import ACTIONS, allowed, feature_count
-from codriving.methods.learned.network import FloatArray
+from codriving.datatypes import DrivingModel, WorldState
+from codriving.geometry import RoadMap
+from codriving.gym import Observer
+from codriving.methods import ACTIONS, Features, FloatArray, allowed, feature_count
 from codriving.training.teacher import Advisor
 
 
@@ -16,10 +14,6 @@ class AdvisedObserver(Observer):
 
     The network sees the features alone. Masks and advice go the same way because Stable-Baselines3 keeps nothing else
     of a step.
-
-    Args:
-        family: ``junction`` or ``lanes``.
-        teacher: Gives advice; None for no advice.
     """
 
     def __init__(self, road_map: RoadMap, model: DrivingModel, family: str, teacher: Advisor | None) -> None:

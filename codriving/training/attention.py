@@ -3,8 +3,7 @@
 import torch
 from torch import Tensor, nn
 
-from codriving.methods.learned.layout import EGO, SLOT, SLOTS
-from codriving.methods.learned.network import HEADS, WIDTH, Attention, FloatArray
+from codriving.methods import EGO, HEADS, SLOT, SLOTS, WIDTH, Attention, FloatArray
 from codriving.training.double_dqn import as_numpy, perceptron
 
 
@@ -19,11 +18,7 @@ class AttentionActor(nn.Module):
         self.judge = perceptron((2 * WIDTH, *hidden, outputs))
 
     def forward(self, observations: Tensor) -> Tensor:
-        """Return one number an action (n, actions).
-
-        Args:
-            observations: Features (n, features).
-        """
+        """Return one number an action (n, actions)."""
         first, last = len(EGO), len(EGO) + SLOTS * len(SLOT)
         slots = observations[:, first:last].reshape(-1, SLOTS, len(SLOT))
         own = torch.cat([observations[:, :first], observations[:, last:]], 1)

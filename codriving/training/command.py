@@ -6,21 +6,17 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from codriving.config.build import build
-from codriving.config.schema import ROOT
-from codriving.config.training import compose_training, trainings
+from codriving.config import ROOT, build, compose_training, trainings
 from codriving.errors import ConfigError, TrainingError
-from codriving.methods.learned.layout import FAMILIES
+from codriving.methods import FAMILIES
 from codriving.training.settings import MadqnSettings, Settings, SingleSettings
 
-INTERRUPTED = 130
-"""Exit code of a process that the user stopped (128 + SIGINT)."""
+INTERRUPTED = 130  # Exit code of a process that the user stopped (128 + SIGINT)
 
+# What can be trained; each has a YAML in conf/train for every family, called after both.
 LEARNERS = ("madqn", "ppo", "tell")
-"""What can be trained; each has a YAML in conf/train for every family, called after both."""
 
-OWN = ("run", "output")
-"""Settings of the folder, which do not change what is trained."""
+OWN = ("run", "output")  # Settings of the folder, which do not change what is trained
 
 
 def run_training(
@@ -72,11 +68,7 @@ def run_training(
 
 
 def named(learner: str, family: str, config_dir: Path | None = None) -> str:
-    """Return the name of the config of a training.
-
-    Raises:
-        ConfigError: If there is no such learner or family.
-    """
+    """Return the name of the config of a training."""
     if learner not in LEARNERS:
         raise ConfigError(f"unknown learner {learner!r}; learners: {', '.join(LEARNERS)}")
     if family not in FAMILIES:

@@ -5,20 +5,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from codriving.errors import ConfigError
-from codriving.gym.reward import RewardWeights
-from codriving.methods.learned.layout import ACTIONS
+from codriving.gym import RewardWeights
+from codriving.methods import ACTIONS
 
 if TYPE_CHECKING:
-    from codriving.gym.parallel import ParallelDriving
-    from codriving.gym.single import ObserverFactory, SingleDriving
+    from codriving.gym import ObserverFactory, ParallelDriving, SingleDriving
 
 
 def at_least(part: object, **least: int) -> None:
-    """Refuse settings, by name, that are smaller than the numbers here.
-
-    Raises:
-        ConfigError: If one is.
-    """
+    """Refuse settings, by name, that are smaller than the numbers here."""
     for name, smallest in least.items():
         if getattr(part, name) < smallest:
             raise ConfigError(f"{name} must be {smallest} or more, got {getattr(part, name)}")
@@ -26,11 +21,7 @@ def at_least(part: object, **least: int) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Linear:
-    """A number that goes from one value to another in a straight line, and then stays.
-
-    Raises:
-        ConfigError: If ``over`` is not positive.
-    """
+    """A number that goes from one value to another in a straight line, and then stays."""
 
     start: float
     end: float
@@ -46,11 +37,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class CooperativeTraffic:
-    """One kind of traffic; each number of CAVs is an environment of its own.
-
-    Raises:
-        ConfigError: If a value is out of range.
-    """
+    """One kind of traffic; each number of CAVs is an environment of its own."""
 
     scenario: str
     cavs: tuple[int, int]
@@ -68,12 +55,8 @@ class CooperativeTraffic:
             raise ConfigError(f"since must be 0 to 1, got {self.since:g}")
 
     def environments(self, reward: RewardWeights) -> "tuple[ParallelDriving, ...]":
-        """Return an environment for each number of CAVs.
-
-        Raises:
-            ConfigError: If the scenario refuses a setting.
-        """
-        from codriving.gym.parallel import ParallelDriving
+        """Return an environment for each number of CAVs."""
+        from codriving.gym import ParallelDriving
 
         settings = {"hdvs": list(self.hdvs), **self.settings}
         numbers = range(self.cavs[0], self.cavs[1] + 1)
@@ -88,11 +71,7 @@ def shares(kinds: tuple[CooperativeTraffic, ...], progress: float) -> list[float
 
 @dataclass(frozen=True)
 class SingleTraffic:
-    """One kind of traffic, in which a single CAV is left and all others are human drivers.
-
-    Raises:
-        ConfigError: If there are no copies.
-    """
+    """One kind of traffic, in which a single CAV is left and all others are human drivers."""
 
     scenario: str
     cavs: int
@@ -104,12 +83,8 @@ class SingleTraffic:
         at_least(self, copies=1)
 
     def environment(self, observer: "ObserverFactory", family: str, reward: RewardWeights) -> "SingleDriving":
-        """Return an environment of this kind.
-
-        Raises:
-            ConfigError: If the scenario refuses a setting.
-        """
-        from codriving.gym.single import SingleDriving
+        """Return an environment of this kind."""
+        from codriving.gym import SingleDriving
 
         settings = {"hdvs": list(self.hdvs), **self.settings}
         return SingleDriving(self.scenario, observer, ACTIONS[family], reward=reward, cavs=self.cavs, **settings)

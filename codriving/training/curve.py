@@ -5,8 +5,7 @@ import io
 from collections.abc import Mapping, Sequence
 from math import nan
 
-Row = Mapping[str, float | int | None]
-"""One validation: how far the training was, and what each exam said."""
+Row = Mapping[str, float | int | None]  # One validation: how far the training was, and what each exam said
 
 SUCCESS, COLLISION, DURATION = "success", "collision", "duration"
 

@@ -11,11 +11,7 @@ from codriving.training.curve import SUCCESS
 
 
 class Display:
-    """Tells how far a training is.
-
-    Args:
-        stream: Where to; standard error if None.
-    """
+    """Tells how far a training is."""
 
     def __init__(self, name: str, total: int, stream: TextIO | None = None) -> None:
         self._console = Console(file=stream or sys.stderr, highlight=False, soft_wrap=True)

@@ -8,7 +8,7 @@ from typing import Any
 import torch
 from torch import nn
 
-from codriving.methods.learned.network import Network
+from codriving.methods import Network
 from codriving.training.replay import Batch
 
 

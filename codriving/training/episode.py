@@ -7,19 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.record import Ending
-from codriving.datatypes.world import WorldState
-from codriving.gym.actions import ACTIONS as NUMBERS
-from codriving.methods.learned.features import Features
-from codriving.methods.learned.layout import ACTIONS, allowed
-from codriving.methods.learned.network import FloatArray
+from codriving.datatypes import Ending, WorldState
+from codriving.gym import ACTIONS as NUMBERS
+from codriving.methods import ACTIONS, Features, FloatArray, allowed
 
 if TYPE_CHECKING:
-    from codriving.gym.parallel import ParallelDriving
+    from codriving.gym import ParallelDriving
 
 Masks = NDArray[np.bool_]
+# Observations (n, features) and allowed actions (n, actions) to numbers of actions.
 Policy = Callable[[FloatArray, Masks], list[int]]
-"""Observations (n, features) and allowed actions (n, actions) to numbers of actions."""
 
 
 @dataclass(frozen=True, slots=True)

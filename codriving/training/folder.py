@@ -10,10 +10,9 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from codriving.config.compose import show
+from codriving.config import show
 from codriving.errors import RunFolderError, TrainingError
-from codriving.runs.atomic import whole_folder, write_text
-from codriving.runs.run_folder import locked
+from codriving.runs import locked, whole_folder, write_text
 
 if TYPE_CHECKING:
     from codriving.training.run import Learner
@@ -29,11 +28,7 @@ def store(folder: Path, trainer: "Learner", more: dict[str, Any]) -> None:
 
 
 def recall(folder: Path, trainer: "Learner") -> dict[str, Any]:
-    """Go on from a checkpoint.
-
-    Raises:
-        TrainingError: If the checkpoint is damaged.
-    """
+    """Go on from a checkpoint."""
     try:
         state = json.loads((folder / STATE).read_text(encoding="utf-8"))
         trainer.read(folder, state["trainer"])
@@ -77,11 +72,7 @@ def _values(node: Any) -> Any:  # noqa: ANN401 - any plain value
 
 @contextmanager
 def open_folder(path: Path, name: str, command: str, config: Mapping[str, Any]) -> Iterator[TrainingFolder]:
-    """Make the folder of a training, or open it again.
-
-    Raises:
-        RunFolderError: If it cannot be written, or is of another training.
-    """
+    """Make the folder of a training, or open it again."""
     text, file = show(config), path / "config.yaml"
     try:
         (path / "states").mkdir(parents=True, exist_ok=True)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.methods.learned.features import Observation
+from codriving.methods import Observation
 
 
 class Transition(NamedTuple):

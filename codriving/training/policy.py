@@ -7,12 +7,11 @@ import torch
 from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import Tensor, nn
 
-from codriving.methods.learned.network import AnyNetwork
+from codriving.methods import AnyNetwork
 from codriving.training.attention import AttentionActor
 from codriving.training.double_dqn import as_numpy, perceptron
 
-SURE = 0.9
-"""Probability of the advised action in the distribution of a teacher; the other actions share the rest."""
+SURE = 0.9  # Probability of the advised action in the distribution of a teacher; the other actions share the rest
 
 
 class DriverPolicy(ActorCriticPolicy):
@@ -48,22 +47,13 @@ class DriverPolicy(ActorCriticPolicy):
         self.optimizer = torch.optim.Adam(self.parameters(), lr=lr_schedule(1), eps=1e-5)
 
     def forward(self, obs: Tensor, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
-        """Return actions, values and the logarithms of the actions' probabilities.
-
-        Args:
-            obs: Observations (n, features + 2 actions).
-        """
+        """Return actions, values and the logarithms of the actions' probabilities."""
         logs = self._logs(obs)
         actions = logs.argmax(1) if deterministic else torch.multinomial(logs.exp(), 1).squeeze(1)
         return actions, self.predict_values(obs), logs.gather(1, actions[:, None]).squeeze(1)
 
     def evaluate_actions(self, obs: Tensor, actions: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Return values, logarithms of the actions' probabilities, and entropy less the pull towards the teacher.
-
-        Args:
-            obs: Observations (n, features + 2 actions).
-            actions: Actions that were taken (n,).
-        """
+        """Return values, logarithms of the actions' probabilities, and entropy less the pull towards the teacher."""
         logs = self._logs(obs)
         chosen = logs.gather(1, actions.long()[:, None]).squeeze(1)
         entropy = -(logs.exp() * logs).sum(1)
@@ -72,12 +62,7 @@ class DriverPolicy(ActorCriticPolicy):
         return self.predict_values(obs), chosen, entropy
 
     def divergence(self, obs: Tensor, logs: Tensor) -> Tensor:
-        """Return KL(teacher || policy) of each row; 0 where there is no advice.
-
-        Args:
-            obs: Observations (n, features + 2 actions).
-            logs: Logarithms of the policy's probabilities (n, actions).
-        """
+        """Return KL(teacher || policy) of each row; 0 where there is no advice."""
         mask, advice = self._mask(obs), obs[:, self._features + self._outputs :]
         others = mask & (advice < 0.5)
         rest = others.sum(1, keepdim=True)
@@ -87,11 +72,7 @@ class DriverPolicy(ActorCriticPolicy):
         return torch.where(known, terms, 0.0).sum(1)
 
     def predict_values(self, obs: Tensor) -> Tensor:
-        """Return what the critic expects (n, 1).
-
-        Args:
-            obs: Observations (n, features + 2 actions).
-        """
+        """Return what the critic expects (n, 1)."""
         values: Tensor = self.critic(obs[:, : self._features])
         return values
 
@@ -105,11 +86,7 @@ class DriverPolicy(ActorCriticPolicy):
 
 
 def actor_as_numpy(actor: nn.Module) -> AnyNetwork:
-    """Return an actor as numpy computes it.
-
-    Args:
-        actor: The actor of a ``DriverPolicy``.
-    """
+    """Return an actor as numpy computes it."""
     if isinstance(actor, AttentionActor):
         return actor.as_numpy()
     assert isinstance(actor, nn.Sequential)

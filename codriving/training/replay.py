@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.methods.learned.network import FloatArray
+from codriving.methods import FloatArray
 from codriving.training.nstep import Transition
 
 

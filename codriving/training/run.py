@@ -5,10 +5,8 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from codriving.errors import TrainingError
-from codriving.methods.learned.layout import ACTIONS, FAR, NEAR, VERSION
-from codriving.methods.learned.network import AnyNetwork
-from codriving.methods.learned.weights import Purpose, Trained, load, save
-from codriving.runs.atomic import whole_file, write_text
+from codriving.methods import ACTIONS, FAR, NEAR, VERSION, AnyNetwork, Purpose, Trained, load, save
+from codriving.runs import whole_file, write_text
 from codriving.training.curve import COLLISION, DURATION, SUCCESS, curve_csv, curve_png
 from codriving.training.display import Display
 from codriving.training.folder import Stop, TrainingFolder, recall, store
@@ -20,20 +18,13 @@ from codriving.training.validation import Grade, examine
 AnySettings: TypeAlias = MadqnSettings | SingleSettings
 Learner: TypeAlias = Trainer | SingleTrainer
 
-EXAM_SEEDS = 1000
-"""Seeds that each exam has for itself."""
+EXAM_SEEDS = 1000  # Seeds that each exam has for itself
 
-FINAL_SEEDS = 100_000
-"""How far the seeds of the last validation lie beyond those of the others."""
+FINAL_SEEDS = 100_000  # How far the seeds of the last validation lie beyond those of the others
 
 
 def train(settings: AnySettings, folder: TrainingFolder, display: Display, stop: Stop) -> Path:
-    """Train, validate and choose.
-
-    Raises:
-        TrainingError: If a checkpoint is damaged.
-        KeyboardInterrupt: If it was stopped; the checkpoint is written.
-    """
+    """Train, validate and choose."""
     trainer = settings.trainer()
     rows: list[dict[str, Any]] = []
     if folder.checkpoint.exists():

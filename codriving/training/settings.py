@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from codriving.errors import ConfigError
-from codriving.gym.reward import RewardWeights, reward_weights
-from codriving.methods.learned.layout import FAMILIES
-from codriving.methods.learned.network import FORMS, PERCEPTRON
+from codriving.gym import RewardWeights, reward_weights
+from codriving.methods import FAMILIES, FORMS, PERCEPTRON
 from codriving.training.curriculum import CooperativeTraffic, Linear, SingleTraffic, at_least
 from codriving.training.teacher import Guidance
 from codriving.training.validation import Exam
@@ -16,8 +15,7 @@ if TYPE_CHECKING:
     from codriving.training.single_trainer import SingleTrainer
     from codriving.training.trainer import Trainer
 
-LEAST_SEED = 10_000
-"""Seeds below this are for tables alone."""
+LEAST_SEED = 10_000  # Seeds below this are for tables alone
 
 
 @dataclass(frozen=True)
@@ -27,9 +25,6 @@ class Settings:
     Attributes:
         family: ``junction`` or ``lanes``.
         exam_seed: First seed of the validations; ``LEAST_SEED`` or more.
-
-    Raises:
-        ConfigError: If a value is out of range.
     """
 
     family: str
@@ -88,8 +83,7 @@ class SingleSettings(Settings):
     guidance: Guidance | None
     traffic: tuple[SingleTraffic, ...]
 
-    shared = False
-    """A vehicle on its own is told nothing by others."""
+    shared = False  # A vehicle on its own is told nothing by others
 
     def __post_init__(self) -> None:
         self._one_of("learner", ("ppo", "tell"))
@@ -129,8 +123,7 @@ class MadqnSettings(Settings):
     traffic: tuple[CooperativeTraffic, ...]
 
     learner, form, teacher = "madqn", PERCEPTRON, ""
-    shared = True
-    """CAVs share states and intents."""
+    shared = True  # CAVs share states and intents
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -10,10 +10,9 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import DummyVecEnv
 
-from codriving.datatypes.record import Ending
-from codriving.gym.actions import draw_seed
-from codriving.methods.learned.layout import feature_count
-from codriving.methods.learned.network import ATTENTION, AnyNetwork
+from codriving.datatypes import Ending
+from codriving.gym import draw_seed
+from codriving.methods import ATTENTION, AnyNetwork, feature_count
 from codriving.training.advised_observer import AdvisedObserver
 from codriving.training.policy import DriverPolicy, actor_as_numpy
 from codriving.training.settings import SingleSettings
@@ -21,8 +20,7 @@ from codriving.training.teacher import Advisor
 
 NETWORK = "network.pt"
 
-TRIES = 100
-"""Environments are seeded one by one; so many seeds are left to each rollout of them."""
+TRIES = 100  # Environments are seeded one by one; so many seeds are left to each rollout of them
 
 
 class SingleTrainer:

@@ -7,19 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from codriving.datatypes.parts import Model
-from codriving.datatypes.situation import Situation
-from codriving.datatypes.world import Action, DrivingModel, WorldState
+from codriving.datatypes import Action, DrivingModel, Model, Situation, WorldState
 from codriving.errors import ConfigError
-from codriving.geometry.road_map import RoadMap
-from codriving.methods.language_model.prompted_model import prompted
-from codriving.methods.single_vehicle.method import Driver, SingleVehicle
-from codriving.reasoning.prediction.forecast import HORIZON
-from codriving.reasoning.prediction.rollout import rollout
+from codriving.geometry import RoadMap
+from codriving.methods import Driver, SingleVehicle, prompted
+from codriving.reasoning import HORIZON, rollout
 from codriving.training.curriculum import Linear, at_least
 
 if TYPE_CHECKING:
-    from codriving.methods.language_model.model_decider import CheckedDecider
+    from codriving.methods import CheckedDecider
 
 
 @dataclass(frozen=True)
@@ -28,9 +24,6 @@ class Guidance:
 
     Attributes:
         llm: Who teaches: a language model, or ``offline`` for the driver below.
-
-    Raises:
-        ConfigError: If a value is out of range.
     """
 
     llm: Model
@@ -55,12 +48,7 @@ class Advisor:
         self.asks = True
 
     def advise(self, world: WorldState) -> Mapping[str, Action]:
-        """Return what CAVs should do, by id.
-
-        Raises:
-            ModelUnavailableError: If a model is asked and does not answer.
-            SpendingLimitError: If the tokens or the money that may be spent are used up.
-        """
+        """Return what CAVs should do, by id."""
         if world.step == 0:
             # Nothing is drawn by those who drive alone, so that any seed will do.
             self._alone.reset(*self._road, 0)
@@ -91,6 +79,6 @@ def _decider(llm: Model) -> "CheckedDecider | None":
     model = prompted(llm)
     if model is None:
         return None
-    from codriving.methods.language_model.model_decider import CheckedDecider
+    from codriving.methods import CheckedDecider
 
     return CheckedDecider(model, llm.ask_plain, sees_conflicts=True)

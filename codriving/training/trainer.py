@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 import torch
 
-from codriving.datatypes.record import Ending
-from codriving.datatypes.world import Action
-from codriving.gym.actions import draw_seed
-from codriving.methods.learned.layout import ACTIONS, feature_count
-from codriving.methods.learned.network import FloatArray, Network, greedy
+from codriving.datatypes import Action, Ending
+from codriving.gym import draw_seed
+from codriving.methods import ACTIONS, FloatArray, Network, feature_count, greedy
 from codriving.training.curriculum import shares
 from codriving.training.double_dqn import DoubleDqn, as_numpy
 from codriving.training.episode import AgentStep, Masks, drive

@@ -5,23 +5,18 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from codriving.datatypes.record import Ending
-from codriving.methods.learned.features import Features
-from codriving.methods.learned.network import AnyNetwork, greedy
+from codriving.datatypes import Ending
+from codriving.methods import AnyNetwork, Features, greedy
 from codriving.training.curriculum import at_least
 from codriving.training.episode import drive
 
 if TYPE_CHECKING:
-    from codriving.gym.parallel import ParallelDriving
+    from codriving.gym import ParallelDriving
 
 
 @dataclass(frozen=True)
 class Exam:
-    """One kind of traffic that is validated.
-
-    Raises:
-        ConfigError: If the number of episodes is not positive.
-    """
+    """One kind of traffic that is validated."""
 
     name: str
     scenario: str
@@ -35,12 +30,8 @@ class Exam:
 
     @cached_property
     def environment(self) -> "ParallelDriving":
-        """Its environment.
-
-        Raises:
-            ConfigError: If the scenario refuses a setting.
-        """
-        from codriving.gym.parallel import ParallelDriving
+        """Its environment."""
+        from codriving.gym import ParallelDriving
 
         return ParallelDriving(self.scenario, rows=1, cavs=self.cavs, hdvs=list(self.hdvs), **self.settings)
 

@@ -131,7 +131,7 @@ def test_a_bug_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object) -> int:
         raise RuntimeError("a bug")
 
-    monkeypatch.setattr("codriving.experiment.run.run_command", broken)
+    monkeypatch.setattr("codriving.experiment.run_command", broken)
     assert isinstance(call("run").exception, RuntimeError)
 
 
@@ -139,7 +139,7 @@ def test_an_interruption_before_the_batch_is_exit_code_130(monkeypatch: pytest.M
     def interrupted(*_: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("codriving.experiment.run.run_command", interrupted)
+    monkeypatch.setattr("codriving.experiment.run_command", interrupted)
     assert call("run").exit_code == 130
 
 
@@ -151,7 +151,7 @@ def test_the_exit_code_is_the_experiments(monkeypatch: pytest.MonkeyPatch, code:
         given.extend(args)
         return code
 
-    monkeypatch.setattr("codriving.experiment.run.run_command", experiment)
+    monkeypatch.setattr("codriving.experiment.run_command", experiment)
     assert call("run", "episodes=3", "+seed=4").exit_code == code
     assert given[1:] == [["episodes=3", "+seed=4"], None, False]
 

@@ -7,7 +7,7 @@ import pytest
 
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.errors import RunFolderError
-from codriving.experiment import run_experiment
+from codriving.experiment.run import run_experiment
 from codriving.experiment.stored import find_episode, find_run, read_film, road_of
 from codriving.runs.episode_folder import DECISIONS, RECORD
 from codriving.runs.manifest import MANIFEST

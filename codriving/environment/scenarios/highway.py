@@ -5,17 +5,14 @@ from functools import cached_property
 
 import numpy as np
 
-from codriving.datatypes.road import Lane, Line, Road, Route, Straight, Turn
-from codriving.datatypes.world import Kind, Start
+from codriving.datatypes import Kind, Lane, Line, Road, Route, Start, Straight, Turn
 from codriving.environment.scenarios.placement import PlacedScenario
 from codriving.errors import require_range
 
 LANE_WIDTH = 4.0
-SPEED_LIMIT = 30.0
-"""Speed limit on every lane [m/s]."""
+SPEED_LIMIT = 30.0  # Speed limit on every lane [m/s]
 
-BEYOND = 60.0
-"""Road past the finish [m]."""
+BEYOND = 60.0  # Road past the finish [m]
 
 
 def _lines(index: int, lanes: int) -> tuple[Line, Line]:
@@ -25,11 +22,7 @@ def _lines(index: int, lanes: int) -> tuple[Line, Line]:
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class Highway(PlacedScenario):
-    """Several CAVs and human drivers on parallel lanes; all may change lanes.
-
-    Args:
-        finish: Distance after which a vehicle has arrived [m].
-    """
+    """Several CAVs and human drivers on parallel lanes; all may change lanes."""
 
     name = "highway"
 

@@ -5,25 +5,22 @@ from functools import cached_property
 
 import numpy as np
 
-from codriving.datatypes.road import Arc, Lane, LaneId, Line, Point, Road, Route, Straight, Turn
-from codriving.datatypes.world import Kind, Start
+from codriving.datatypes import Arc, Kind, Lane, LaneId, Line, Point, Road, Route, Start, Straight, Turn
 from codriving.environment.scenarios.placement import PlacedScenario
 from codriving.environment.scenarios.shapes import turned
 from codriving.errors import require_range
-from codriving.geometry.lane_path import lane_starts
+from codriving.geometry import lane_starts
 
 LEGS = ("south", "west", "north", "east")
 LANE_WIDTH = 4.0
 RIGHT_TURN_RADIUS = LANE_WIDTH + 5
 LEFT_TURN_RADIUS = RIGHT_TURN_RADIUS + LANE_WIDTH
-OUTER = RIGHT_TURN_RADIUS + LANE_WIDTH / 2
-"""Distance from the centre at which the legs begin [m]."""
+OUTER = RIGHT_TURN_RADIUS + LANE_WIDTH / 2  # Distance from the centre at which the legs begin [m]
 
-SPEED_LIMIT = 10.0
-"""Speed limit on every lane [m/s]."""
+SPEED_LIMIT = 10.0  # Speed limit on every lane [m/s]
 
+# Steps round the legs from where a route comes in to where it leaves.
 TURNS = {Turn.RIGHT: -1, Turn.LEFT: 1, Turn.STRAIGHT: 2}
-"""Steps round the legs from where a route comes in to where it leaves."""
 
 
 def _lanes(leg_length: float) -> tuple[Lane, ...]:
@@ -74,12 +71,7 @@ def _routes(lanes: tuple[Lane, ...], exit_distance: float) -> tuple[Route, ...]:
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class Intersection(PlacedScenario):
-    """Several CAVs among human drivers, each with a random leg, destination, place and speed.
-
-    Args:
-        leg_length: Length of each leg before the junction [m].
-        exit_distance: Distance past the junction at which a vehicle has arrived [m].
-    """
+    """Several CAVs among human drivers, each with a random leg, destination, place and speed."""
 
     name = "intersection"
 

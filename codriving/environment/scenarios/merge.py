@@ -6,35 +6,23 @@ from functools import cached_property
 
 import numpy as np
 
-from codriving.datatypes.road import Block, Lane, LaneId, LaneShape, Line, Road, Route, Sine, Straight, Turn
-from codriving.datatypes.world import Kind, Start
+from codriving.datatypes import Block, Kind, Lane, LaneId, LaneShape, Line, Road, Route, Sine, Start, Straight, Turn
 from codriving.environment.scenarios.placement import PlacedScenario
 from codriving.errors import require_range
 
 LANE_WIDTH = 4.0
-SPEED_LIMIT = 20.0
-"""Speed limit on every lane [m/s]."""
+SPEED_LIMIT = 20.0  # Speed limit on every lane [m/s]
 
-SWAY = 3.25
-"""Half of what the ramp comes closer while it converges, as in highway-env [m]."""
+SWAY = 3.25  # Half of what the ramp comes closer while it converges, as in highway-env [m]
 
-TAPER = 40.0
-"""Length of the last part of the ramp lane, in which a vehicle that is still on it has to be changing [m]."""
+TAPER = 40.0  # Length of the last part of the ramp lane, in which a vehicle that is still on it has to be changing [m]
 
-PAST_MERGE = 80.0
-"""Distance past the end of the ramp lane at which a vehicle has arrived [m]."""
+PAST_MERGE = 80.0  # Distance past the end of the ramp lane at which a vehicle has arrived [m]
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class Merge(PlacedScenario):
-    """Several CAVs on the main road and on the ramp, among human drivers.
-
-    Args:
-        before: Length of the road before the ramp begins to converge [m].
-        converge: Length over which it converges [m].
-        parallel: Length of the ramp lane beside the main road [m].
-        after: Length of the road past the end of the ramp lane [m].
-    """
+    """Several CAVs on the main road and on the ramp, among human drivers."""
 
     name = "merge"
 

@@ -5,8 +5,7 @@ from itertools import pairwise
 
 from codriving.errors import require, require_range
 
-TOP_SPEED = 40.0
-"""No vehicle of highway-env drives faster [m/s]."""
+TOP_SPEED = 40.0  # No vehicle of highway-env drives faster [m/s]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,23 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codriving.datatypes.parts import Scenario
-from codriving.datatypes.road import Road
-from codriving.datatypes.world import Kind, Scene, Start
+from codriving.datatypes import Kind, Road, Scenario, Scene, Start
 from codriving.environment.scenarios.pace import Pace
 from codriving.errors import ScenarioError, require_interval, require_range
 
 DRAWS_PER_VEHICLE = 200
 SCENES = 200
 
-Draw = Callable[[np.random.Generator, str, Kind], Start]
-"""Draws one vehicle, given its name and who drives it."""
+Draw = Callable[[np.random.Generator, str, Kind], Start]  # Draws one vehicle, given its name and who drives it
 
-LENGTH = 5.0
-"""Vehicle length [m]."""
+LENGTH = 5.0  # Vehicle length [m]
 
+# Maps a start to the lane that it stands on, by any name, and its place along it [m].
 Spot = Callable[[Start], tuple[Hashable, float]]
-"""Maps a start to the lane that it stands on, by any name, and its place along it [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,12 +163,7 @@ def leaves_room(
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class PlacedScenario(Scenario):
-    """A scenario with the settings of `Crowd` and `Pace`, whose vehicles are drawn one by one.
-
-    Raises:
-        ConfigError: If a setting is out of range.
-        ScenarioError: If so many vehicles cannot be placed.
-    """
+    """A scenario with the settings of `Crowd` and `Pace`, whose vehicles are drawn one by one."""
 
     cavs: int
     hdvs: tuple[int, int]
@@ -206,9 +197,5 @@ class PlacedScenario(Scenario):
         """Draw where one vehicle starts."""
 
     def scene(self, seed: int) -> Scene:
-        """Draw a start for every vehicle.
-
-        Raises:
-            ScenarioError: If the vehicles do not fit.
-        """
+        """Draw a start for every vehicle."""
         return place(seed, self.crowd, self.road, self.draw)

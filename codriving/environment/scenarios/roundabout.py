@@ -6,25 +6,35 @@ from functools import cached_property
 
 import numpy as np
 
-from codriving.datatypes.road import Arc, Lane, LaneId, LaneShape, Line, Point, Road, Route, Straight, Turn
-from codriving.datatypes.world import Kind, Scene, Start
+from codriving.datatypes import (
+    Arc,
+    Kind,
+    Lane,
+    LaneId,
+    LaneShape,
+    Line,
+    Point,
+    Road,
+    Route,
+    Scene,
+    Start,
+    Straight,
+    Turn,
+)
 from codriving.environment.scenarios.placement import PlacedScenario, place
 from codriving.environment.scenarios.shapes import turned
 from codriving.errors import require, require_range
-from codriving.geometry.box import PLANNING
+from codriving.geometry import PLANNING
 
-LEGS = ("south", "east", "north", "west")
-"""The legs in the order in which the ring passes them."""
+LEGS = ("south", "east", "north", "west")  # The legs in the order in which the ring passes them
 
 LANE_WIDTH = 4.0
-SPEED_LIMIT = 10.0
-"""Speed limit on every lane [m/s]."""
+SPEED_LIMIT = 10.0  # Speed limit on every lane [m/s]
 
-TURNS = {Turn.RIGHT: 1, Turn.STRAIGHT: 2, Turn.LEFT: 3}
-"""Legs that a route passes until it leaves."""
+TURNS = {Turn.RIGHT: 1, Turn.STRAIGHT: 2, Turn.LEFT: 3}  # Legs that a route passes until it leaves
 
+# Least length of the ring between an entry and the next exit [m]; with less, those that come and go would cross.
 TOGETHER = 3.0
-"""Least length of the ring between an entry and the next exit [m]; with less, those that come and go would cross."""
 
 
 class Ring:
@@ -33,11 +43,6 @@ class Ring:
     Highway-env's own legs meet the ring at an angle of 66 degrees; these touch it, as built roundabouts do.
 
     The settings that scenarios share are those of `Crowd` and `Pace`.
-
-    Args:
-        radius: Radius of the centre line of the ring [m].
-        entry_radius: Radius of the arcs between the legs and the ring [m].
-        leg_length: Length of the straight part of each leg [m].
 
     Attributes:
         touch: Angle between the end of the ring at a leg and the perpendicular to that leg [rad].
@@ -89,11 +94,7 @@ class Ring:
         return tuple(lanes)
 
     def routes(self, exit_distance: float) -> tuple[Route, ...]:
-        """Build the twelve routes that do not turn back.
-
-        Args:
-            exit_distance: Distance down the exit, from the ring, at which a vehicle has arrived [m].
-        """
+        """Build the twelve routes that do not turn back."""
         routes = []
         yield_line = math.ceil(2 * self.clear) / 2
         for leg, name in enumerate(LEGS):
@@ -120,14 +121,7 @@ class Ring:
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class Roundabout(PlacedScenario):
-    """Several CAVs among human drivers, some of whom are on the ring already.
-
-    Args:
-        radius: Radius of the centre line of the ring [m].
-        entry_radius: Radius of the arcs between the legs and the ring [m].
-        leg_length: Length of the straight part of each leg [m].
-        exit_distance: Distance down the exit, from the ring, at which a vehicle has arrived [m].
-    """
+    """Several CAVs among human drivers, some of whom are on the ring already."""
 
     name = "roundabout"
 

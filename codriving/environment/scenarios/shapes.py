@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 
-from codriving.datatypes.road import Arc, Point, Straight
+from codriving.datatypes import Arc, Point, Straight
 from codriving.errors import ScenarioError
 
-_STRAIGHT = 1e-6
-"""An end that is no farther to the side than this is straight ahead [m]."""
+_STRAIGHT = 1e-6  # An end that is no farther to the side than this is straight ahead [m]
 
 
 def turned(point: Point, angle: float) -> Point:

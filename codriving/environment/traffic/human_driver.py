@@ -8,17 +8,14 @@ from highway_env.road.road import Road
 from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.objects import Obstacle, RoadObject
 
-from codriving.datatypes.road import LaneId
-from codriving.datatypes.world import Start
+from codriving.datatypes import LaneId, Start
 from codriving.environment.motion import STANDSTILL, clip
 from codriving.environment.settings import Corrections, DriverProfile
 from codriving.environment.traffic.route_following import RouteFollower, RoutePath
 
-CREEP = 1.0
-"""Below this speed a driver counts as standing [m/s]."""
+CREEP = 1.0  # Below this speed a driver counts as standing [m/s]
 
-GAP = 4.0
-"""Time gap before which a driver who stands starts onto the lane beside [s]; so long it is in the way."""
+GAP = 4.0  # Time gap before which a driver who stands starts onto the lane beside [s]; so long it is in the way
 
 
 class HumanDriver(RouteFollower, IDMVehicle):
@@ -125,22 +122,13 @@ class HumanDriver(RouteFollower, IDMVehicle):
         return behind is None or behind.lane_distance_to(self) - self.LENGTH > behind.speed * GAP
 
 
-BODY_MARGIN = 0.6
-"""Lateral room that a driver wants beside a body before it counts as out of the way [m]."""
+BODY_MARGIN = 0.6  # Lateral room that a driver wants beside a body before it counts as out of the way [m]
 
-LARGE = 8.0
-"""Longer bodies may be in the way even if their centre is not near it [m]."""
+LARGE = 8.0  # Longer bodies may be in the way even if their centre is not near it [m]
 
 
 def body_ahead(driver: RouteFollower, others: Sequence[RoadObject], sight: float) -> tuple[RoadObject | None, float]:
-    """Find the nearest body on the route of a driver.
-
-    Args:
-        sight: How far the driver looks [m].
-
-    Returns:
-        The body, or None, and the free distance to it [m].
-    """
+    """Find the nearest body on the route of a driver."""
     route_path, end = driver.route_path, len(driver.route_path.points) - 2
     first = _row((driver.s - driver.LENGTH) / route_path.spacing, end)
     last = _row((driver.s + sight) / route_path.spacing, end)

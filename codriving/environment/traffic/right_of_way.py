@@ -7,28 +7,25 @@ import numpy as np
 from highway_env.vehicle.behavior import IDMVehicle
 from numpy.typing import NDArray
 
-from codriving.datatypes.order import Relation
+from codriving.datatypes import Relation
 from codriving.environment.traffic.route_following import RouteFollower
-from codriving.geometry.road_map import RoadMap
+from codriving.geometry import RoadMap
 
 Array = NDArray[np.float64]
 
+# Times at which the right of way looks for a conflict; highway-env looks as far [s].
 HORIZON = np.arange(0.25, 3.0, 0.25)
-"""Times at which the right of way looks for a conflict; highway-env looks as far [s]."""
 
 LAST = float(HORIZON[-1])
 
-SIGHT = 25.0
-"""How far ahead a driver minds vehicles in the junction [m]."""
+SIGHT = 25.0  # How far ahead a driver minds vehicles in the junction [m]
 
+# How far a driver may come over the line or into a zone and still wait there; the bodies do not touch yet [m].
 OVERSHOOT = 1.0
-"""How far a driver may come over the line or into a zone and still wait there; the bodies do not touch yet [m]."""
 
-STARTING = 4.0
-"""Speed that a driver who creeps or stands expects to have soon [m/s]."""
+STARTING = 4.0  # Speed that a driver who creeps or stands expects to have soon [m/s]
 
-GRID = 1.0
-"""More than what the tables of a zone reach beyond its ends [m]."""
+GRID = 1.0  # More than what the tables of a zone reach beyond its ends [m]
 
 
 def will_meet(road_map: RoadMap, one: RouteFollower, other: RouteFollower) -> bool:
@@ -42,11 +39,7 @@ def will_meet(road_map: RoadMap, one: RouteFollower, other: RouteFollower) -> bo
 
 
 def meet(road_map: RoadMap, one: RouteFollower, other: RouteFollower, ones: Array, others: Array) -> bool:
-    """Whether two vehicles would be in a conflict zone together, by where each may be soon.
-
-    Args:
-        ones: The first one's ``motions``, handed over because they are the same against all others.
-    """
+    """Whether two vehicles would be in a conflict zone together, by where each may be soon."""
     reach_one, reach_other = ones[-1, -1] + GRID, others[-1, -1] + GRID
     for zone in road_map.zones(one.route_path.route.id, other.route_path.route.id):
         if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
@@ -60,12 +53,7 @@ def meet(road_map: RoadMap, one: RouteFollower, other: RouteFollower, ones: Arra
 
 
 def motions(vehicle: RouteFollower) -> Array:
-    """Where a vehicle may be on its route at the times of the horizon.
-
-    Returns:
-        Arc lengths at constant speed; for a human driver, in a second row, those of speeding up to the speed that it
-        wants, which is never behind the first row (1 or 2, n) [m].
-    """
+    """Where a vehicle may be on its route at the times of the horizon."""
     steady: Array = vehicle.s + pace(vehicle) * HORIZON
     if not isinstance(vehicle, IDMVehicle):
         return steady[None]
@@ -87,11 +75,7 @@ def can_wait(driver: RouteFollower) -> bool:
 
 
 def occupied_ahead(road_map: RoadMap, driver: RouteFollower, others: Iterable[RouteFollower]) -> float | None:
-    """Find the nearest occupied conflict zone on a driver's route, if the driver can still stop before it.
-
-    Returns:
-        Arc length of the driver's centre at which it must stand [m], or None.
-    """
+    """Find the nearest occupied conflict zone on a driver's route, if the driver can still stop before it."""
     stop = driver.s + driver.speed**2 / (2 * driver.ACC_MAX)
     nearest = math.inf
     for other in others:

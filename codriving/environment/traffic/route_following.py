@@ -13,22 +13,17 @@ from highway_env.road.road import Road
 from highway_env.vehicle.objects import RoadObject
 from numpy.typing import NDArray
 
-from codriving.datatypes.road import LaneId, Route, beside
-from codriving.datatypes.world import Kind, Start
+from codriving.datatypes import Kind, LaneId, Route, Start, beside
 from codriving.environment.motion import PlainMotion
 from codriving.environment.settings import Corrections
 from codriving.errors import ScenarioError
-from codriving.geometry.path import Path
-from codriving.geometry.road_map import RoadMap
+from codriving.geometry import Path, RoadMap
 
-SINK_MARGIN = 8.0
-"""A vehicle leaves the road this far before the end of its route [m]."""
+SINK_MARGIN = 8.0  # A vehicle leaves the road this far before the end of its route [m]
 
-CELL = 8.0
-"""Side of the squares in which a route notes where it passes [m]."""
+CELL = 8.0  # Side of the squares in which a route notes where it passes [m]
 
-NEARBY = 10.0
-"""From a square that a route does not note, every point of it is farther than this [m]."""
+NEARBY = 10.0  # From a square that a route does not note, every point of it is farther than this [m]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,11 +96,7 @@ def _square(point: tuple[float, float], x: float, y: float) -> float:
 
 
 def route_path(road_map: RoadMap, route: str) -> RoutePath:
-    """Lay a route out on its road.
-
-    Raises:
-        ScenarioError: If the goal lies where vehicles have already left the road.
-    """
+    """Lay a route out on its road."""
     found, path = road_map.routes[route], road_map.paths[route]
     if found.goal > path.length - SINK_MARGIN:
         raise ScenarioError(

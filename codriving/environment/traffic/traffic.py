@@ -11,16 +11,15 @@ from highway_env.road.road import LaneIndex, RoadNetwork
 from highway_env.vehicle.kinematics import Vehicle
 from highway_env.vehicle.objects import Landmark, Obstacle, RoadObject
 
-from codriving.datatypes.road import Block
+from codriving.datatypes import Block
 from codriving.environment.network import connected
 from codriving.environment.settings import Corrections
 from codriving.environment.traffic.human_driver import HumanDriver
 from codriving.environment.traffic.right_of_way import can_wait, meet, motions, occupied_ahead, will_meet
 from codriving.environment.traffic.route_following import RouteFollower
-from codriving.geometry.road_map import RoadMap
+from codriving.geometry import RoadMap
 
-ATTENTION = 5
-"""How often a driver looks for other vehicles [Hz]."""
+ATTENTION = 5  # How often a driver looks for other vehicles [Hz]
 
 
 class Traffic(RegulatedRoad):
@@ -95,11 +94,7 @@ class Traffic(RegulatedRoad):
     def neighbour_vehicles(
         self, vehicle: Vehicle, lane_index: LaneIndex | None = None
     ) -> tuple[RoadObject | None, RoadObject | None]:
-        """Find the vehicles ahead and behind on a lane and on the lanes physically connected to it.
-
-        Returns:
-            The one ahead and the one behind, None where there is none.
-        """
+        """Find the vehicles ahead and behind on a lane and on the lanes physically connected to it."""
         index = lane_index or vehicle.lane_index
         if not self.corrections.connected_lanes or not index:
             return super().neighbour_vehicles(vehicle, lane_index)  # type: ignore[no-any-return]

@@ -41,6 +41,7 @@ _SINGLE_VEHICLE: dict[str, Any] = {
     "allowed": ["SLOWER", "IDLE", "LANE_RIGHT"],
 }
 
+# Variables of every kind by purpose: every list has an entry and every condition holds at least once.
 EXAMPLES: dict[str, dict[str, Any]] = {
     "negotiate": {
         "vehicles": [
@@ -63,10 +64,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
         "between_lanes": True,
         "must_change": "LANE_LEFT",
         "room": 40.0,
-        "lanes": [
-            LaneView("ego lane", *_KNOWN),
-            LaneView("left lane", None, None),
-        ],
+        "lanes": [LaneView("ego lane", *_KNOWN), LaneView("left lane", None, None)],
         "others": [OtherView("V1", "unknown driver", -3.0, 4.0, 8.0)],
         "conflict_lanes": ["c-d/0"],
         "conflicts": [
@@ -107,4 +105,3 @@ EXAMPLES: dict[str, dict[str, Any]] = {
         **{"action": "IDLE", "reason": "nobody is near", "struck": True, "other": "V2", "later": 1.5},
     },
 }
-"""Variables of every kind by purpose: every list has an entry and every condition holds at least once."""

@@ -3,16 +3,13 @@
 import re
 from collections.abc import Iterable, Mapping
 
-from codriving.datatypes.situation import SceneDescription, Situation
+from codriving.datatypes import SceneDescription, Situation
 
-LONGEST_NAME = 32
-"""Characters of a vehicle's name."""
+LONGEST_NAME = 32  # Characters of a vehicle's name
 
-LONGEST_SENTENCE = 160
-"""Characters of a reason."""
+LONGEST_SENTENCE = 160  # Characters of a reason
 
-LONGEST_MEMORY = 400
-"""Characters of a memory."""
+LONGEST_MEMORY = 400  # Characters of a memory
 
 
 def one_line(text: str, longest: int = LONGEST_SENTENCE) -> str:

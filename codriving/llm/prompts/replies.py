@@ -26,8 +26,7 @@ def _one_of(words: Sequence[str]) -> Any:  # noqa: ANN401 - pydantic's own type 
     return Field(json_schema_extra={"enum": list(words)})
 
 
-Reason = Annotated[str, BeforeValidator(_short)]
-"""A reason: on one line, and capped."""
+Reason = Annotated[str, BeforeValidator(_short)]  # A reason: on one line, and capped
 
 ActionWord = Annotated[str, BeforeValidator(_upper)]
 

@@ -5,10 +5,18 @@ from dataclasses import asdict
 from math import inf
 from typing import Any
 
-from codriving.datatypes.experience import Experience
-from codriving.datatypes.order import Conflict, Instance, PassingOrder
-from codriving.datatypes.road import LaneId
-from codriving.datatypes.situation import ActionAssessment, Role, SceneDescription, Situation, TrackedVehicle
+from codriving.datatypes import (
+    ActionAssessment,
+    Conflict,
+    Experience,
+    Instance,
+    LaneId,
+    PassingOrder,
+    Role,
+    SceneDescription,
+    Situation,
+    TrackedVehicle,
+)
 from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for
 from codriving.llm.prompts.views import (
     ActionView,
@@ -23,11 +31,9 @@ from codriving.llm.prompts.views import (
     VehicleView,
 )
 
-DRIVERS = {"CAV": "CAV", "HDV": "human", None: "unknown driver"}
-"""Who drives, in words."""
+DRIVERS = {"CAV": "CAV", "HDV": "human", None: "unknown driver"}  # Who drives, in words
 
-OTHERS = 4
-"""Vehicles at most that are mentioned though it is not known which lane they are on."""
+OTHERS = 4  # Vehicles at most that are mentioned though it is not known which lane they are on
 
 
 def decision_view(situation: Situation, nearest: int | None = None, with_memories: bool = True) -> dict[str, Any]:

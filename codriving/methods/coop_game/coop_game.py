@@ -5,16 +5,24 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
 
-from codriving.datatypes.order import Instance
+from codriving.datatypes import Instance
 from codriving.errors import require, require_range
 from codriving.methods.coop_game.levels import Allocation, OwnLevels, Streams, find_streams, is_free, levels_of
 from codriving.methods.coop_game.payoff import Goal, Payoff, Scale
-from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering, OrderRule
-from codriving.reasoning.ordering.schedule import Objective, repaired, timed
-from codriving.reasoning.ordering.tickets import TicketBook, by_ticket, reasons
+from codriving.reasoning import (
+    JointPlan,
+    JointPlanner,
+    Objective,
+    Ordering,
+    OrderRule,
+    TicketBook,
+    by_ticket,
+    reasons,
+    repaired,
+    timed,
+)
 
-TOLERANCE = 1e-9
-"""Values that differ by less are equal."""
+TOLERANCE = 1e-9  # Values that differ by less are equal
 
 
 @dataclass(frozen=True)
@@ -79,9 +87,6 @@ class Coalition:
         """Evaluate a ranking of all vehicles.
 
         Orders in which the same vehicle of each pair goes first, wherever that is open, are one order.
-
-        Returns:
-            The agreement; None if it is a new one and the limit is reached.
         """
         order = tuple(repaired(self.instance, ranking))
         place = {name: k for k, name in enumerate(order)}
@@ -121,16 +126,6 @@ class CoopGame(OrderRule):
     """All CAVs form a coalition, and their streams take the levels that are worth most to all together.
 
     Without an agreement all would go first come, first served; that order is always among those evaluated.
-
-    Args:
-        objective: What is summed up: ``inverse_distance`` or ``utility``.
-        scale: Which distances are put on the scale of the others: ``turning``, ``straight`` or ``none``.
-        levels: The highest level, 1 to 20; None for as many as there are streams.
-        hysteresis: The order of the step before stays unless another one is worth more than being this much ahead
-            is worth to one vehicle, 0 to 10 [s].
-        reference_acceleration: Acceleration that costs the whole weight of comfort, 0.1 to 20 [m/s2].
-        risk_time: Gap in time at which the risk has fallen to 1/e, 0.1 to 10 [s].
-        control_radius: Distance to the reference point from which on a vehicle holds a ticket, 1 to 1000 [m].
     """
 
     name = "coop_game"

@@ -4,13 +4,11 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from codriving.datatypes.order import Instance
+from codriving.datatypes import Instance
 
-Allocation = tuple[int, ...]
-"""Level of each stream; a lower level goes first."""
+Allocation = tuple[int, ...]  # Level of each stream; a lower level goes first
 
-Edge = tuple[int, int]
-"""Two streams in conflict, by index, the smaller one first."""
+Edge = tuple[int, int]  # Two streams in conflict, by index, the smaller one first
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,11 +130,7 @@ class FewLevels(OwnLevels):
 
 
 def levels_of(streams: int, conflicts: Collection[Edge], highest: int | None) -> OwnLevels:
-    """Return the levels that streams may have.
-
-    Args:
-        highest: The highest level; None for as many as there are streams.
-    """
+    """Return the levels that streams may have."""
     if highest is None or highest >= streams - 1:
         return OwnLevels(streams, conflicts)
     return FewLevels(streams, conflicts, highest)

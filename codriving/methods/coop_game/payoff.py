@@ -7,15 +7,14 @@ from enum import StrEnum
 
 import numpy as np
 
-from codriving.datatypes.order import ApproachingVehicle, Instance
-from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
+from codriving.datatypes import ApproachingVehicle, Instance
+from codriving.reasoning import JointPlan, JointPlanner
 
+# Drivers are indifferent about the order if the distance of the one that turns is 1.44 times that of the one that goes
+# straight, less 25.4 m (fit of the source).
 SLOPE, OFFSET = 1.44, 25.4
-"""Drivers are indifferent about the order if the distance of the one that turns is 1.44 times that of the one that goes
-straight, less 25.4 m (fit of the source)."""
 
-NEAREST = 1.0
-"""Distance to the destination below which a vehicle counts as being there [m]."""
+NEAREST = 1.0  # Distance to the destination below which a vehicle counts as being there [m]
 
 
 class Goal(StrEnum):
@@ -34,11 +33,7 @@ class Scale(StrEnum):
 
 
 def on_one_scale(distance: float, turning: bool, scale: Scale) -> float:
-    """Return a distance on the common scale of vehicles that turn and vehicles that go straight [m].
-
-    Args:
-        distance: Distance to the destination [m].
-    """
+    """Return a distance on the common scale of vehicles that turn and vehicles that go straight [m]."""
     if scale is Scale.TURNING and turning:
         return max((distance + OFFSET) / SLOPE, NEAREST)
     if scale is Scale.STRAIGHT and not turning:
@@ -64,11 +59,7 @@ class Payoff:
     risk_time: float
 
     def of(self, instance: Instance, plan: JointPlan, planner: JointPlanner, ahead: float = 0.0) -> dict[str, float]:
-        """Return what a plan is worth to each vehicle, by id.
-
-        Args:
-            ahead: Time by which all are taken to be farther along their plans [s].
-        """
+        """Return what a plan is worth to each vehicle, by id."""
         kinds = {vehicle.turning for vehicle in instance.vehicles.values()}
         # Distances are only changed where some turn and others do not.
         scale = self.scale if len(kinds) == 2 else Scale.NONE
@@ -84,11 +75,7 @@ class Payoff:
     def gain(
         self, instance: Instance, plan: JointPlan, planner: JointPlanner, payoffs: Mapping[str, float], time: float
     ) -> float:
-        """Return what a vehicle gains on average by being farther along its plan.
-
-        Args:
-            time: Time by which one vehicle is ahead [s].
-        """
+        """Return what a vehicle gains on average by being farther along its plan."""
         later = self.of(instance, plan, planner, time)
         return sum(later[name] - payoffs[name] for name in later) / len(later)
 

@@ -2,43 +2,40 @@
 
 from collections.abc import Sequence
 
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, TrackedVehicle
 from codriving.errors import require_range
 from codriving.methods.coop_game_fuzzy.joint_choice import MOST, Costs, Joint, settle, shapley
 from codriving.methods.coop_game_fuzzy.joint_costs import Weights, joint_costs
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.ordered import Ordered
-from codriving.reasoning.execution.planned import Drive, Executor, humans_expected
-from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner, Ordering, Request, best_subset
-from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.expectation import Expected
-from codriving.reasoning.prediction.rollout import Plan
-from codriving.reasoning.safety.safety_input import then_stop
-from codriving.reasoning.safety.same_lane import LANE_END_GAP
+from codriving.reasoning import (
+    LANE_END_GAP,
+    Drive,
+    Executor,
+    Expected,
+    JointPlan,
+    JointPlanner,
+    Moment,
+    Ordering,
+    Plan,
+    Request,
+    best_subset,
+    humans_expected,
+    then_stop,
+)
 
+# What each CAV chooses from; the first one wins where all cost the same.
 OPTIONS = (Action.FASTER, Action.IDLE, Action.SLOWER)
-"""What each CAV chooses from; the first one wins where all cost the same."""
 
-LONGEST = 20
-"""Decisions for which an action can be held."""
+LONGEST = 20  # Decisions for which an action can be held
 
 _HELD = [(*(action,) * held, Action.FASTER) for held in range(1, LONGEST + 1) for action in OPTIONS]
+# Every plan that is used: an action held for a while, and then going; and an action, and then stopping.
 LIBRARY: tuple[Plan, ...] = tuple(dict.fromkeys((*_HELD, *(then_stop(action) for action in OPTIONS))))
-"""Every plan that is used: an action held for a while, and then going; and an action, and then stopping."""
 
 
 class CoopGameFuzzy(Ordered):
-    """Joint actions instead of orders; the order of arrival is shown beside them.
-
-    Args:
-        gap: Time between one vehicle's leaving a zone and the next one's entering it, for the order that is shown, 0 to
-            5 [s].
-        reference_acceleration: Acceleration that costs the whole weight of comfort, 0.1 to 20 [m/s2].
-        hold: Time for which an action is held before all go, 0.2 to 4 [s].
-        horizon: Time within which risk, loss of speed and acceleration count, 1 to 10 [s].
-        control_radius: Distance to the reference point from which on a vehicle holds a ticket, 1 to 1000 [m].
-    """
+    """Joint actions instead of orders; the order of arrival is shown beside them."""
 
     def __init__(
         self,

@@ -9,17 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Joint = tuple[int, ...]
-"""Index of the option of each vehicle."""
+Joint = tuple[int, ...]  # Index of the option of each vehicle
 
-ENUMERATED = 3
-"""Vehicles up to which every joint action is looked at."""
+ENUMERATED = 3  # Vehicles up to which every joint action is looked at
 
-SWEEPS = 10
-"""How often each chooses again at most, where they are too many for that."""
+SWEEPS = 10  # How often each chooses again at most, where they are too many for that
 
-TOLERANCE = 1e-12
-"""Costs that differ by less are equal."""
+TOLERANCE = 1e-12  # Costs that differ by less are equal
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +31,7 @@ class Costs:
     pair: Array
 
     def of(self, joints: Sequence[Joint]) -> Array:
-        """Return what joint actions cost each vehicle.
-
-        Returns:
-            Cost of each vehicle (k, n).
-        """
+        """Return what joint actions cost each vehicle."""
         chosen = np.array(joints, dtype=np.intp).reshape(len(joints), -1)
         who = np.arange(chosen.shape[1])
         met = self.pair[who[:, None], chosen[:, :, None], who[None, :], chosen[:, None, :]]
@@ -95,16 +87,11 @@ def _arrive(costs: Costs, options: Sequence[Sequence[int]], participation: float
     return joint
 
 
-MOST = 6
-"""Players for whom the value is worked out; it needs the worth of every coalition, 64 of them."""
+MOST = 6  # Players for whom the value is worked out; it needs the worth of every coalition, 64 of them
 
 
 def shapley(players: Sequence[str], worth: Callable[[frozenset[str]], float]) -> dict[str, float]:
-    """Share out what a coalition is worth: what each adds to it, averaged over all orders in which they may join.
-
-    Returns:
-        Share of each player, by id; they add up to the worth of all less that of none.
-    """
+    """Share out what a coalition is worth: what each adds to it, averaged over all orders in which they may join."""
     n = len(players)
     members = [frozenset(some) for size in range(n + 1) for some in combinations(players, size)]
     known = {some: worth(some) for some in members}

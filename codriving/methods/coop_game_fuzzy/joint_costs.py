@@ -5,19 +5,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.geometry.path import Path
+from codriving.datatypes import TrackedVehicle
+from codriving.geometry import Path
 from codriving.methods.coop_game_fuzzy.joint_choice import Array, Costs
-from codriving.reasoning.perception import Moment
+from codriving.reasoning import Moment
 
-YIELDS_AFTER = 2.0
-"""A driver who has been standing for this long keeps its place [s]."""
+YIELDS_AFTER = 2.0  # A driver who has been standing for this long keeps its place [s]
 
+# Semi-axes at which the risk has fallen to 1/e, along the vehicle at top speed and across it [m].
 ALONG, ACROSS = 8.0, 2.5
-"""Semi-axes at which the risk has fallen to 1/e, along the vehicle at top speed and across it [m]."""
 
-STANDING = 0.5
-"""Share of the length of the field that is left around a standing vehicle."""
+STANDING = 0.5  # Share of the length of the field that is left around a standing vehicle
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,11 +45,7 @@ class Weights:
 def joint_costs(
     moment: Moment, vehicles: Mapping[str, TrackedVehicle], travels: Mapping[str, Array], samples: int, weights: Weights
 ) -> Costs:
-    """Return what joint actions cost: the greatest risk from each other vehicle, and the means of the other terms.
-
-    Args:
-        travels: Distance of each option over time, by id (options, steps + 1) [m].
-    """
+    """Return what joint actions cost: the greatest risk from each other vehicle, and the means of the other terms."""
     forecast, top = moment.forecast, moment.forecast.model.target_speeds[-1]
     places = np.array([travels[v.id][:, :samples] for v in vehicles.values()])
     speeds = np.gradient(places, forecast.sample, axis=2)
@@ -77,11 +71,7 @@ def poses(path: Path, places: Array, speeds: Array) -> Poses:
 
 
 def human_risk(moment: Moment, ego: str, where: Poses, samples: int, top_speed: float) -> Array:
-    """Return the risk from human drivers, each where it is most dangerous of all places at which it is expected.
-
-    Returns:
-        Greatest risk of each option from each of them, added up (options,).
-    """
+    """Return the risk from human drivers, each where it is most dangerous of all places at which it is expected."""
     found = np.zeros(len(where.x))
     for other in moment.vehicles[ego].values():
         if other.is_cav:

@@ -4,19 +4,25 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from codriving.datatypes.experience import Effect, Experience, Verdict
-from codriving.datatypes.record import Collision, Ending, Outcome
-from codriving.datatypes.situation import Decision, Situation
-from codriving.datatypes.world import Action, WorldState
-from codriving.llm.prompts.free_text import one_line, seen_names
-from codriving.memory.describe import describe
+from codriving.datatypes import (
+    Action,
+    Collision,
+    Decision,
+    Effect,
+    Ending,
+    Experience,
+    Outcome,
+    Situation,
+    Verdict,
+    WorldState,
+)
+from codriving.llm import one_line, seen_names
+from codriving.memory import describe
 from codriving.methods.experience_log import ExperienceLog, LoggedDecision
 
-EVERY = 5
-"""Of a drive that ends well every fifth decision is kept."""
+EVERY = 5  # Of a drive that ends well every fifth decision is kept
 
-LONGEST = 100
-"""Characters of a mistake, and of a lesson: a memory is told in a few lines."""
+LONGEST = 100  # Characters of a mistake, and of a lesson: a memory is told in a few lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,11 +53,7 @@ class Correction:
 
 
 class CollisionLog(ExperienceLog):
-    """DiLu's: of a success every fifth decision is kept, of a collision what led to it, of other endings nothing.
-
-    Args:
-        correct: Gives one correction a mistake of an episode, in the same order.
-    """
+    """DiLu's: of a success every fifth decision is kept, of a collision what led to it, of other endings nothing."""
 
     def __init__(self, correct: Callable[[Sequence[Mistake]], list[Correction]]) -> None:
         super().__init__()

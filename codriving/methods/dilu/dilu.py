@@ -7,14 +7,24 @@ from functools import partial
 from math import ceil, inf
 from typing import TYPE_CHECKING
 
-from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.parts import Account, CaseMemory, Model
-from codriving.datatypes.record import Outcome
-from codriving.datatypes.road import LaneId
-from codriving.datatypes.situation import ActionAssessment, Decision, ReasonedDeliberation, SceneDescription, Situation
-from codriving.datatypes.world import Action, DrivingModel, WorldState
+from codriving.datatypes import (
+    Account,
+    Action,
+    ActionAssessment,
+    CaseMemory,
+    Decision,
+    DrivingModel,
+    LaneId,
+    Model,
+    Outcome,
+    PassingOrder,
+    ReasonedDeliberation,
+    SceneDescription,
+    Situation,
+    WorldState,
+)
 from codriving.errors import require_range
-from codriving.geometry.road_map import RoadMap
+from codriving.geometry import RoadMap
 from codriving.methods.dilu.collision_log import CollisionLog, Correction, Mistake
 from codriving.methods.dilu.rule import correct_by_rule, decide_by_rule
 from codriving.methods.experience_log import learn, recall
@@ -22,25 +32,14 @@ from codriving.methods.language_model.prompted_model import ModelMethod
 from codriving.methods.single_vehicle.demonstrated import CONSTANT
 from codriving.methods.single_vehicle.lane_choice import look
 from codriving.methods.single_vehicle.method import Driver
-from codriving.reasoning.perception import Moment, single_vehicle_perception
-from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.safety.safety_input import SIDES
+from codriving.reasoning import SIDES, Forecast, Moment, single_vehicle_perception
 
 if TYPE_CHECKING:
     from codriving.methods.language_model.model_decider import ModelDecider
 
 
 class DiLu(ModelMethod):
-    """The method; with ``llm=offline`` a rule stands in for its language model, and it is called ``dilu-rule``.
-
-    Args:
-        memory: What was like it before, and perhaps what is learnt from this; None for no examples at all.
-        hold: Time between two decisions of a CAV, rounded up to whole decision steps; its targets are held meanwhile
-            [s].
-
-    Raises:
-        ConfigError: If a setting is out of range, or a template cannot be used.
-    """
+    """The method; with ``llm=offline`` a rule stands in for its language model, and it is called ``dilu-rule``."""
 
     asked, reflects = ("dilu",), "dilu_reflect"
 

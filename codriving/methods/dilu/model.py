@@ -4,31 +4,35 @@ from collections.abc import Sequence
 from math import atan2, degrees
 from typing import Any, cast
 
-from codriving.datatypes.order import Conflict
-from codriving.datatypes.situation import SceneDescription, Situation, TrackedVehicle
-from codriving.datatypes.world import Action, DrivingModel
-from codriving.geometry.road_map import RoadMap
-from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, one_line, seen_names
-from codriving.llm.prompts.replies import CorrectionReply, correction_reply
-from codriving.llm.prompts.variables import lane_views, side_name
-from codriving.llm.prompts.views import MeaningView, SeenView, WayView
-from codriving.llm.question import Answer, Question
+from codriving.datatypes import Action, Conflict, DrivingModel, SceneDescription, Situation, TrackedVehicle
+from codriving.geometry import RoadMap
+from codriving.llm import (
+    LONGEST_MEMORY,
+    Answer,
+    CorrectionReply,
+    MeaningView,
+    Names,
+    Question,
+    SeenView,
+    WayView,
+    correction_reply,
+    lane_views,
+    one_line,
+    seen_names,
+    side_name,
+)
 from codriving.methods.dilu.collision_log import Correction, Mistake
 from codriving.methods.dilu.rule import correct_one
 from codriving.methods.language_model.model_decider import ModelDecider
 from codriving.methods.language_model.prompted_model import PromptedModel
-from codriving.reasoning.prediction.rollout import CHANGE
+from codriving.reasoning import CHANGE
 
+# What stands in for an answer that is missing, as in the source: keep going, or slow down if that is not allowed.
 INSTEAD = (Action.IDLE, Action.SLOWER)
-"""What stands in for an answer that is missing, as in the source: keep going, or slow down if that is not allowed."""
 
 
 class SightDecider(ModelDecider):
-    """DiLu's: each CAV may choose what the road allows, by what it alone sees.
-
-    Args:
-        driving: How a CAV answers to actions; its decision interval is the time for which a decision holds.
-    """
+    """DiLu's: each CAV may choose what the road allows, by what it alone sees."""
 
     template = "dilu"
 
@@ -55,15 +59,7 @@ class SightDecider(ModelDecider):
 def correct_by_model(
     model: PromptedModel, road_map: RoadMap, driving: DrivingModel, mistakes: Sequence[Mistake]
 ) -> list[Correction]:
-    """Ask about every mistake of an episode, all in one go; by rule where the model gives no usable answer.
-
-    Returns:
-        One correction a mistake, in the same order.
-
-    Raises:
-        ModelUnavailableError: If the model does not answer.
-        SpendingLimitError: If the tokens or the money that may be spent are used up.
-    """
+    """Ask about every mistake of an episode, all in one go; by rule where the model gives no usable answer."""
     answers = model.ask([_question(model, road_map, driving, mistake) for mistake in mistakes])
     return [_correction(mistake, answer) for mistake, answer in zip(mistakes, answers, strict=True)]
 
@@ -103,9 +99,9 @@ def _correction(mistake: Mistake, answer: Answer) -> Correction:
     return Correction(Action(reply.action), reply.mistake or by_rule.mistake, reply.lesson)
 
 
-MOST = 6
-"""Vehicles at most of which it is told where they are and which ways they may take."""
+MOST = 6  # Vehicles at most of which it is told where they are and which ways they may take
 
+# Words for eighths of a turn, clockwise from straight ahead.
 DIRECTIONS = (
     "ahead",
     "ahead right",
@@ -116,17 +112,12 @@ DIRECTIONS = (
     "to the left",
     "ahead left",
 )
-"""Words for eighths of a turn, clockwise from straight ahead."""
 
 
 def seen_view(
     situation: Situation, road_map: RoadMap, driving: DrivingModel, nearest: int | None = None
 ) -> dict[str, Any]:
-    """Return the variables that all of DiLu's prompts have.
-
-    Args:
-        nearest: Number of vehicles, nearest first, that are mentioned; None for all.
-    """
+    """Return the variables that all of DiLu's prompts have."""
     scene, names = situation.scene, seen_names(situation.scene)
     start, end, index = scene.ego.lane
     targets = _targets_after(driving, scene.ego.speed, scene.intent.target_speed)
@@ -185,12 +176,7 @@ def _direction(scene: SceneDescription, n: TrackedVehicle) -> str:
 
 
 def _targets_after(model: DrivingModel, speed: float, target: float) -> dict[Action, float]:
-    """Return the target speed after each action along the lane [m/s].
-
-    Args:
-        speed: Speed now [m/s].
-        target: Target speed now [m/s].
-    """
+    """Return the target speed after each action along the lane [m/s]."""
     speeds, top = model.target_speeds, len(model.target_speeds) - 1
     nearest = round(min(max((speed - speeds[0]) / (speeds[-1] - speeds[0]) * top, 0), top))
     stepped = {action: speeds[min(max(nearest + step, 0), top)] for action, step in CHANGE.items()}

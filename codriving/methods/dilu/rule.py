@@ -4,28 +4,17 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
-from codriving.datatypes.experience import Verdict
-from codriving.datatypes.situation import Decision, Situation
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Decision, Situation, Verdict
 from codriving.methods.dilu.collision_log import Correction, Mistake
 from codriving.methods.single_vehicle.demonstrated import PREFERRED
 from codriving.methods.single_vehicle.method import Driver, account
-from codriving.reasoning.decision.cases import favour
-from codriving.reasoning.perception import Moment
-from codriving.reasoning.safety.safety_input import SIDES
+from codriving.reasoning import SIDES, Moment, favour
 
 
 def decide_by_rule(
     rule: Driver, moment: Moment, situations: Sequence[Situation]
 ) -> tuple[list[Situation], list[Decision], Counter[str]]:
-    """Stand in for the language model; this is not DiLu, and tables call it ``dilu-rule``.
-
-    Args:
-        situations: What each CAV sees and remembers.
-
-    Returns:
-        What each decision rests on, the decisions, and counters by column.
-    """
+    """Stand in for the language model; this is not DiLu, and tables call it ``dilu-rule``."""
     choices = [rule.decide(moment, situation.scene.ego.id) for situation in situations]
     based_on = [
         replace(account(moment, situation.scene.ego.id, choice), memories=situation.memories)
@@ -45,9 +34,6 @@ def corrected(situation: Situation, decision: Decision) -> Decision:
     """Repeat no mistake: take the next slower acceptable action if what is remembered speaks against a decision.
 
     A lane change is replaced by the fastest acceptable action along the lane.
-
-    Returns:
-        A decision; ``recalled`` names the memories that changed it.
     """
     memories, action = situation.memories, decision.action
     if favour(memories, action) >= 0:

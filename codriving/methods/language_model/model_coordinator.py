@@ -4,23 +4,24 @@ from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from typing import cast
 
-from codriving.datatypes.order import Conflict, Pair, PassingOrder
-from codriving.datatypes.situation import SceneDescription
-from codriving.llm.prompts.free_text import Names
-from codriving.llm.prompts.replies import OrderReply, first_of_pairs, order_reply
-from codriving.llm.prompts.variables import negotiation_view
-from codriving.llm.question import Question
+from codriving.datatypes import Conflict, Pair, PassingOrder, SceneDescription
+from codriving.llm import Names, OrderReply, Question, first_of_pairs, negotiation_view, order_reply
 from codriving.methods.language_model.prompted_model import PromptedModel
-from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator
-from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
-from codriving.reasoning.ordering.problem import Problem, pose
-from codriving.reasoning.perception import Moment
+from codriving.reasoning import (
+    Coordinator,
+    Moment,
+    Premise,
+    Problem,
+    RuleCoordinator,
+    find_circle,
+    open_pairs,
+    pose,
+    premise,
+)
 
-AgreedPairs = dict[Pair, str]
-"""Pairs of CAVs, the one that goes first first, and why."""
+AgreedPairs = dict[Pair, str]  # Pairs of CAVs, the one that goes first first, and why
 
-OpenPairs = Mapping[str, Conflict]
-"""The pairs of a question: the most urgent conflict of each, by the name of the pair."""
+OpenPairs = Mapping[str, Conflict]  # The pairs of a question: the most urgent conflict of each, by the name of the pair
 
 
 class ModelCoordinator(Coordinator):
@@ -40,12 +41,7 @@ class ModelCoordinator(Coordinator):
         self._agreed: tuple[Premise, AgreedPairs] | None = None
 
     def negotiate(self, moment: Moment) -> PassingOrder:
-        """Return an order without cycles for all conflicts.
-
-        Raises:
-            ModelUnavailableError: If the model does not answer.
-            SpendingLimitError: If the tokens or the money that may be spent are used up.
-        """
+        """Return an order without cycles for all conflicts."""
         problem = pose(moment)
         urgent = _most_urgent(problem, moment.conflicts)
         asked = open_pairs(problem.instance, urgent)

@@ -4,17 +4,13 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any, ClassVar, cast
 
-from codriving.datatypes.situation import Decision, Situation
-from codriving.datatypes.world import Action
-from codriving.llm.prompts.free_text import names_for
-from codriving.llm.prompts.replies import DecisionReply, decision_reply
-from codriving.llm.prompts.variables import decision_view
-from codriving.llm.question import Answer, Question
+from codriving.datatypes import Action, Decision, Situation
+from codriving.llm import Answer, DecisionReply, Question, decision_reply, decision_view, names_for
 from codriving.methods.language_model.prompted_model import PromptedModel
-from codriving.reasoning.decision.rules import Decider, decide_one, is_plain
+from codriving.reasoning import Decider, decide_one, is_plain
 
+# Actions in the order in which they stand in for an answer that is missing.
 SAFEST = (Action.SLOWER, Action.IDLE, Action.FASTER, Action.LANE_RIGHT, Action.LANE_LEFT)
-"""Actions in the order in which they stand in for an answer that is missing."""
 
 
 class ModelDecider(Decider):
@@ -31,11 +27,7 @@ class ModelDecider(Decider):
 
     @abstractmethod
     def variables(self, situation: Situation, nearest: int | None, with_memories: bool) -> dict[str, Any]:
-        """Return the variables of the template.
-
-        Args:
-            nearest: Number of vehicles, nearest first, that are mentioned; None for all.
-        """
+        """Return the variables of the template."""
 
     @abstractmethod
     def objection(self, situation: Situation, action: str) -> str:
@@ -46,12 +38,7 @@ class ModelDecider(Decider):
         """Return the action that stands in for an answer that is missing."""
 
     def decide(self, situations: Sequence[Situation]) -> list[Decision]:
-        """Return one decision a situation, in the same order.
-
-        Raises:
-            ModelUnavailableError: If the model does not answer.
-            SpendingLimitError: If the tokens or the money that may be spent are used up.
-        """
+        """Return one decision a situation, in the same order."""
         answers = self.model.ask([self.question(situation) for situation in situations])
         return [self._decision(*pair) for pair in zip(situations, answers, strict=True)]
 

@@ -5,14 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
-from codriving.datatypes.parts import Account, CaseMemory, Method, Model
-from codriving.datatypes.road import Road
-from codriving.datatypes.world import DrivingModel
+from codriving.datatypes import Account, CaseMemory, DrivingModel, Method, Model, Road
 from codriving.errors import ConfigError
-from codriving.geometry.road_map import RoadMap
-from codriving.llm.ledger import Ledger
-from codriving.llm.prompts.render import Prompts, load_prompts, template_files
-from codriving.llm.question import Answer, Chat, Question
+from codriving.geometry import RoadMap
+from codriving.llm import Answer, Chat, Ledger, Prompts, Question, load_prompts, template_files
 
 
 @dataclass(frozen=True)
@@ -24,12 +20,7 @@ class PromptedModel:
     ledger: Ledger
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
-        """Ask all questions at once, and note the answers.
-
-        Raises:
-            ModelUnavailableError: If the model does not answer.
-            SpendingLimitError: If the tokens or the money that may be spent are used up.
-        """
+        """Ask all questions at once, and note the answers."""
         answers = self.chat.ask(questions) if questions else []
         for question, answer in zip(questions, answers, strict=True):
             self.ledger.note(question, answer)
@@ -43,11 +34,7 @@ def prompted(llm: Model) -> PromptedModel | None:
 
 
 def check_model(llm: Model, memory: CaseMemory | None) -> None:
-    """Try the templates out, so that a broken one is found before anything is driven.
-
-    Raises:
-        ConfigError: If a template cannot be used, or a memory wants a model to reflect and there is none.
-    """
+    """Try the templates out, so that a broken one is found before anything is driven."""
     if llm.prompts is not None:
         load_prompts(llm.prompts)
     if memory is not None and memory.reflections and llm.chat() is None:

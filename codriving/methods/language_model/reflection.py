@@ -4,29 +4,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import cast
 
-from codriving.datatypes.experience import Experience, Verdict
-from codriving.llm.prompts.replies import LessonReply
-from codriving.llm.prompts.variables import reflection_view
-from codriving.llm.question import Question
+from codriving.datatypes import Experience, Verdict
+from codriving.llm import LessonReply, Question, reflection_view
 from codriving.methods.language_model.prompted_model import PromptedModel
 
-MISTAKES = (Verdict.INTENSIFIED, Verdict.TOO_CAUTIOUS)
-"""What is reflected on; what went well speaks for itself."""
+MISTAKES = (Verdict.INTENSIFIED, Verdict.TOO_CAUTIOUS)  # What is reflected on; what went well speaks for itself
 
 
 def reflect(model: PromptedModel, experiences: Sequence[Experience], most: int) -> list[Experience]:
-    """Ask about the worst mistakes of an episode at once; the comment of the rules stays before the model's words.
-
-    Args:
-        most: How many mistakes the model is asked about.
-
-    Returns:
-        The experiences, with lessons of the model's where it gave one that can be used.
-
-    Raises:
-        ModelUnavailableError: If the model does not answer.
-        SpendingLimitError: If the tokens or the money that may be spent are used up.
-    """
+    """Ask about the worst mistakes of an episode at once; the comment of the rules stays before the model's words."""
     mistakes = [k for k, e in enumerate(experiences) if e.verdict in MISTAKES]
     chosen = sorted(sorted(mistakes, key=lambda k: _gravity(experiences[k]))[:most])
     answers = model.ask([_question(model, experiences[k]) for k in chosen])

@@ -6,16 +6,14 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.road import Turn
-from codriving.datatypes.world import DrivingModel, VehicleState, WorldState
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import DrivingModel, Turn, VehicleState, WorldState
+from codriving.geometry import RoadMap
 from codriving.methods.learned.known import Knowledge, Other
 from codriving.methods.learned.layout import FAR, JUNCTION, LANES
 from codriving.methods.learned.slots import Beside, Slot, conflict_slots, filled, leader_ahead, leader_slot
-from codriving.reasoning.conflicts import OPEN
+from codriving.reasoning import OPEN
 
-Observation: TypeAlias = NDArray[np.float32]
-"""Features (feature_count,), each within -1 and 1."""
+Observation: TypeAlias = NDArray[np.float32]  # Features (feature_count,), each within -1 and 1
 
 TURNS = (Turn.LEFT, Turn.STRAIGHT, Turn.RIGHT)
 

@@ -3,16 +3,13 @@
 from dataclasses import dataclass
 from math import hypot
 
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import Kind, VehicleState, WorldState
-from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.sharing.tracking import Places, Tracking
+from codriving.datatypes import Kind, TrackedVehicle, VehicleState, WorldState
+from codriving.geometry import RoadMap
+from codriving.reasoning import Places, Tracking
 
-FORESIGHT = 1.0
-"""A human driver is expected to go on accelerating or braking for this long [s]."""
+FORESIGHT = 1.0  # A human driver is expected to go on accelerating or braking for this long [s]
 
-SHARED = ""
-"""In whose name the CAVs watch together when they share what they see."""
+SHARED = ""  # In whose name the CAVs watch together when they share what they see
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,22 +40,14 @@ class Other:
 
 
 class Knowledge:
-    """Watches the others from one decision to the next; the intent of a human driver is never known.
-
-    Args:
-        detection_range: Radius of perception of a CAV [m].
-    """
+    """Watches the others from one decision to the next; the intent of a human driver is never known."""
 
     def __init__(self, road_map: RoadMap, detection_range: float, shared: bool, routes: bool) -> None:
         self._road_map, self._range, self._shared, self._routes = road_map, detection_range, shared, routes
         self._tracking = Tracking(road_map)
 
     def others(self, world: WorldState) -> dict[str, tuple[Other, ...]]:
-        """Return whom each CAV knows of, itself left out.
-
-        Returns:
-            The others in the order of their ids, by id of the CAV.
-        """
+        """Return whom each CAV knows of, itself left out."""
         self._tracking.begin_step()
         cavs, vehicles = world.cavs, world.vehicles
         if not self._shared:
@@ -74,11 +63,7 @@ class Knowledge:
         return {cav.id: tuple(other for other in known if other.id != cav.id) for cav in cavs}
 
     def priority(self, v: VehicleState) -> int | None:
-        """Return the rank of a vehicle by the rules of the road, which those who share agree to mind.
-
-        Returns:
-            Priority of its lane; None on roads without such rules, and for those who drive on their own.
-        """
+        """Return the rank of a vehicle by the rules of the road, which those who share agree to mind."""
         return self._road_map.lanes[v.lane].priority if self._shared and self._road_map.road.regulated else None
 
     def _near(self, cav: VehicleState, v: VehicleState) -> bool:

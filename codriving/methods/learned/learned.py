@@ -7,12 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from codriving.datatypes.parts import Method
-from codriving.datatypes.road import Road
-from codriving.datatypes.situation import Deliberation
-from codriving.datatypes.world import Action, DrivingModel, WorldState
+from codriving.datatypes import Action, Deliberation, DrivingModel, Method, Road, WorldState
 from codriving.errors import WeightsError
-from codriving.geometry.road_map import RoadMap
+from codriving.geometry import RoadMap
 from codriving.methods.learned.features import Features, Observation
 from codriving.methods.learned.layout import ACTIONS, allowed, family_of, feature_names
 from codriving.methods.learned.network import FloatArray, greedy, shares
@@ -72,12 +69,6 @@ class Learned(Method):
 
     Attributes:
         meaning: What the network says of an action, ``values`` or ``probabilities``.
-
-    Args:
-        weights: File of weights of one's own; None takes those that are shipped for the family of the road.
-
-    Raises:
-        WeightsError: If the file is missing, damaged, or not of this method.
     """
 
     shared: ClassVar[bool]
@@ -104,11 +95,7 @@ class Learned(Method):
         return {"weights": file, "weights, purpose": sidecar(file)}
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
-        """Begin an episode; nothing is remembered from the one before.
-
-        Raises:
-            WeightsError: If no weights are for this road.
-        """
+        """Begin an episode; nothing is remembered from the one before."""
         self.check_road(road_map.road, model.target_speeds, model.decision_interval)
         self._family = family_of(road_map.road)
         self._network = self._weights(self._family).network

@@ -20,14 +20,7 @@ class Network:
     biases: Sequence[FloatArray]
 
     def __call__(self, observations: FloatArray) -> FloatArray:
-        """Return what the network makes of some observations.
-
-        Args:
-            observations: One a row (n, inputs).
-
-        Returns:
-            One row each (n, outputs).
-        """
+        """Return what the network makes of some observations."""
         hidden = observations
         last = len(self.weights) - 1
         for layer, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
@@ -37,14 +30,11 @@ class Network:
         return hidden
 
 
-WIDTH = 64
-"""Numbers in a token."""
+WIDTH = 64  # Numbers in a token
 
-HEADS = 4
-"""Heads of the attention; each has its share of these numbers."""
+HEADS = 4  # Heads of the attention; each has its share of these numbers
 
-OWN = "ego"
-"""The layer that takes what is no slot: the ego vehicle, and on lanes what is beside it."""
+OWN = "ego"  # The layer that takes what is no slot: the ego vehicle, and on lanes what is beside it
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +51,7 @@ class Attention:
     judge: Network
 
     def __call__(self, observations: FloatArray) -> FloatArray:
-        """Return what the network makes of some observations.
-
-        Args:
-            observations: One a row (n, inputs).
-
-        Returns:
-            One row each (n, outputs).
-        """
+        """Return what the network makes of some observations."""
         first, last = len(EGO), len(EGO) + SLOTS * len(SLOT)
         slots = observations[:, first:last].reshape(-1, SLOTS, len(SLOT))
         own = np.concatenate([observations[:, :first], observations[:, last:]], axis=1)
@@ -97,11 +80,7 @@ AnyNetwork: TypeAlias = Network | Attention
 
 
 def shapes(form: str, inputs: int, hidden: Sequence[int], outputs: int) -> dict[str, tuple[int, ...]]:
-    """Return the shape of every tensor of a network, by name.
-
-    Args:
-        form: One of ``FORMS``.
-    """
+    """Return the shape of every tensor of a network, by name."""
     found: dict[str, tuple[int, ...]] = {}
     if form == ATTENTION:
         taken = {OWN: inputs - SLOTS * len(SLOT), "other": len(SLOT)}
@@ -129,12 +108,7 @@ def tensors(network: AnyNetwork) -> dict[str, FloatArray]:
 
 
 def network_of(form: str, found: Mapping[str, FloatArray]) -> AnyNetwork:
-    """Put a network together.
-
-    Args:
-        form: One of ``FORMS``.
-        found: Its tensors by name, in the shapes of ``shapes``.
-    """
+    """Put a network together."""
     layers = range(sum(1 for name in found if name[0] == "W"))
     judge = Network([found[f"W{k}"] for k in layers], [found[f"b{k}"] for k in layers])
     if form == PERCEPTRON:
@@ -153,12 +127,7 @@ def greedy(values: FloatArray, masks: NDArray[np.bool_]) -> list[int]:
 
 
 def shares(logits: FloatArray, masks: NDArray[np.bool_]) -> FloatArray:
-    """Return the probabilities of a policy (n, actions); what is not allowed has none.
-
-    Args:
-        logits: What the network makes of each action (n, actions).
-        masks: Whether it is allowed (n, actions); at least one in each row is.
-    """
+    """Return the probabilities of a policy (n, actions); what is not allowed has none."""
     if not len(logits):
         return logits
     allowed = np.where(masks, logits, -np.inf)

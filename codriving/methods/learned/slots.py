@@ -5,33 +5,22 @@ from math import cos, hypot
 
 import numpy as np
 
-from codriving.datatypes.order import Relation
-from codriving.datatypes.road import LaneId, Straight
-from codriving.datatypes.world import Action, Intent, VehicleState
-from codriving.geometry.box import TRUE
-from codriving.geometry.lane_path import lane_path
-from codriving.geometry.path import Path
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Action, Intent, LaneId, Relation, Straight, VehicleState
+from codriving.geometry import TRUE, Path, RoadMap, lane_path
 from codriving.methods.learned.known import Other
 from codriving.methods.learned.layout import FAR, NEAR, SIDE, SLOT, SLOTS
-from codriving.reasoning.conflicts import is_open, ttcp
-from codriving.reasoning.sharing.scenes import ALIGNED, SAME_LANE
+from codriving.reasoning import ALIGNED, SAME_LANE, is_open, ttcp
 
-LEANS = 0.6
-"""A body that comes this near to a lane counts as being on it [m]; drivers who change lanes are seen early."""
+LEANS = 0.6  # A body that comes this near to a lane counts as being on it [m]; drivers who change lanes are seen early
 
+# A gap beside is free if it is longer than this [m], and this much longer for each m/s of closing speed [s].
 STANDSTILL, HEADWAY = 3.0, 0.5
-"""A gap beside is free if it is longer than this [m], and this much longer for each m/s of closing speed [s]."""
 
 Ahead = tuple[float, Other] | None
 
 
 class Beside:
-    """Looks at the own lane and at the lanes beside it, in coordinates of the lane that is steered for.
-
-    Args:
-        top: Highest target speed [m/s].
-    """
+    """Looks at the own lane and at the lanes beside it, in coordinates of the lane that is steered for."""
 
     def __init__(self, road_map: RoadMap, top: float) -> None:
         self._road_map, self._top = road_map, top
@@ -40,11 +29,7 @@ class Beside:
     def look(
         self, ego: VehicleState, intent: Intent, place: float, others: Sequence[Other], available: Collection[Action]
     ) -> tuple[Ahead, list[float]]:
-        """Return who is next ahead with the gap [m], and the numbers of ``SIDES`` and ``LANE_CHANGE``.
-
-        Args:
-            place: Its arc length on its route [m].
-        """
+        """Return who is next ahead with the gap [m], and the numbers of ``SIDES`` and ``LANE_CHANGE``."""
         lane = intent.target_lane
         (own, offset), *places = self._along(lane, [(ego.x, ego.y), *((o.x, o.y) for o in others)])
         width = self._road_map.lanes[lane].width
@@ -113,22 +98,16 @@ def _free(ego: VehicleState, found: dict[tuple[int, bool], tuple[float, Other]],
     return True
 
 
-LEADER_URGENCY = 10.0
-"""Gap to a leader that counts as one unit of urgency [m]."""
+LEADER_URGENCY = 10.0  # Gap to a leader that counts as one unit of urgency [m]
 
+# The first number of a slot: whether the CAV goes first by the rules of the road; 1 where there are none.
 GOES_FIRST, EQUAL, GIVES_WAY = 1.0, 0.6, 0.2
-"""The first number of a slot: whether the CAV goes first by the rules of the road; 1 where there are none."""
 
-Slot = tuple[float, tuple[float, ...]]
-"""Urgency, the smaller the more urgent, and the numbers."""
+Slot = tuple[float, tuple[float, ...]]  # Urgency, the smaller the more urgent, and the numbers
 
 
 def leader_ahead(ego: VehicleState, route: str, place: float, others: Iterable[Other], road_map: RoadMap) -> Ahead:
-    """Return who drives next ahead on the own route, and the gap from bumper to bumper [m].
-
-    Args:
-        place: Its arc length there [m].
-    """
+    """Return who drives next ahead on the own route, and the gap from bumper to bumper [m]."""
     path = road_map.paths[route]
     nearest: Ahead = None
     for other in others:
@@ -142,12 +121,7 @@ def leader_ahead(ego: VehicleState, route: str, place: float, others: Iterable[O
 
 
 def leader_slot(gap: float, other: Other, top: float) -> Slot:
-    """Return a leader as a slot.
-
-    Args:
-        gap: Gap to it [m].
-        top: Highest target speed [m/s].
-    """
+    """Return a leader as a slot."""
     x = gap / (NEAR * top)
     return gap / LEADER_URGENCY, (1.0, float(other.is_cav), 1.0, 0.0, x, x, 0.0, other.speed / top, other.target / top)
 
@@ -171,11 +145,6 @@ def conflict_slots(
     """Yield the most urgent open conflict with each of the others, as a slot.
 
     Of a vehicle that may take several routes the most urgent zone counts.
-
-    Args:
-        place: Its arc length there [m].
-        top: Highest target speed [m/s].
-        priority: Rank of its lane by the rules of the road; None where these do not count.
     """
     near, far = NEAR * top, FAR * top
     for other in others:

@@ -17,8 +17,7 @@ from codriving.errors import WeightsError
 from codriving.methods.learned.layout import ACTIONS, FAMILIES, FAR, NEAR, VERSION, feature_count
 from codriving.methods.learned.network import FORMS, PERCEPTRON, AnyNetwork, network_of, shapes, tensors
 
-CLOSE = 1e-6
-"""Numbers of a road and of the weights that differ by less are the same."""
+CLOSE = 1e-6  # Numbers of a road and of the weights that differ by less are the same
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,23 +6,17 @@ from math import inf
 
 import numpy as np
 
-from codriving.geometry.box import PLANNING
-from codriving.geometry.zone import ConflictZone
+from codriving.geometry import PLANNING, ConflictZone
 from codriving.methods.noncoop_game.payoff import Array, Flags, Temper
 from codriving.methods.single_vehicle.encounters import Encounter, leaders
 from codriving.methods.single_vehicle.lane_choice import Side
-from codriving.reasoning.conflicts import SLOWEST
-from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.idm import IntelligentDriver
+from codriving.reasoning import SLOWEST, IntelligentDriver, Moment
 
-ACCELERATIONS: Array = np.array([2.0, 0.0, -2.0, -4.0])
-"""What each player can choose from [m/s2]."""
+ACCELERATIONS: Array = np.array([2.0, 0.0, -2.0, -4.0])  # What each player can choose from [m/s2]
 
-YIELDS, STAYS = -2.0, 0.0
-"""Acceleration of a follower who yields, and of one who does not [m/s2]."""
+YIELDS, STAYS = -2.0, 0.0  # Acceleration of a follower who yields, and of one who does not [m/s2]
 
-KEEP, CHANGE = 0, 1
-"""Rows of the game."""
+KEEP, CHANGE = 0, 1  # Rows of the game
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,14 +51,7 @@ class PassingGame(Game):
 
 
 def passing_game(met: Sequence[Encounter], speed: float, top: float, hold: float, times: Array) -> PassingGame:
-    """Work out all outcomes with one other vehicle, the worst of all ways that it may take.
-
-    Args:
-        speed: Speed of the ego vehicle [m/s].
-        top: Highest target speed [m/s].
-        hold: How long an acceleration is held [s].
-        times: Times of the horizon, the first of them 0 (k,) [s].
-    """
+    """Work out all outcomes with one other vehicle, the worst of all ways that it may take."""
     own, own_last = constant_acceleration(speed, ACCELERATIONS, hold, top, times)
     its, its_last = constant_acceleration(met[0].other.speed, ACCELERATIONS, hold, top, times)
     gaps = np.full((len(own), len(its)), np.inf)
@@ -111,12 +98,7 @@ def _overlap(zone: ConflictZone, own: Array, its: Array) -> Flags:
 
 
 def lane_game(moment: Moment, ego: str, side: Side, idm: IntelligentDriver, hold: float, times: Array) -> Game:
-    """Work out all outcomes of a lane change: rows are to keep the lane and to change, columns to yield and not to.
-
-    Args:
-        hold: How long an acceleration is held [s].
-        times: Times of the horizon, the first of them 0 (k,) [s].
-    """
+    """Work out all outcomes of a lane change: rows are to keep the lane and to change, columns to yield and not to."""
     speed, top, ahead, behind = moment.scenes[ego].ego.speed, moment.forecast.model.top_speed, side.ahead, side.behind
     assert behind is not None
     assert behind.gap is not None
@@ -138,18 +120,7 @@ def lane_game(moment: Moment, ego: str, side: Side, idm: IntelligentDriver, hold
 def constant_acceleration(
     speed: float, accelerations: Array, hold: float, top: float, times: Array
 ) -> tuple[Array, Array]:
-    """Return the motions that follow from several accelerations.
-
-    Args:
-        speed: Speed now [m/s].
-        accelerations: The accelerations (n,) [m/s2].
-        hold: How long each is held; then the speed is kept [s].
-        top: Speed beyond which no vehicle accelerates [m/s].
-        times: Times from now (k,) [s].
-
-    Returns:
-        Distance travelled (n, k) [m], and the speed at the end (n,) [m/s].
-    """
+    """Return the motions that follow from several accelerations."""
     limit = np.where(accelerations > 0, max(top, speed), 0.0)
     # One that does not accelerate never comes to its limit.
     changing = np.where(accelerations == 0, 1.0, accelerations)
@@ -161,17 +132,7 @@ def constant_acceleration(
 
 
 def passage(distance: float, travelled: Array, last: Array, times: Array) -> Array:
-    """Return when each motion has covered a distance.
-
-    Args:
-        distance: The distance [m].
-        travelled: Distance travelled (n, k) [m].
-        last: Speed at the end (n,) [m/s].
-        times: Times from now, the first of them 0 (k,) [s].
-
-    Returns:
-        Time (n,) [s]; 0 if it is covered already, and inf for one that stands before it.
-    """
+    """Return when each motion has covered a distance."""
     if distance <= 0:
         return np.zeros(len(travelled))
     after = np.maximum((travelled < distance).sum(axis=1), 1)

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from codriving.datatypes.order import Precedence
+from codriving.datatypes import Precedence
 from codriving.errors import ConfigError, require_range
 from codriving.methods.noncoop_game.games import ACCELERATIONS, CHANGE, KEEP, PassingGame, lane_game, passing_game
 from codriving.methods.noncoop_game.payoff import Array, Temper, best_answer, expected_action
@@ -12,28 +12,17 @@ from codriving.methods.pidm import ProjectedIdm, closest_action, mean_accelerati
 from codriving.methods.single_vehicle.encounters import Encounter, Patience, goes_first
 from codriving.methods.single_vehicle.lane_choice import Side
 from codriving.methods.single_vehicle.method import Choice, Driver
-from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.idm import IntelligentDriver
+from codriving.reasoning import IntelligentDriver, Moment
 
-UNBRAKED = int(np.sum(ACCELERATIONS >= 0))
-"""Number of accelerations without braking; they are the first ones."""
+UNBRAKED = int(np.sum(ACCELERATIONS >= 0))  # Number of accelerations without braking; they are the first ones
 
-BRAKES = 0.5
-"""How much slower a vehicle must have become to count as braking [m/s]."""
+BRAKES = 0.5  # How much slower a vehicle must have become to count as braking [m/s]
 
 
 class NonCooperativeGame(Driver):
     """A simultaneous game of two players with a private type, replanned each decision (after Fang et al., 2024).
 
     The partner is the vehicle that is met most urgently. All others are minded as projected IDM minds them.
-
-    Args:
-        hold: How long an acceleration is held; then the speed is kept [s].
-        horizon: Time over which a game is judged [s].
-        sample: Time between two places that are compared [s].
-
-    Raises:
-        ConfigError: If a setting is out of range.
     """
 
     name = "noncoop_game"
@@ -92,11 +81,7 @@ class NonCooperativeGame(Driver):
         return Choice(action, f"{why}; it wishes {wished:+.1f} m/s2", precedences, refused, counts)
 
     def play(self, moment: Moment, ego: str, met: Sequence[Encounter]) -> tuple[float, str, Precedence]:
-        """Play against one partner.
-
-        Returns:
-            Acceleration [m/s2], why, and who goes first by that.
-        """
+        """Play against one partner."""
         speed, other = moment.scenes[ego].ego.speed, met[0].other
         game = passing_game(met, speed, moment.forecast.model.top_speed, self.hold, self.times)
         # Only who is first on every way that the partner may take can be: so two can never both believe that they are.
@@ -148,19 +133,11 @@ class UnmetExpectations:
         self._speeds: dict[tuple[str, str], float] = {}
 
     def expected_to_brake(self, ego: str, other: str, speed: float) -> None:
-        """Note that a vehicle should brake from now on.
-
-        Args:
-            speed: Its speed now [m/s].
-        """
+        """Note that a vehicle should brake from now on."""
         self._speeds[ego, other] = speed
 
     def does_not_yield(self, ego: str, other: str, speed: float) -> bool:
-        """Whether a vehicle was expected to brake before and has not; once it does, it is expected to again.
-
-        Args:
-            speed: Its speed now [m/s].
-        """
+        """Whether a vehicle was expected to brake before and has not; once it does, it is expected to again."""
         before = self._speeds.get((ego, other))
         if before is not None and speed <= before - BRAKES:
             del self._speeds[ego, other]

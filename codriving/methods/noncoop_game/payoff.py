@@ -11,11 +11,9 @@ from codriving.errors import require_range
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-CRASH = 10.0
-"""What a predicted collision costs."""
+CRASH = 10.0  # What a predicted collision costs
 
-HARDEST = 4.0
-"""Acceleration that costs the whole weight of comfort [m/s2]."""
+HARDEST = 4.0  # Acceleration that costs the whole weight of comfort [m/s2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,9 +22,6 @@ class Temper:
 
     The published game writes the safety term as 1/TTC with a positive sign, which would reward danger; a decreasing
     function of the gap in time is what is meant.
-
-    Raises:
-        ConfigError: If a number is out of range.
     """
 
     efficiency: float
@@ -42,13 +37,7 @@ class Temper:
         require_range("share", self.share, 0, 1)
 
     def payoff(self, progress: Array, accelerations: Array, gaps: Array, overlaps: Flags) -> Array:
-        """Return the payoff of every outcome of a game.
-
-        Args:
-            accelerations: Acceleration [m/s2], likewise.
-            gaps: Gap in time between the two, 0 or more (n, m) [s].
-            overlaps: Whether the two collide (n, m).
-        """
+        """Return the payoff of every outcome of a game."""
         risk = np.exp(-gaps / self.risk_time)
         return np.asarray(
             self.efficiency * progress
@@ -59,15 +48,7 @@ class Temper:
 
 
 def pure_equilibria(own: Array, other: Array) -> tuple[tuple[int, int], ...]:
-    """Return all pairs of actions from which neither gains by changing its own.
-
-    Args:
-        own: Payoff of the first player, by its action and the other's (n, m).
-        other: Payoff of the second player, likewise (n, m).
-
-    Returns:
-        Action of the first and of the second player, row by row.
-    """
+    """Return all pairs of actions from which neither gains by changing its own."""
     stable = (own >= own.max(axis=0)) & (other >= other.max(axis=1)[:, None])
     rows, columns = np.nonzero(stable)
     return tuple(zip(rows.tolist(), columns.tolist(), strict=True))
@@ -80,13 +61,6 @@ def expected_action(
 
     Of several equilibria it is the one with the largest sum of payoffs; of those that are nearly as good, the best one
     that is preferred. Without an equilibrium the second player makes the best of the worst case.
-
-    Args:
-        own: Payoff of the first player, by its action and the other's (n, m).
-        other: Payoff of the second player, likewise (n, m).
-
-    Returns:
-        Action of the second player, and that of the first one in the equilibrium; None if there is none.
     """
     found = pure_equilibria(own, other)
     if not found:
@@ -99,13 +73,6 @@ def expected_action(
 
 
 def best_answer(own: Array, actions: tuple[int, ...], shares: Array) -> tuple[int, Array]:
-    """Return the action of the largest expected payoff, if the other player may be of several types.
-
-    Args:
-        own: Payoff of the first player, by its action and the other's (n, m).
-
-    Returns:
-        The action, the first of several that are equally good, and the expected payoff of each (n,).
-    """
+    """Return the action of the largest expected payoff, if the other player may be of several types."""
     expected = own[:, list(actions)] @ shares
     return int(np.argmax(expected)), np.asarray(expected)

@@ -5,29 +5,23 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.order import Precedence
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Precedence
 from codriving.errors import require_range
 from codriving.methods.single_vehicle.encounters import Encounter, encounters, leaders
 from codriving.methods.single_vehicle.lane_choice import LaneChoice
 from codriving.methods.single_vehicle.method import Choice, Driver
-from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.idm import IntelligentDriver
-from codriving.reasoning.prediction.rollout import rollout
+from codriving.reasoning import IntelligentDriver, Moment, rollout
 
 Array = NDArray[np.float64]
 
-PREFERRED = (Action.FASTER, Action.IDLE, Action.SLOWER)
-"""The actions in the order in which they are tried."""
+PREFERRED = (Action.FASTER, Action.IDLE, Action.SLOWER)  # The actions in the order in which they are tried
 
+# Least and largest value of each setting.
 LIMITS = {"look": (0.5, 10.0), "headway": (0.0, 5.0), "standstill": (0.0, 20.0), "margin": (0.0, 5.0)}
-"""Least and largest value of each setting."""
 
-SLOW = 0.1
-"""A vehicle that is slower is taken to be so fast, so that times stay finite [m/s]."""
+SLOW = 0.1  # A vehicle that is slower is taken to be so fast, so that times stay finite [m/s]
 
-FIRM = 4.0
-"""Braking beyond which no vehicle is expected to wait any more [m/s2]."""
+FIRM = 4.0  # Braking beyond which no vehicle is expected to wait any more [m/s2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +48,6 @@ class Careful(Driver):
 
     It is the rule that stands in for a language model where none is asked: it teaches TeLL (Xu et al., 2025), whose
     own rules are not published. Lanes are changed as by the other drivers on their own.
-
-    Args:
-        look: How long an action is held and watched [s].
-        headway: Time gap to be kept to the vehicle ahead [s].
-        standstill: Distance to be kept to it at a standstill [m].
-        margin: Time between one vehicle's leaving a zone and the other's entering it [s].
     """
 
     name = "careful"

@@ -6,24 +6,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action
 from codriving.methods.single_vehicle.encounters import Encounter, Leader, WaitingDriver, leaders
 from codriving.methods.single_vehicle.lane_choice import Side
 from codriving.methods.single_vehicle.method import Choice
-from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.clearance import stays_behind
-from codriving.reasoning.prediction.idm import IntelligentDriver
-from codriving.reasoning.prediction.rollout import Plan
+from codriving.reasoning import IntelligentDriver, Moment, Plan, stays_behind
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-PREFERRED = (Action.FASTER, Action.IDLE, Action.SLOWER)
-"""Actions along the lane, the most wanted first."""
+PREFERRED = (Action.FASTER, Action.IDLE, Action.SLOWER)  # Actions along the lane, the most wanted first
 
+# Each of them, taken again and again; a forecast has to know these plans.
 CONSTANT: tuple[Plan, ...] = tuple((action,) for action in PREFERRED)
-"""Each of them, taken again and again; a forecast has to know these plans."""
 
+# Least and largest value of each setting.
 LIMITS = {
     "horizon": (0.5, 10.0),
     "headway": (0.0, 5.0),
@@ -36,28 +33,14 @@ LIMITS = {
     "patience": (0.0, 60.0),
     "clear": (0.0, 10.0),
 }
-"""Least and largest value of each setting."""
 
+# A gap that grows by less does not grow: two who drive at the same speed are not told apart by rounding [m].
 OPENS = 1e-6
-"""A gap that grows by less does not grow: two who drive at the same speed are not told apart by rounding [m]."""
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class Demonstrated(WaitingDriver):
-    """A driver that takes the first acceptable action (after the reasoning shown in Wen et al., 2024).
-
-    Args:
-        horizon: Time over which an action is predicted, taken again and again [s].
-        headway: Time gap that is kept to the vehicle ahead [s].
-        merging: The same on the other lane for a change that the route asks for [s].
-        gap: Distance that is kept to the vehicle ahead, however slow [m].
-        stop_gap: Distance from a zone at which the vehicle waits [m].
-        after: Time between the other one's leaving a zone and the vehicle's entering it [s].
-        tie: Difference of the times to a zone up to which both count as there at once [s].
-        firm: Braking beyond which no vehicle is expected to wait any more [m/s2].
-        patience: Time after which a waiting vehicle may start into an empty zone [s].
-        clear: Time that a vehicle which moves towards that zone must be away from it beyond what the start takes [s].
-    """
+    """A driver that takes the first acceptable action (after the reasoning shown in Wen et al., 2024)."""
 
     name = "demonstrated"
     variant = ""
@@ -75,11 +58,7 @@ class Demonstrated(WaitingDriver):
         self._idm = IntelligentDriver(gap=self.gap)
 
     def decide(self, moment: Moment, ego: str) -> Choice:
-        """Change lanes if that is wanted and safe, or take the first action along the lane that is acceptable.
-
-        Args:
-            moment: Its forecast has to know the plans of ``CONSTANT``.
-        """
+        """Change lanes if that is wanted and safe, or take the first action along the lane that is acceptable."""
         waited = self._patience.waited(ego, moment.scenes[ego].ego.speed, moment.time)
         change, refused = self.lanes.choose(moment, ego, self._idm, self.refuses)
         if change is not None:
@@ -113,9 +92,6 @@ class Demonstrated(WaitingDriver):
         An action is acceptable if, taken again and again for the horizon, it keeps the headway to all vehicles ahead,
         and enters no zone in which another vehicle may be first before it has left the way. All others are expected to
         keep the speed.
-
-        Returns:
-            The reason by action, without those that are acceptable.
         """
         travel, times = self._motions(moment, ego, PREFERRED)
         sample = moment.forecast.sample

@@ -5,29 +5,21 @@ from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import ClassVar
 
-from codriving.datatypes.order import Conflict, Precedence, Relation
-from codriving.datatypes.situation import Role, SceneDescription, TrackedVehicle
+from codriving.datatypes import Conflict, Precedence, Relation, Role, SceneDescription, TrackedVehicle
 from codriving.errors import require_range
-from codriving.geometry.box import Footprint
-from codriving.geometry.road_map import RoadMap
-from codriving.geometry.zone import ConflictZone
+from codriving.geometry import ConflictZone, Footprint, RoadMap
 from codriving.methods.single_vehicle.lane_choice import LaneChoice
 from codriving.methods.single_vehicle.method import Driver
-from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.expectation import is_behind
-from codriving.reasoning.sharing.tracking import STANDING
+from codriving.reasoning import STANDING, Moment, is_behind
 
-FRONT = 2.5
-"""Distance from the centre of a vehicle to its front [m]."""
+FRONT = 2.5  # Distance from the centre of a vehicle to its front [m]
 
+# Size of vehicles that pass by one that stands, at a walking pace and with a small margin [m].
 CLOSE = Footprint(5.6, 2.4)
-"""Size of vehicles that pass by one that stands, at a walking pace and with a small margin [m]."""
 
-TURN = 1.0
-"""Time by which those who wait start one after another [s]."""
+TURN = 1.0  # Time by which those who wait start one after another [s]
 
-SAME = 0.25
-"""Difference of the times for which two have been standing that does not count [s]."""
+SAME = 0.25  # Difference of the times for which two have been standing that does not count [s]
 
 OWN, OTHER = True, False
 
@@ -69,12 +61,7 @@ def _ahead(ways: tuple[tuple[str, float], ...], route: str, place: float, road_m
 
 
 def lead(zone: ConflictZone, place: float, other: float) -> float:
-    """Return by how much another vehicle is ahead on a stretch that two routes share [m]; negative if it is behind.
-
-    Args:
-        place: Arc length of the vehicle [m].
-        other: Arc length of the other vehicle [m].
-    """
+    """Return by how much another vehicle is ahead on a stretch that two routes share [m]; negative if it is behind."""
     if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING) or zone.merge_i is None or zone.merge_j is None:
         return (other - zone.entry_j) - (place - zone.entry_i)
     return (other - zone.merge_j) - (place - zone.merge_i)
@@ -126,11 +113,7 @@ class Encounter:
 
 
 def encounters(moment: Moment, ego: str, firm: float) -> tuple[Encounter, ...]:
-    """Return everything that is open, most urgent first.
-
-    Args:
-        firm: Braking beyond which no vehicle is expected to wait any more [m/s2].
-    """
+    """Return everything that is open, most urgent first."""
     stops = float(moment.forecast.reach(moment.scenes[ego].ego.speed, True).least[-1])
     others = {n.id: n for n in moment.scenes[ego].neighbours}
     return tuple(
@@ -166,12 +149,6 @@ def goes_first(e: Encounter, road_map: RoadMap, tie: float) -> tuple[bool, str]:
 
     A vehicle in the zone goes first; then one that can no longer wait while the other one can; then the one that is
     there earlier by more than a tie. A tie is broken by right before left, and by the names of the two.
-
-    Args:
-        tie: Difference of the times to the zone up to which both count as there at once [s].
-
-    Returns:
-        Whether the ego vehicle goes first, and why it goes or does not.
     """
     c = e.conflict
     if e.inside != e.other_inside:
@@ -216,12 +193,7 @@ class Patience:
         self._since: dict[str, float] = {}
 
     def waited(self, name: str, speed: float, time: float) -> float:
-        """Return how long a CAV has been standing, now that its speed is known [s].
-
-        Args:
-            speed: Its speed [m/s].
-            time: Simulated time [s].
-        """
+        """Return how long a CAV has been standing, now that its speed is known [s]."""
         if speed >= STANDING:
             self._since.pop(name, None)
             return 0.0
@@ -258,11 +230,7 @@ class WaitingDriver(Driver):
         return encounters(moment, ego, self.firm)
 
     def may_start(self, moment: Moment, ego: str, met: Sequence[Encounter], waited: float) -> bool:
-        """Whether the CAV has waited long enough, and no vehicle is in the zones ahead or will be before it is through.
-
-        Args:
-            waited: How long it has been standing [s].
-        """
+        """Whether the CAV has waited long enough, and the zones ahead are and stay empty until it is through."""
         if not met or waited < self.patience or not all(_lets_start(e, moment, ego, self.clear) for e in met):
             return False
         # Of those who stand, the one that has waited longest starts first; its start is seen before the next one's.
@@ -272,11 +240,7 @@ class WaitingDriver(Driver):
     def yields_to(
         self, moment: Moment, ego: str, met: Sequence[Encounter], starts: str = ""
     ) -> tuple[list[tuple[Encounter, str]], tuple[Precedence, ...]]:
-        """Return the encounters in which the other one may be there first, each with why, and who goes first by that.
-
-        Args:
-            starts: Why the CAV goes first everywhere; empty if it does not.
-        """
+        """Return the encounters in which the other one may be there first, each with why, and the order by that."""
         before: list[tuple[Encounter, str]] = []
         precedences: dict[str, Precedence] = {}
         for e in met:

@@ -3,17 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from codriving.datatypes.road import LaneId
-from codriving.datatypes.situation import Role, TrackedVehicle
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, LaneId, Role, TrackedVehicle
 from codriving.errors import require_range
-from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.idm import IntelligentDriver
-from codriving.reasoning.safety.safety_input import SIDES
-from codriving.reasoning.sharing.scenes import with_roles
+from codriving.reasoning import SIDES, IntelligentDriver, Moment, with_roles
 
-SLOWEST = 3.0
-"""Below this speed lanes are not changed just to get farther, since both would be blocked [m/s]."""
+SLOWEST = 3.0  # Below this speed lanes are not changed just to get farther, since both would be blocked [m/s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,24 +29,16 @@ class Side:
     far: str
 
 
+# Largest value of each setting.
 LIMITS = {"politeness": 1, "threshold": 5, "safe_braking": 10, "least_gap": 50, "alongside": 50, "cool_down": 60}
-"""Largest value of each setting."""
 
+# Says why a change in front of the new follower is refused; nothing if it is not.
 LetsIn = Callable[[Moment, str, Side, IntelligentDriver], str]
-"""Says why a change in front of the new follower is refused; nothing if it is not."""
 
 
 @dataclass(eq=False, repr=False)
 class LaneChoice:
-    """Changes lanes by MOBIL (Kesting, Treiber and Helbing, 2007), and where the route asks for it.
-
-    Args:
-        threshold: Gain below which lanes are not changed [m/s2].
-        safe_braking: Hardest braking asked of oneself and of the new follower [m/s2].
-        least_gap: Smallest free distance to either neighbour on the new lane [m].
-        alongside: Distance along the road within which a vehicle two lanes away could change to the same lane [m].
-        cool_down: Time between two lane changes [s].
-    """
+    """Changes lanes by MOBIL (Kesting, Treiber and Helbing, 2007), and where the route asks for it."""
 
     politeness: float
     threshold: float
@@ -146,11 +132,7 @@ class LaneChoice:
 
 
 def look(moment: Moment, ego: str, action: Action, alongside: float) -> Side | None:
-    """Return the lane beside; None if no route along it leads where the vehicle goes.
-
-    Args:
-        alongside: Distance along the road within which a vehicle two lanes away counts [m].
-    """
+    """Return the lane beside; None if no route along it leads where the vehicle goes."""
     scene, changes = moment.scenes[ego], moment.road_map.changes
     start, end, index = scene.intent.target_lane
     lane = (start, end, index + SIDES[action])

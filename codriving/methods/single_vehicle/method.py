@@ -5,14 +5,20 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from codriving.datatypes.order import PassingOrder, Precedence
-from codriving.datatypes.parts import Method
-from codriving.datatypes.situation import ActionAssessment, Decision, ReasonedDeliberation, Situation
-from codriving.datatypes.world import Action, DrivingModel, WorldState
-from codriving.geometry.road_map import RoadMap
-from codriving.reasoning.conflicts import SLOWEST
-from codriving.reasoning.perception import Moment, single_vehicle_perception
-from codriving.reasoning.prediction.forecast import Forecast
+from codriving.datatypes import (
+    Action,
+    ActionAssessment,
+    Decision,
+    DrivingModel,
+    Method,
+    PassingOrder,
+    Precedence,
+    ReasonedDeliberation,
+    Situation,
+    WorldState,
+)
+from codriving.geometry import RoadMap
+from codriving.reasoning import SLOWEST, Forecast, Moment, single_vehicle_perception
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,16 +8,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import log2
 
-from codriving.datatypes.experience import Memory, Verdict
-from codriving.datatypes.situation import ActionAssessment, Decision, Situation
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, ActionAssessment, Decision, Memory, Situation, Verdict
 
-BY_SPEED = (Action.SLOWER, Action.IDLE, Action.FASTER)
-"""Actions along the lane from the slowest to the fastest."""
+BY_SPEED = (Action.SLOWER, Action.IDLE, Action.FASTER)  # Actions along the lane from the slowest to the fastest
 
 
+# How an effect speaks for or against an action.
 SIGNS = {Verdict.EASED: 1.0, Verdict.INTENSIFIED: -1.0, Verdict.TOO_CAUTIOUS: -1.0}
-"""How an effect speaks for or against an action."""
 
 
 def reconsider(situation: Situation, decision: Decision) -> Decision:
@@ -27,9 +24,6 @@ def reconsider(situation: Situation, decision: Decision) -> Decision:
     conflict or was too cautious. If they speak against what the rules decide, the CAV does something else that is safe
     and that they speak less against: something faster if it was too cautious, and otherwise what they speak most for,
     or what gets it farthest if they are silent. If there is no such action, the decision stands.
-
-    Returns:
-        A decision; ``recalled`` names the memories that changed it.
     """
     if not situation.memories or any(a.safe and a.reasons for a in situation.assessments):
         return decision

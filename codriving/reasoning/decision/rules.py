@@ -4,36 +4,26 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 
-from codriving.datatypes.situation import Decision, Role, SceneDescription, Situation, TrackedVehicle
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Decision, Role, SceneDescription, Situation, TrackedVehicle
 from codriving.reasoning.decision.cases import reconsider
 
-EAGERNESS = (Action.FASTER, Action.IDLE, Action.SLOWER)
-"""Actions along the lane from the most to the least progress."""
+EAGERNESS = (Action.FASTER, Action.IDLE, Action.SLOWER)  # Actions along the lane from the most to the least progress
 
-SIDES = {Action.LANE_LEFT: -1, Action.LANE_RIGHT: 1}
-"""By how much a lane change changes the index of the lane."""
+SIDES = {Action.LANE_LEFT: -1, Action.LANE_RIGHT: 1}  # By how much a lane change changes the index of the lane
 
-OVERTAKES = 0.05
-"""Share of the progress that a lane change must gain to be worth it."""
+OVERTAKES = 0.05  # Share of the progress that a lane change must gain to be worth it
 
-STANDS = 0.5
-"""Below this speed a CAV stands [m/s]."""
+STANDS = 0.5  # Below this speed a CAV stands [m/s]
 
-SLOWEST_CHANGE = 3.0
-"""Lanes are not changed just to get farther below this speed [m/s]."""
+SLOWEST_CHANGE = 3.0  # Lanes are not changed just to get farther below this speed [m/s]
 
-YIELDS = 15.0
-"""Progress that is given up for a lane change that the route asks for [m]."""
+YIELDS = 15.0  # Progress that is given up for a lane change that the route asks for [m]
 
-TOLERANCE = 0.02
-"""Share of the progress that is given up to be closer when the way becomes free earlier than expected."""
+TOLERANCE = 0.02  # Share of the progress that is given up to be closer when the way becomes free earlier than expected
 
-HORIZON = 10.0
-"""How far ahead the progress of an action is predicted [s]."""
+HORIZON = 10.0  # How far ahead the progress of an action is predicted [s]
 
-HEADWAY = 2.0
-"""The vehicle ahead is not to be considered if the CAV stays this far behind at least [s]."""
+HEADWAY = 2.0  # The vehicle ahead is not to be considered if the CAV stays this far behind at least [s]
 
 
 class Decider(ABC):

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.geometry.box import TRUE
+from codriving.datatypes import TrackedVehicle
+from codriving.geometry import TRUE
 from codriving.reasoning.conflicts import is_open
 from codriving.reasoning.execution.violations import SIZES, Meeting, meetings_behind, minds_humans
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
@@ -29,11 +29,6 @@ class Joint:
 
 class JointPlans(JointPlanner):
     """The plans of one moment.
-
-    Args:
-        margin: Time between one vehicle's leaving a zone and the next one's entering it [s].
-        pad: Additional room along the route [m].
-        headway: Time gap to the vehicle ahead [s].
 
     Attributes:
         travels: Distance of each plan over time, by id (plans, steps + 1) [m].
@@ -159,11 +154,7 @@ class JointPlans(JointPlanner):
         return JointPlan(not joint.stuck, travels, self.moment.forecast.sample, len(joint.stuck))
 
     def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
-        """Return the least time between one vehicle's leaving a shared zone and the other's entering it.
-
-        Returns:
-            Time [s]; inf if they share no zone or one of them does not come there within the horizon.
-        """
+        """Return the least time between one vehicle's leaving a shared zone and the other's entering it."""
         least, time = float("inf"), self.moment.forecast.time_to
         mine, theirs = plan.travels[one], plan.travels[other]
         (route, place), (way, there) = self.vehicles[one].routes[0], self.vehicles[other].routes[0]

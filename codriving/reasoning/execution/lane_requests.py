@@ -2,10 +2,8 @@
 
 from collections.abc import Mapping
 
-from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.situation import Role, SceneDescription
-from codriving.datatypes.world import Action, VehicleState
-from codriving.geometry.box import TRUE
+from codriving.datatypes import Action, PassingOrder, Role, SceneDescription, VehicleState
+from codriving.geometry import TRUE
 from codriving.reasoning.ordering.protocol import Request
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.expectation import Expected
@@ -13,17 +11,13 @@ from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.safety.adjacent_lane import HEADWAY, MARGIN, check_adjacent
 from codriving.reasoning.safety.safety_input import SIDES, safety_input
 
-POLITENESS = 0.3
-"""Weight of what those behind gain or lose (MOBIL)."""
+POLITENESS = 0.3  # Weight of what those behind gain or lose (MOBIL)
 
-THRESHOLD = 0.2
-"""Incentive below which no CAV wants to change lanes [m/s2]."""
+THRESHOLD = 0.2  # Incentive below which no CAV wants to change lanes [m/s2]
 
-COOL_DOWN = 2.0
-"""Time between two lane changes of one CAV [s]."""
+COOL_DOWN = 2.0  # Time between two lane changes of one CAV [s]
 
-SLOWEST = 3.0
-"""Below this speed lanes are not changed just to get farther, since both would be blocked [m/s]."""
+SLOWEST = 3.0  # Below this speed lanes are not changed just to get farther, since both would be blocked [m/s]
 
 DRIVER = IntelligentDriver()
 

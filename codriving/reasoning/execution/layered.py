@@ -1,9 +1,8 @@
 """The layered executor, a reference: the first group accelerates, all others hold back and wait for their turn."""
 
-from codriving.datatypes.situation import Role
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Role
 from codriving.errors import require_range
-from codriving.geometry.box import TRUE
+from codriving.geometry import TRUE
 from codriving.reasoning.execution.joint_planner import JointPlans
 from codriving.reasoning.execution.planned import Drive, Executor, drive_of
 from codriving.reasoning.ordering.problem import window
@@ -12,25 +11,15 @@ from codriving.reasoning.perception import Moment
 from codriving.reasoning.safety.safety_input import then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
 
-LATE = 0.1
-"""Difference of times that does not count [s]."""
+LATE = 0.1  # Difference of times that does not count [s]
 
-ROOM = 1.0
-"""Room that is left to the vehicle ahead [m]."""
+ROOM = 1.0  # Room that is left to the vehicle ahead [m]
 
 
 class Layered(Executor):
     """Layers follow from the order; a layer goes when the one before it has left.
 
     Kept to show how much of a result is owed to the executor and how little to the order.
-
-    Args:
-        gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
-        hold: Distance to the first zone within which a waiting vehicle slows down; farther away it keeps its speed [m].
-        headway: Time gap below which a vehicle slows down behind the one ahead [s].
-
-    Raises:
-        ConfigError: If a setting is out of range.
     """
 
     name = "layered"

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action
 from codriving.errors import require_range
 from codriving.reasoning.execution.joint_planner import Joint, JointPlans
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
@@ -72,15 +72,6 @@ class Planned(Executor):
 
     The motions of those that go first are known exactly, so that the others enter gaps at speed. What each planned a
     step ago is among its plans of the next step, so that CAVs alone never lose a plan that works.
-
-    Args:
-        gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
-        margin: The same for plans [s].
-        pad: Additional room along the route [m].
-        headway: Time gap to the vehicle ahead [s].
-
-    Raises:
-        ConfigError: If a setting is out of range.
     """
 
     name = "planned"

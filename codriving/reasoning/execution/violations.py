@@ -7,45 +7,29 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codriving.datatypes.order import Conflict
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.geometry.box import PLANNING, TRUE, Footprint
-from codriving.geometry.zone import ConflictZone
+from codriving.datatypes import Conflict, TrackedVehicle
+from codriving.geometry import PLANNING, TRUE, ConflictZone, Footprint
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Steps, first_true
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.conflict_lane import BODY
 
+# Sizes of vehicles for planning; a smaller one is taken where vehicles are already closer together than the larger.
 SIZES: tuple[Footprint, ...] = (PLANNING, BODY, TRUE)
-"""Sizes of vehicles for planning; a smaller one is taken where vehicles are already closer together than the larger."""
 
-ROOM = 0.5
-"""Room that a driver who gives way leaves to the zone [m]."""
+ROOM = 0.5  # Room that a driver who gives way leaves to the zone [m]
 
 
 def passes_too_early(zone: ConflictZone, ego: Array, first: Array, lag: int, pad: float) -> Steps:
-    """Return when a vehicle that goes second first enters a zone that the one before it has not left for long enough.
-
-    Args:
-        ego: Its arc length over time (plans, n) [m].
-        first: Arc length of the one that goes first, over time (at least n,) [m].
-        pad: Additional room along the route [m].
-    """
+    """Return when the second vehicle first enters a zone that the one before it has not left for long enough."""
     n = ego.shape[1]
     gone = np.concatenate([np.full(lag, first[0]), first])[:n]
     return first_true(gone <= zone.over_i.highest(ego) + pad)
 
 
 def meets(zone: ConflictZone, ego: Array, low: Array, high: Array, lag: int, pad: float) -> Steps:
-    """Return when a vehicle first touches the stretch on which another one may be.
-
-    Args:
-        ego: Its arc length over time (plans, n) [m].
-        low: Least arc length of the other over time (at least n,) [m].
-        high: Greatest arc length of the other over time (at least n,) [m].
-        pad: Additional room along the route [m].
-    """
+    """Return when a vehicle first touches the stretch on which another one may be."""
     n = ego.shape[1]
     least = np.concatenate([np.full(lag, low[0]), low])[:n]
     most = np.concatenate([high[lag:n], np.full(min(lag, n), high[n - 1])])

@@ -7,26 +7,21 @@ from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise, permutations
 from math import inf
 
-from codriving.datatypes.order import ApproachingVehicle, Instance, Pair, PassingOrder, Precedence
+from codriving.datatypes import ApproachingVehicle, Instance, Pair, PassingOrder, Precedence
 from codriving.reasoning.ordering.problem import Problem, pose
 from codriving.reasoning.ordering.schedule import schedule, start_time
 from codriving.reasoning.perception import Moment
 
-TURN_YIELDS = 1.0
-"""A turning vehicle goes before one that goes straight only if it can do so this much earlier [s]."""
+TURN_YIELDS = 1.0  # A turning vehicle goes before one that goes straight only if it can do so this much earlier [s]
 
-KEEPS_TURN = 1.0
-"""An order that has been agreed on is changed only if the other one can go this much earlier [s]."""
+KEEPS_TURN = 1.0  # An order that has been agreed on is changed only if the other one can go this much earlier [s]
 
 
-SAVES = 0.3
-"""Time that another order must save all vehicles together to be taken [s]."""
+SAVES = 0.3  # Time that another order must save all vehicles together to be taken [s]
 
-SWAP = 1.0
-"""Time that it must save for each pair whose order it turns round that has been agreed on [s]."""
+SWAP = 1.0  # Time that it must save for each pair whose order it turns round that has been agreed on [s]
 
-TRIES = 600
-"""Orders that are tried at most."""
+TRIES = 600  # Orders that are tried at most
 
 
 class Coordinator(ABC):
@@ -85,14 +80,7 @@ class RuleCoordinator(Coordinator):
 
 
 def improve(times: Mapping[str, float], instance: Instance, previous: PassingOrder | None) -> dict[str, float]:
-    """Let single vehicles go earlier or later as long as that saves all vehicles together enough time.
-
-    Args:
-        times: The schedule to begin with: when each vehicle passes [s].
-
-    Returns:
-        When each vehicle passes, in the order in which they go [s].
-    """
+    """Let single vehicles go earlier or later as long as that saves all vehicles together enough time."""
     order = sorted(times, key=lambda name: (times[name], name))
     best = schedule(instance, order)
     if best is None:
@@ -112,11 +100,7 @@ def improve(times: Mapping[str, float], instance: Instance, previous: PassingOrd
 
 
 def cost(planned: Mapping[str, float], instance: Instance, previous: PassingOrder | None) -> float:
-    """Return the time that all vehicles lose in a schedule, with a surcharge for each agreed pair turned round [s].
-
-    Args:
-        planned: When each vehicle passes, in the order in which they go [s].
-    """
+    """Return the time that all vehicles lose in a schedule, with a surcharge for each agreed pair turned round [s]."""
     place = {name: k for k, name in enumerate(planned)}
     agreed = () if previous is None else previous.precedences
     turned = sum(p.first in place and p.second in place and place[p.first] > place[p.second] for p in agreed)
@@ -162,13 +146,7 @@ def agreement(
 
 
 def reason_human(human_first: bool, begin: float, end: float, time: float) -> str:
-    """Explain the order of a CAV and a human driver.
-
-    Args:
-        begin: Time from which the CAV could no longer pass in front [s].
-        end: Time from which the CAV can pass behind [s].
-        time: When the CAV will pass [s].
-    """
+    """Explain the order of a CAV and a human driver."""
     if human_first:
         return f"a human driver shares no intent and may use the zone until {end:.1f} s from now"
     if begin == inf:
@@ -183,12 +161,6 @@ def without_cycles(
 
     CAVs are scheduled one after another, so a circle always runs through a human driver, and one of its links
     contradicts the times; that link is dropped. A CAV that is not told to go first has to be able to wait.
-
-    Args:
-        times: When each vehicle is expected to pass [s]; settles what the pairs leave open.
-
-    Returns:
-        The precedences that are kept, and all vehicles from first to last.
     """
     kept = list(precedences)
     while True:

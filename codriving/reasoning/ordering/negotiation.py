@@ -7,17 +7,14 @@ from zlib import crc32
 
 import numpy as np
 
-from codriving.datatypes.order import PassingOrder, Precedence
-from codriving.datatypes.road import Turn
-from codriving.datatypes.situation import SceneDescription, TrackedVehicle
+from codriving.datatypes import PassingOrder, Precedence, SceneDescription, TrackedVehicle, Turn
 from codriving.reasoning.conflicts import ttcp
 from codriving.reasoning.ordering.coordinator import TURN_YIELDS, Coordinator, without_cycles
 from codriving.reasoning.ordering.problem import passes_first
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.sharing.sharing import OwnOrder
 
-DOUBT = 1.0
-"""Difference of arrival times at which a guess is right in about three of four cases [s]."""
+DOUBT = 1.0  # Difference of arrival times at which a guess is right in about three of four cases [s]
 
 
 class Negotiation(ABC):

@@ -4,10 +4,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 
-from codriving.datatypes.order import Instance, Pair
+from codriving.datatypes import Instance, Pair
 
-CHANGES = 1.0
-"""Time by which the one that could be there later must have become the earlier one [s]."""
+CHANGES = 1.0  # Time by which the one that could be there later must have become the earlier one [s]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,32 +7,24 @@ from math import inf
 
 import numpy as np
 
-from codriving.datatypes.order import ApproachingVehicle, Conflict, Instance, Pair, Relation
-from codriving.datatypes.road import Turn
-from codriving.datatypes.situation import Role, TrackedVehicle
-from codriving.geometry.box import TRUE, Footprint
-from codriving.geometry.road_map import RoadMap
-from codriving.geometry.zone import ConflictZone
+from codriving.datatypes import ApproachingVehicle, Conflict, Instance, Pair, Relation, Role, TrackedVehicle, Turn
+from codriving.geometry import TRUE, ConflictZone, Footprint, RoadMap
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.right_of_way import gives_way
 
-GAP = 1.0
-"""Time between one vehicle's leaving a zone and the next one's entering it [s]."""
+GAP = 1.0  # Time between one vehicle's leaving a zone and the next one's entering it [s]
 
+# Time between a CAV's leaving a zone and the earliest moment at which a human driver can be there [s].
 CERTAIN_GAP = 0.4
-"""Time between a CAV's leaving a zone and the earliest moment at which a human driver can be there [s]."""
 
-FOLLOWS = (7.0, 0.5)
-"""Distance [m] at top speed and time [s] between two vehicles of one lane, one behind the other."""
+FOLLOWS = (7.0, 0.5)  # Distance [m] at top speed and time [s] between two vehicles of one lane, one behind the other
 
+# Size of a vehicle that has stopped in time [m]: the body, and the room that others need to cut a corner beside it.
 COMMITTED = Footprint(5.6, 2.8)
-"""Size of a vehicle that has stopped in time [m]: the body, and the room that others need to cut a corner beside it."""
 
-FOREVER = 1e3
-"""Beyond every time that matters [s]."""
+FOREVER = 1e3  # Beyond every time that matters [s]
 
-Window = tuple[float, float]
-"""Begin and end of a time that a human driver blocks [s]."""
+Window = tuple[float, float]  # Begin and end of a time that a human driver blocks [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,11 +94,7 @@ def _separations(moment: Moment, vehicles: Mapping[str, ApproachingVehicle], gap
 
 @lru_cache(maxsize=4096)
 def lag_length(zone: ConflictZone, seen_from_i: bool = True) -> float:
-    """Return how much farther along the first vehicle must be than the second, at most, through a zone.
-
-    Returns:
-        Largest difference of the two arc lengths at which they still touch [m].
-    """
+    """Return how much farther along the first vehicle must be than the second, at most, through a zone."""
     begin, end = (zone.entry_j, zone.exit_j) if seen_from_i else (zone.entry_i, zone.exit_i)
     s = np.arange(begin, end + 0.25, 0.5)
     front = np.asarray((zone.over_j if seen_from_i else zone.over_i).highest(s))
@@ -166,14 +154,7 @@ def _add_windows(moment: Moment, vehicle: ApproachingVehicle) -> dict[str, Windo
 
 
 def window(moment: Moment, c: Conflict, human: TrackedVehicle, reference: float) -> Window:
-    """Return the times at which a CAV must not pass its reference point because of a human driver.
-
-    Args:
-        reference: Arc length of the CAV's reference point [m].
-
-    Returns:
-        Begin and end, inf for a driver who gives way [s].
-    """
+    """Return the times at which a CAV must not pass its reference point because of a human driver."""
     forecast = moment.forecast
     if gives_way(c, human, moment.road_map):
         return inf, inf

@@ -8,8 +8,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.order import Instance, Pair
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Instance, Pair
 
 
 @dataclass(frozen=True, slots=True)

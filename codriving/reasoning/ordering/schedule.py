@@ -4,11 +4,10 @@ from collections.abc import Mapping, Sequence
 from itertools import combinations
 from math import isfinite
 
-from codriving.datatypes.order import ApproachingVehicle, Instance, Pair
+from codriving.datatypes import ApproachingVehicle, Instance, Pair
 from codriving.errors import require_range
 
-Times = Mapping[str, float]
-"""When each vehicle passes its reference point, in the order in which they go [s]."""
+Times = Mapping[str, float]  # When each vehicle passes its reference point, in the order in which they go [s]
 
 
 def start_time(vehicle: ApproachingVehicle, earlier: Times, separation: Mapping[Pair, float]) -> float:
@@ -78,8 +77,8 @@ def timed(instance: Instance, order: Sequence[str]) -> dict[str, float]:
     return times
 
 
+# A wait counts as this much at most, so that one without end does not make all others look alike [s].
 LONGEST_WAIT = 60.0
-"""A wait counts as this much at most, so that one without end does not make all others look alike [s]."""
 
 
 class Objective:
@@ -123,8 +122,7 @@ def left(vehicle: ApproachingVehicle, time: float) -> float:
     return min(max(time, -LONGEST_WAIT), LONGEST_WAIT) + vehicle.crossing
 
 
-SLACK = 1e-9
-"""Times that differ by less are equal [s]."""
+SLACK = 1e-9  # Times that differ by less are equal [s]
 
 
 def earliest_slot(instance: Instance, name: str, scheduled: Times) -> float:

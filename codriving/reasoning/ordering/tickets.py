@@ -4,15 +4,13 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from codriving.datatypes.order import ApproachingVehicle, Instance, Pair
+from codriving.datatypes import ApproachingVehicle, Instance, Pair
 from codriving.errors import require_range
 from codriving.reasoning.ordering.schedule import Times, repaired
 
-CONTROL_RADIUS = 60.0
-"""Distance to the reference point from which on a vehicle holds a ticket [m]."""
+CONTROL_RADIUS = 60.0  # Distance to the reference point from which on a vehicle holds a ticket [m]
 
-TIE = 1e-6
-"""Tickets that lie no farther apart are equal [s]."""
+TIE = 1e-6  # Tickets that lie no farther apart are equal [s]
 
 
 class Ticket(NamedTuple):

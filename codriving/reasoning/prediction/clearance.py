@@ -3,17 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.geometry.zone import ConflictZone
+from codriving.geometry import ConflictZone
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Steps = NDArray[np.int64]
 
-REACTION = 1.0
-"""Time after which a driver brakes for a vehicle that is in the way [s]."""
+REACTION = 1.0  # Time after which a driver brakes for a vehicle that is in the way [s]
 
-BRAKING = 4.0
-"""Braking that can be expected of a driver for a vehicle that is in the way [m/s2]."""
+BRAKING = 4.0  # Braking that can be expected of a driver for a vehicle that is in the way [m/s2]
 
 
 def stays_behind(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: float) -> Flags:
@@ -33,32 +31,13 @@ def stays_behind(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: fl
 
 
 def stays_ahead(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: float) -> Flags:
-    """Whether the ego vehicle has left a zone before the other one can enter it.
-
-    Args:
-        ego: Arc length of the ego vehicle over time (plans, n) [m].
-        other: Arc length of the other vehicle over time (n,), the most that it may reach, or one for each plan
-            (plans, n) [m].
-        pad: Additional room along the route [m].
-
-    Returns:
-        One flag a plan (plans,).
-    """
+    """Whether the ego vehicle has left a zone before the other one can enter it."""
     earlier = np.concatenate([np.repeat(ego[:, :1], lag, axis=1), ego[:, : ego.shape[1] - lag]], axis=1)
     return np.asarray((earlier > zone.front(other) + pad).all(axis=1))
 
 
 def reacts(zone: ConflictZone, ego: Array, other: Array, sample: float) -> Array:
-    """Let a driver brake, after a reaction time, once the ego vehicle is in a zone ahead of it.
-
-    Args:
-        ego: Arc length of the ego vehicle over time (n,) [m].
-        other: Arc length of the driver over time, the most that it may reach (n,) [m].
-        sample: Time between two samples [s].
-
-    Returns:
-        Arc length of the driver over time (n,) [m].
-    """
+    """Let a driver brake, after a reaction time, once the ego vehicle is in a zone ahead of it."""
     sees = int(np.searchsorted(ego, zone.entry_i)) + round(REACTION / sample)
     if sees >= len(other) - 1:
         return other
@@ -73,14 +52,6 @@ def first_true(flags: Flags) -> Steps:
 
 
 def first_overlap(zone: ConflictZone, ego: Array, other: Array) -> Steps:
-    """Step at which two motions first overlap in a zone.
-
-    Args:
-        ego: Arc length of the ego vehicle over time (plans, n) [m].
-        other: Arc length of the other vehicle over time (n,) [m].
-
-    Returns:
-        One step a plan (plans,); n where they never overlap.
-    """
+    """Step at which two motions first overlap in a zone."""
     begin, end = zone.blocked(other)
     return first_true((ego >= begin) & (ego <= end))

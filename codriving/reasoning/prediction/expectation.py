@@ -5,23 +5,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codriving.datatypes.order import PassingOrder, Relation
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import Action
-from codriving.geometry.zone import ConflictZone
+from codriving.datatypes import Action, PassingOrder, Relation, TrackedVehicle
+from codriving.geometry import ConflictZone
 from codriving.reasoning.conflicts import is_open
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Flags, stays_behind
 from codriving.reasoning.prediction.rollout import PLANS, STARTS_WITH
 
+# Time gap to the vehicle ahead that is planned for [s]; the safety check alone would allow less or ask for more.
 HEADWAY = 0.8
-"""Time gap to the vehicle ahead that is planned for [s]; the safety check alone would allow less or ask for more."""
 
-EARLY = 0.3
-"""Weight of the mean distance within the horizon against the distance at its end."""
+EARLY = 0.3  # Weight of the mean distance within the horizon against the distance at its end
 
+# Time after which a vehicle that changes lanes is off the lane that it leaves [s]; measured at 5 to 30 m/s.
 CLEARS = 1.6
-"""Time after which a vehicle that changes lanes is off the lane that it leaves [s]; measured at 5 to 30 m/s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,12 +66,6 @@ def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str,
     """Plan every vehicle that one CAV knows of in the passing order against those before it.
 
     Human drivers are expected to keep their speed on each route that they may take.
-
-    Args:
-        lag: Samples that should lie between one vehicle's leaving a zone and the next one's entering it.
-
-    Returns:
-        Expected motions by id: one a route that the vehicle may be on or reaches onto, that of its intent first.
     """
     vehicles = moment.vehicles[ego]
     found = {v.id: expect_human(moment, v) for v in vehicles.values() if not v.is_cav}
@@ -124,14 +115,7 @@ def keeps_order(
     lag: int,
     minds_conflicts: bool,
 ) -> Flags:
-    """Whether a vehicle that one CAV knows of stays behind all vehicles that drive ahead or go first.
-
-    Args:
-        places: Its arc length there over time, for as long as it is to be minded (plans, n) [m].
-
-    Returns:
-        One flag a plan (plans,).
-    """
+    """Whether a vehicle that one CAV knows of stays behind all vehicles that drive ahead or go first."""
     keeps: Flags = np.ones(len(places), dtype=np.bool_)
     place = float(places[0, 0])
     vehicles = moment.vehicles[ego]
@@ -156,25 +140,12 @@ def worth(travels: Array) -> Array:
     """Return what a plan is worth: the distance at the end of the horizon, and a little of being closer before.
 
     Without the second part a vehicle that has to wait beyond the horizon would put off its approach for ever.
-
-    Args:
-        travels: Distance of each plan over time (plans, n) [m].
-
-    Returns:
-        Distance (plans,) [m].
     """
     return np.asarray((1 - EARLY) * travels[:, -1] + EARLY * travels.mean(axis=1))
 
 
 def progress_by_action(gained: Array) -> dict[Action, float]:
-    """Return how far a vehicle gets at best after each action.
-
-    Args:
-        gained: Distance of each plan; -inf where it would not keep the order (plans,) [m].
-
-    Returns:
-        Distance [m]; no entry for an action with which the order cannot be kept.
-    """
+    """Return how far a vehicle gets at best after each action."""
     best = {first: float(max(gained[list(plans)])) for first, plans in STARTS_WITH.items()}
     return {action: gain for action, gain in best.items() if gain > -np.inf}
 

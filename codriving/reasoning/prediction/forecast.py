@@ -6,31 +6,25 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes.world import Action, DrivingModel
+from codriving.datatypes import Action, DrivingModel
 from codriving.reasoning.prediction.clearance import Array
 from codriving.reasoning.prediction.rollout import Plan, canonical, travelled
 
-HORIZON = 10.0
-"""How far ahead each vehicle is predicted [s]; a stop from top speed and a crossing both fit in."""
+HORIZON = 10.0  # How far ahead each vehicle is predicted [s]; a stop from top speed and a crossing both fit in
 
-SAMPLE = 0.2
-"""Time between two samples of a prediction, rounded to whole simulation steps [s]."""
+SAMPLE = 0.2  # Time between two samples of a prediction, rounded to whole simulation steps [s]
 
-SPEEDING = 1.0
-"""How much faster than the CAVs' top speed a human driver may become [m/s]."""
+SPEEDING = 1.0  # How much faster than the CAVs' top speed a human driver may become [m/s]
 
-HARD_BRAKING = 6.0
-"""Hardest braking expected of a human driver [m/s2]."""
+HARD_BRAKING = 6.0  # Hardest braking expected of a human driver [m/s2]
 
-HARD_ACCELERATION = 1.5
-"""Hardest acceleration expected of a human driver [m/s2]."""
+HARD_ACCELERATION = 1.5  # Hardest acceleration expected of a human driver [m/s2]
 
 
+# How far a driver may be from where constant speed leads: at once [m], more each second [m/s], and at most [m].
 DRIFT = (1.0, 0.75, 6.0)
-"""How far a driver may be from where constant speed leads: at once [m], more each second [m/s], and at most [m]."""
 
-FEW = 8
-"""Plans that are looked up one by one in no time."""
+FEW = 8  # Plans that are looked up one by one in no time
 
 BRAKE: Plan = (Action.SLOWER,)
 GO: Plan = (Action.FASTER,)
@@ -181,44 +175,19 @@ class Forecast:
 
 
 def likely_distances(speed: float, times: Array) -> tuple[Array, Array]:
-    """Distances between which a driver is expected, who goes on at about the present speed.
-
-    Args:
-        speed: Speed now [m/s].
-        times: Times from now (n,) [s].
-
-    Returns:
-        The least and the most, each (n,) [m].
-    """
+    """Distances between which a driver is expected, who goes on at about the present speed."""
     at_once, each_second, at_most = DRIFT
     drift = np.minimum(at_once + each_second * times, at_most)
     return np.maximum(speed * times - drift, 0.0), speed * times + drift
 
 
 def slowest(speed: float, times: Array) -> Array:
-    """Distance of a driver who brakes hard at once.
-
-    Args:
-        speed: Speed now [m/s].
-        times: Times from now (n,) [s].
-
-    Returns:
-        Distance travelled (n,) [m].
-    """
+    """Distance of a driver who brakes hard at once."""
     braking = np.minimum(times, speed / HARD_BRAKING)
     return np.asarray(speed * braking - HARD_BRAKING * braking**2 / 2)
 
 
 def fastest(speed: float, times: Array, limit: float) -> Array:
-    """Distance of a driver who accelerates hard up to the speed limit.
-
-    Args:
-        speed: Speed now [m/s].
-        times: Times from now (n,) [s].
-        limit: Speed limit [m/s]; a driver who is faster keeps the speed.
-
-    Returns:
-        Distance travelled (n,) [m].
-    """
+    """Distance of a driver who accelerates hard up to the speed limit."""
     rising = np.minimum(times, max(limit - speed, 0.0) / HARD_ACCELERATION)
     return np.asarray(speed * times + HARD_ACCELERATION * rising**2 / 2 + HARD_ACCELERATION * rising * (times - rising))

@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 from math import sqrt
 
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import VehicleState
+from codriving.datatypes import TrackedVehicle, VehicleState
 
-Pair = tuple[TrackedVehicle | None, TrackedVehicle | None]
-"""The vehicles next ahead and behind on a lane."""
+Pair = tuple[TrackedVehicle | None, TrackedVehicle | None]  # The vehicles next ahead and behind on a lane
 
 
 @dataclass(frozen=True, slots=True)

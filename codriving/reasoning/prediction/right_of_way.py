@@ -1,20 +1,15 @@
 """Whether a human driver has to give way, and can: the traffic rules that all drivers know (Section III-C.3)."""
 
-from codriving.datatypes.order import Conflict
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Conflict, TrackedVehicle
+from codriving.geometry import RoadMap
 
-STANDS = 2.0
-"""A human driver who has been standing before the zone for this long is taken to give way [s]."""
+STANDS = 2.0  # A human driver who has been standing before the zone for this long is taken to give way [s]
 
-COMFORT = 4.0
-"""Braking up to which a driver who has to give way is expected to begin to do so [m/s2]."""
+COMFORT = 4.0  # Braking up to which a driver who has to give way is expected to begin to do so [m/s2]
 
-FIRM = 5.0
-"""Braking up to which a driver who is seen to brake is expected to go on with it [m/s2]."""
+FIRM = 5.0  # Braking up to which a driver who is seen to brake is expected to go on with it [m/s2]
 
-FRONT = 2.5
-"""Distance from the centre of a vehicle to its front [m]."""
+FRONT = 2.5  # Distance from the centre of a vehicle to its front [m]
 
 
 def gives_way(c: Conflict, human: TrackedVehicle, road_map: RoadMap) -> str:
@@ -25,9 +20,6 @@ def gives_way(c: Conflict, human: TrackedVehicle, road_map: RoadMap) -> str:
     CAV in the junction already. No other driver is relied on.
 
     On unregulated roads, too, a driver who has to leave a lane that ends gives way to those on the lane beside.
-
-    Returns:
-        The reason in words; empty if it is not expected to give way.
     """
     if human.standing >= STANDS:
         return "the human driver has been standing and gives way"

@@ -6,27 +6,24 @@ from functools import lru_cache
 
 import numpy as np
 
-from codriving.datatypes.world import Action, DrivingModel
+from codriving.datatypes import Action, DrivingModel
 from codriving.reasoning.prediction.clearance import Array
 
-Plan = tuple[Action, ...]
-"""Actions, one a decision; the last one is repeated for ever."""
+Plan = tuple[Action, ...]  # Actions, one a decision; the last one is repeated for ever
 
+# Steps of the target speed that an action asks for; every other action leaves the target alone.
 CHANGE = {Action.SLOWER: -1, Action.FASTER: 1}
-"""Steps of the target speed that an action asks for; every other action leaves the target alone."""
 
 
-FIRST = (Action.FASTER, Action.IDLE, Action.SLOWER)
-"""What a vehicle may do now, most progress first."""
+FIRST = (Action.FASTER, Action.IDLE, Action.SLOWER)  # What a vehicle may do now, most progress first
 
-WAITS = (0, 1, 2, 3, 4, 6, 8, 11, 14)
-"""For how many decisions it may then slow down before it goes for good."""
+WAITS = (0, 1, 2, 3, 4, 6, 8, 11, 14)  # For how many decisions it may then slow down before it goes for good
 
+# For how many decisions it may then slow down or accelerate before it keeps its speed, as one does behind a leader.
 HOLDS = (0, 1, 2, 4)
-"""For how many decisions it may then slow down or accelerate before it keeps its speed, as one does behind a leader."""
 
+# For how many decisions it may then keep its speed before it goes for good, to arrive moving when the way is free.
 ROLLS = (1, 2, 3, 4, 6, 8, 11)
-"""For how many decisions it may then keep its speed before it goes for good, to arrive moving when the way is free."""
 
 
 def _after(first: Action) -> Iterator[Plan]:
@@ -37,13 +34,13 @@ def _after(first: Action) -> Iterator[Plan]:
     yield first, Action.SLOWER
 
 
+# Every plan: something now, then slowing down or rolling for a while or for good, then going or keeping the speed.
 PLANS: tuple[Plan, ...] = tuple(dict.fromkeys(plan for first in FIRST for plan in _after(first)))
-"""Every plan: something now, then slowing down or rolling for a while or for good, then going or keeping the speed."""
 
+# Indices of the plans that begin with an action.
 STARTS_WITH: dict[Action, tuple[int, ...]] = {
     first: tuple(i for i, plan in enumerate(PLANS) if plan[0] is first) for first in FIRST
 }
-"""Indices of the plans that begin with an action."""
 
 
 def canonical(plan: Plan) -> Plan:
@@ -62,8 +59,7 @@ def _changes(plans: tuple[Plan, ...], decisions: int) -> Array:
     return found
 
 
-_known_changes = lru_cache(maxsize=64)(_changes)
-"""The same for libraries, which are asked for at every step."""
+_known_changes = lru_cache(maxsize=64)(_changes)  # The same for libraries, which are asked for at every step
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,15 +127,7 @@ def travelled(
     stride: int,
     paired: bool = False,
 ) -> Array:
-    """Return the distances of `rollout` at every `stride`-th step, bit for bit, without working out the others.
-
-    Args:
-        speeds: Speed of each state (n,) [m/s].
-        targets: Target speed of each state (n,) [m/s].
-
-    Returns:
-        Distance travelled (n, len(plans), samples + 1), or (n, samples + 1) if paired; contiguous [m].
-    """
+    """Return the distances of `rollout` at every `stride`-th step, bit for bit, without working out the others."""
     law, substeps = _law(model), model.substeps
     decisions = -(-samples * stride // substeps)
     changes = _changes(plans, decisions) if paired else _known_changes(plans, decisions)

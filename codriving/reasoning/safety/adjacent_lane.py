@@ -1,34 +1,25 @@
 """Second layer: a lane change must not collide with the vehicles of the adjacent lane (Section III-C.4)."""
 
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, TrackedVehicle
 from codriving.reasoning.prediction.expectation import is_behind
 from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.safety_input import SIDES, SafetyInput
 from codriving.reasoning.safety.same_lane import check_ahead
 
-MARGIN = 2.0
-"""Free distance to keep to the one behind [m]."""
+MARGIN = 2.0  # Free distance to keep to the one behind [m]
 
-HEADWAY = 0.5
-"""Time gap to leave to the one behind [s]."""
+HEADWAY = 0.5  # Time gap to leave to the one behind [s]
 
-COMFORT = 4.0
-"""Braking that the one behind may be asked for [m/s2]."""
+COMFORT = 4.0  # Braking that the one behind may be asked for [m/s2]
 
+# Distance along the road within which a vehicle on the far side of the lane could change onto it as well [m].
 SIDE_GAP = 8.0
-"""Distance along the road within which a vehicle on the far side of the lane could change onto it as well [m]."""
 
-HELD_UP = -0.3
-"""Below this acceleration a human driver is held up and may want to change lanes [m/s2]."""
+HELD_UP = -0.3  # Below this acceleration a human driver is held up and may want to change lanes [m/s2]
 
 
 def check_adjacent(given: SafetyInput) -> dict[Action, list[str]]:
-    """Remove lane changes after which the CAV could not stop behind who is ahead there, or cuts in on who is behind.
-
-    Returns:
-        Reasons by action; no entry where the action is safe.
-    """
+    """Remove lane changes after which the CAV could not stop behind who is ahead there, or cuts in on who is behind."""
     found: dict[Action, list[str]] = {}
     must = given.scene.must_change is not None
     for action in given.actions:

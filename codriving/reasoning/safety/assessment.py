@@ -5,8 +5,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from codriving.datatypes.situation import ActionAssessment
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, ActionAssessment
 from codriving.reasoning.conflicts import is_open
 from codriving.reasoning.prediction.clearance import Array, Steps, first_overlap
 from codriving.reasoning.prediction.expectation import is_behind, plans_that_keep, progress_by_action, worth
@@ -66,21 +65,13 @@ def _assessments(
 
 
 def arrivals(given: SafetyInput, k: int) -> tuple[float, ...]:
-    """Return when each conflict zone is reached at the earliest after an action.
-
-    Returns:
-        Time from now, one a conflict [s].
-    """
+    """Return when each conflict zone is reached at the earliest after an action."""
     travelled = given.goes[k] - given.scene.place
     return tuple(given.forecast.time_to(c.distances[0], travelled) for c in given.conflicts)
 
 
 def progress(given: SafetyInput, action: Action) -> float | None:
-    """Return how far the CAV gets within the horizon if it begins with an action and then keeps the order.
-
-    Returns:
-        Distance [m]; None if the order cannot be kept then.
-    """
+    """Return how far the CAV gets within the horizon if it begins with an action and then keeps the order."""
     if action in LONGITUDINAL:
         return given.expected[given.scene.ego.id][0].progress.get(action)
     there = given.beside(action)

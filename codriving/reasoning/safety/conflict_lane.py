@@ -4,34 +4,23 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from codriving.datatypes.order import Conflict, Relation
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import Action
-from codriving.geometry.box import TRUE, Footprint
-from codriving.geometry.zone import ConflictZone
+from codriving.datatypes import Action, Conflict, Relation, TrackedVehicle
+from codriving.geometry import TRUE, ConflictZone, Footprint
 from codriving.reasoning.prediction.clearance import Array, Flags, first_overlap, reacts, stays_ahead, stays_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.safety_input import SafetyInput
 
-PAD = 0.5
-"""Room along the route beyond the planning footprint [m]."""
+PAD = 0.5  # Room along the route beyond the planning footprint [m]
 
-BODY = Footprint(5.2, 2.3)
-"""A vehicle's body with the room for cutting a corner, beside a vehicle that gives way [m]."""
+BODY = Footprint(5.2, 2.3)  # A vehicle's body with the room for cutting a corner, beside a vehicle that gives way [m]
 
-BOUND_LAG = 0.4
-"""Time between the least that the other vehicle can do and the CAV's entering [s]."""
+BOUND_LAG = 0.4  # Time between the least that the other vehicle can do and the CAV's entering [s]
 
-AHEAD_LAG = 0.4
-"""Time between the CAV's leaving and the earliest moment at which the other vehicle can be there [s]."""
+AHEAD_LAG = 0.4  # Time between the CAV's leaving and the earliest moment at which the other vehicle can be there [s]
 
 
 def check_conflicts(given: SafetyInput) -> dict[Action, list[str]]:
-    """Remove actions after which the CAV could neither stop before a zone that is not its turn, nor pass it in time.
-
-    Returns:
-        Reasons by action; no entry where the action is safe.
-    """
+    """Remove actions after which the CAV could neither stop before a zone that is not its turn, nor pass it in time."""
     found: dict[Action, list[str]] = {}
     conflicts = [c for c in given.conflicts if not changes_before(given, c)]
     passes = []
@@ -57,11 +46,7 @@ def check_conflicts(given: SafetyInput) -> dict[Action, list[str]]:
 
 
 def gets_through(given: SafetyInput, conflicts: Sequence[Conflict], passes: Sequence[Flags]) -> Flags:
-    """Whether the CAV can pass, or comes behind a vehicle that moves as expected, in each of its conflicts.
-
-    Returns:
-        One flag an action (actions,).
-    """
+    """Whether the CAV can pass, or comes behind a vehicle that moves as expected, in each of its conflicts."""
     through: Flags = np.ones(len(given.actions), dtype=np.bool_)
     for c, goes in zip(conflicts, passes, strict=True):
         if not goes.all():
@@ -79,11 +64,7 @@ def changes_before(given: SafetyInput, c: Conflict) -> bool:
 
 
 def expected_to_pass(given: SafetyInput, c: Conflict) -> Flags:
-    """Whether the CAV comes behind the other vehicle if that one moves as expected.
-
-    Returns:
-        One flag an action (actions,).
-    """
+    """Whether the CAV comes behind the other vehicle if that one moves as expected."""
     zone = given.road_map.zones(*c.routes)[c.zone]
     for motion in given.expected[c.other]:
         if motion.route == c.routes[1]:
@@ -111,9 +92,6 @@ def passes_and_stops(given: SafetyInput, c: Conflict) -> tuple[Flags, Flags]:
     It can pass if it comes behind whatever the other one does at the least, or ahead of the earliest moment at which
     the other one can be there; it can stop if braking keeps it out of the way. A vehicle that gives way need not be
     feared as long as the bodies keep clear when it brakes.
-
-    Returns:
-        Whether it can pass and whether it can stop, one flag an action each (actions,).
     """
     zone, other = given.road_map.zones(*c.routes)[c.zone], given.vehicles[c.other]
     reach, place = given.forecast.reach(other.speed, other.is_cav), c.places[1]
@@ -139,15 +117,7 @@ def passes_and_stops(given: SafetyInput, c: Conflict) -> tuple[Flags, Flags]:
 
 
 def keeps_clear(given: SafetyInput, c: Conflict, motions: Array, other: Array) -> Flags:
-    """Whether the CAV and another vehicle that gives way would not touch, the bodies a little larger than they are.
-
-    Args:
-        motions: Arc length of the CAV over time, from the same place (motions, n) [m].
-        other: Arc length of the other vehicle over time (n,) [m].
-
-    Returns:
-        One flag a motion (motions,).
-    """
+    """Whether the CAV and another vehicle that gives way would not touch, the bodies a little larger than they are."""
     for footprint in (BODY, TRUE):
         zones = given.road_map.zones(*c.routes, footprint)
         overlaps = [first_overlap(z, motions, other) for z in zones]

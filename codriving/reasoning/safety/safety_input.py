@@ -5,10 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from codriving.datatypes.order import Conflict, PassingOrder, Precedence
-from codriving.datatypes.situation import SceneDescription, TrackedVehicle
-from codriving.datatypes.world import Action
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Action, Conflict, PassingOrder, Precedence, SceneDescription, TrackedVehicle
+from codriving.geometry import RoadMap
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array
@@ -19,11 +17,10 @@ from codriving.reasoning.sharing.scenes import with_conflicts, with_roles
 
 LONGITUDINAL = (Action.SLOWER, Action.IDLE, Action.FASTER)
 
+# By how much a lane change changes the index of the lane.
 SIDES: Mapping[Action, int] = {Action.LANE_LEFT: -1, Action.LANE_RIGHT: 1}
-"""By how much a lane change changes the index of the lane."""
 
-CAR_LENGTH = 5.0
-"""Length of a vehicle [m]."""
+CAR_LENGTH = 5.0  # Length of a vehicle [m]
 
 
 def then_stop(action: Action) -> Plan:
@@ -36,8 +33,8 @@ def then_go(action: Action) -> Plan:
     return (action, Action.FASTER)
 
 
+# Every plan that the safety layers look at.
 CONTINUATIONS: tuple[Plan, ...] = tuple(f(a) for f in (then_stop, then_go) for a in LONGITUDINAL)
-"""Every plan that the safety layers look at."""
 
 
 @dataclass(frozen=True, slots=True)

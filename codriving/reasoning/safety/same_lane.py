@@ -2,31 +2,22 @@
 
 import numpy as np
 
-from codriving.datatypes.situation import Role, TrackedVehicle
-from codriving.datatypes.world import Action
+from codriving.datatypes import Action, Role, TrackedVehicle
 from codriving.reasoning.prediction.clearance import Array, stays_behind
 from codriving.reasoning.prediction.expectation import CLEARS, is_behind
 from codriving.reasoning.safety.safety_input import SafetyInput
 
-STANDSTILL_GAP = 1.0
-"""Free distance that must be left to the leading vehicle when both have stopped [m]."""
+STANDSTILL_GAP = 1.0  # Free distance that must be left to the leading vehicle when both have stopped [m]
 
-LANE_END_GAP = 2.0
-"""Room that a CAV which has to change lanes and cannot must still have when it has stopped [m]."""
+LANE_END_GAP = 2.0  # Room that a CAV which has to change lanes and cannot must still have when it has stopped [m]
 
-ABRUPT = 4.0
-"""Braking that must not be forced on the rearing vehicle [m/s2]."""
+ABRUPT = 4.0  # Braking that must not be forced on the rearing vehicle [m/s2]
 
-REACTION = 0.5
-"""Time after which the rearing vehicle begins to brake [s]."""
+REACTION = 0.5  # Time after which the rearing vehicle begins to brake [s]
 
 
 def check_ahead(given: SafetyInput) -> dict[Action, list[str]]:
-    """Remove actions after which the CAV could not stop behind the vehicle ahead if it brakes hard.
-
-    Returns:
-        Reasons by action; no entry where the action is safe.
-    """
+    """Remove actions after which the CAV could not stop behind the vehicle ahead if it brakes hard."""
     found: dict[Action, list[str]] = {}
     travelled = given.stops - given.scene.place
     # While it changes lanes, the CAV is on two of them.
@@ -69,11 +60,7 @@ def check_ahead(given: SafetyInput) -> dict[Action, list[str]]:
 
 
 def check_behind(given: SafetyInput) -> dict[Action, list[str]]:
-    """Remove actions that force the rearing vehicle to brake abruptly.
-
-    Returns:
-        Reasons by action; no entry where the action is safe.
-    """
+    """Remove actions that force the rearing vehicle to brake abruptly."""
     behind = given.scene.next_in(Role.REARING)
     if behind is None or behind.gap is None:
         return {}
@@ -86,14 +73,7 @@ def check_behind(given: SafetyInput) -> dict[Action, list[str]]:
 
 
 def forced_braking(given: SafetyInput, behind: TrackedVehicle, goes: Array) -> float:
-    """Return how hard the rearing vehicle would have to brake to come down to the CAV's speed.
-
-    Args:
-        goes: Arc length of the CAV over time (n,) [m].
-
-    Returns:
-        Braking [m/s2]; inf if there is no room left.
-    """
+    """Return how hard the rearing vehicle would have to brake to come down to the CAV's speed."""
     forecast = given.forecast
     done = max(1, int(np.searchsorted(forecast.times, forecast.model.decision_interval + 1e-9)) - 1)
     closing = behind.speed - float(goes[done] - goes[done - 1]) / forecast.sample

@@ -4,23 +4,28 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import cos, pi
 
-from codriving.datatypes.order import Conflict
-from codriving.datatypes.road import LaneId
-from codriving.datatypes.situation import LaneChange, Role, SceneDescription, TrackedVehicle
-from codriving.datatypes.world import Intent, Kind, VehicleState, WorldState
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import (
+    Conflict,
+    Intent,
+    Kind,
+    LaneChange,
+    LaneId,
+    Role,
+    SceneDescription,
+    TrackedVehicle,
+    VehicleState,
+    WorldState,
+)
+from codriving.geometry import RoadMap
 from codriving.reasoning.sharing.sharing import Detections
 from codriving.reasoning.sharing.tracking import Tracking
 
-SAME_LANE = 2.0
-"""A vehicle is on the ego lane within this lateral offset, half a lane [m]."""
+SAME_LANE = 2.0  # A vehicle is on the ego lane within this lateral offset, half a lane [m]
 
-ALIGNED = cos(pi / 3)
-"""A vehicle on the ego lane heads within 60 degrees of it, where its heading is known."""
+ALIGNED = cos(pi / 3)  # A vehicle on the ego lane heads within 60 degrees of it, where its heading is known
 
 
-NO_ROLE: tuple[Role, float | None] = (Role.OTHER, None)
-"""Who is neither ahead nor behind; conflicts are found later."""
+NO_ROLE: tuple[Role, float | None] = (Role.OTHER, None)  # Who is neither ahead nor behind; conflicts are found later
 
 
 def describe_scenes(

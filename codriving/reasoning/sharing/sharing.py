@@ -6,16 +6,13 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Literal
 
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import DrivingModel, Intent, VehicleState, WorldState
+from codriving.datatypes import DrivingModel, Intent, TrackedVehicle, VehicleState, WorldState
 from codriving.errors import ConfigError
-from codriving.geometry.box import TRUE
+from codriving.geometry import TRUE
 
-USUAL_LENGTH = TRUE.length
-"""Length that is assumed of a vehicle which is only sensed [m]."""
+USUAL_LENGTH = TRUE.length  # Length that is assumed of a vehicle which is only sensed [m]
 
-Detections = dict[str, tuple[TrackedVehicle, ...]]
-"""Vehicles that each CAV knows of, by id of the CAV."""
+Detections = dict[str, tuple[TrackedVehicle, ...]]  # Vehicles that each CAV knows of, by id of the CAV
 
 
 class StateSharing(ABC):
@@ -87,11 +84,11 @@ class IntentSharing:
 
 SHARED_INTENTS = IntentSharing(shared=True, finds_conflicts=True)
 
+# Without intent sharing, no conflicts between others and oneself can be detected (paper Section IV-B).
 HIDDEN_INTENTS = IntentSharing(shared=False, finds_conflicts=False)
-"""Without intent sharing, no conflicts between others and oneself can be detected (paper Section IV-B)."""
 
+# Nothing is shared, and conflicts are found with all ways that the map allows.
 GUESSED_INTENTS = IntentSharing(shared=False, finds_conflicts=True)
-"""Nothing is shared, and conflicts are found with all ways that the map allows."""
 
 
 OwnOrder = Literal["own_view", "same_rule", "independent"]

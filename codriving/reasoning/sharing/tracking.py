@@ -2,24 +2,19 @@
 
 from math import acos, cos, hypot
 
-from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import Intent
-from codriving.geometry.road_map import RoadMap
+from codriving.datatypes import Intent, TrackedVehicle
+from codriving.geometry import RoadMap
 
-STANDING = 0.5
-"""Below this speed a vehicle counts as standing [m/s]."""
+STANDING = 0.5  # Below this speed a vehicle counts as standing [m/s]
 
+# Lateral offset [m] and difference of headings [rad] that count as one step of misfit to a route.
 SIDE, TURN = 0.5, 0.15
-"""Lateral offset [m] and difference of headings [rad] that count as one step of misfit to a route."""
 
-CLEARLY = 2.0
-"""Steps of misfit by which a route must be worse than the best one to be ruled out; cars do cut corners."""
+CLEARLY = 2.0  # Steps of misfit by which a route must be worse than the best one to be ruled out; cars do cut corners
 
-Places = tuple[tuple[str, float], ...]
-"""Routes and the arc length on each [m]."""
+Places = tuple[tuple[str, float], ...]  # Routes and the arc length on each [m]
 
-Spot = tuple[float, float, float | None]
-"""Where a vehicle is seen [m], and its heading [rad] if it is known."""
+Spot = tuple[float, float, float | None]  # Where a vehicle is seen [m], and its heading [rad] if it is known
 
 
 class Tracking:
