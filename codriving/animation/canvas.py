@@ -24,17 +24,12 @@ Floats = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stamp:
-    """A line of text in its colours, ready to be pressed onto a sheet.
-
-    Attributes:
-        dx: From the beginning of the line to the left edge [px].
-        dy: From the middle of the capitals to the upper edge [px].
-    """
+    """A line of text in its colours, ready to be pressed onto a sheet."""
 
     ink: Floats
     keep: Floats
-    dx: int
-    dy: int
+    dx: int  # From the beginning of the line to the left edge [px]
+    dy: int  # From the middle of the capitals to the upper edge [px]
 
 
 @lru_cache(maxsize=64)

@@ -12,44 +12,29 @@ from codriving.geometry import RoadMap
 
 @dataclass(frozen=True, slots=True)
 class DrawnVehicle:
-    """A vehicle on the road.
-
-    Attributes:
-        x: Position [m].
-        y: Position [m].
-        heading: Heading [rad].
-        speed: Speed [m/s].
-        route: Id of the planned route; None for a human driver, whose mind nobody reads.
-        length: Length [m].
-        width: Width [m].
-    """
+    """A vehicle on the road."""
 
     id: str
     kind: Kind
-    x: float
-    y: float
-    heading: float
-    speed: float
-    route: str | None = None
-    length: float = 5.0
-    width: float = 2.0
+    x: float  # Position [m]
+    y: float  # Position [m]
+    heading: float  # Heading [rad]
+    speed: float  # Speed [m/s]
+    route: str | None = None  # Id of the planned route; None for a human driver, whose mind nobody reads
+    length: float = 5.0  # Length [m]
+    width: float = 2.0  # Width [m]
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnConflict:
-    """An open conflict between two vehicles.
-
-    Attributes:
-        dttcp: The time difference [s].
-        ways: Route of each, with the arc length at which it comes to where they would meet [m]; None if that is not
-            known.
-    """
+    """An open conflict between two vehicles."""
 
     one: str
     other: str
     severity: Severity
-    dttcp: float
+    dttcp: float  # The time difference [s]
     certain: bool
+    # Route of each, with the arc length at which it comes to where they would meet [m]; None if that is not known.
     ways: tuple[tuple[str, float], tuple[str, float]] | None = None
 
 
@@ -64,20 +49,15 @@ class DrawnDecision:
 
 @dataclass(frozen=True, slots=True)
 class FrameContent:
-    """One moment of an episode.
+    """One moment of an episode."""
 
-    Attributes:
-        time: Simulated time [s].
-        order: The passing order, first to last; None if there is none that all share.
-        arrived: Arrival time of each CAV that has arrived [s], by id; None if it is not known when.
-    """
-
-    time: float
+    time: float  # Simulated time [s]
     bodies: tuple[DrawnVehicle, ...] = ()
     thoughts: Mapping[str, DrawnDecision] = field(default_factory=dict)
     meetings: tuple[DrawnConflict, ...] = ()
-    order: tuple[str, ...] | None = None
+    order: tuple[str, ...] | None = None  # The passing order, first to last; None if there is none that all share
     order_title: str = ""
+    # Arrival time of each CAV that has arrived [s], by id; None if it is not known when.
     arrived: Mapping[str, float | None] = field(default_factory=dict)
     outcome: Outcome | None = None
     routes: Mapping[str, str] = field(default_factory=dict)

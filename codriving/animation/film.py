@@ -37,18 +37,12 @@ _SAME_BYTES = ("-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bite
 
 @dataclass(frozen=True, slots=True)
 class Reel:
-    """The shape of a film.
+    """The shape of a film."""
 
-    Attributes:
-        format: ``mp4`` or ``gif``.
-        rows: Height of a frame [px].
-        columns: Width of a frame [px].
-    """
-
-    format: str
+    format: str  # ``mp4`` or ``gif``
     rate: Fraction
-    rows: int
-    columns: int
+    rows: int  # Height of a frame [px]
+    columns: int  # Width of a frame [px]
 
 
 def write_film(path: Path, reel: Reel, frames: Iterator[Frame], samples: Sequence[Frame] = ()) -> int:

@@ -32,18 +32,12 @@ ACTIONS = {
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """How a conflict is drawn.
-
-    Attributes:
-        width: Width of the line [px]; wider with danger.
-        dash: Lengths of dashes and gaps [px]; shorter dashes with less danger, none for a full line.
-        mark: Half the width of the mark [px].
-    """
+    """How a conflict is drawn."""
 
     colour: str
-    width: float
-    dash: tuple[float, ...]
-    mark: float
+    width: float  # Width of the line [px]; wider with danger
+    dash: tuple[float, ...]  # Lengths of dashes and gaps [px]; shorter dashes with less danger, none for a full line
+    mark: float  # Half the width of the mark [px]
     word: str
     limit: str
 

@@ -38,20 +38,14 @@ class Area:
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A part of the frame through which a part of the world is seen.
+    """A part of the frame through which a part of the world is seen."""
 
-    Attributes:
-        area: Where on the frame [px].
-        x: Point of the world in its middle [m].
-        y: Point of the world in its middle [m].
-        dim: Width of the ends that are seen in the row before and in the next one, too [px].
-    """
-
-    area: Area
-    x: float
-    y: float
+    area: Area  # Where on the frame [px]
+    x: float  # Point of the world in its middle [m]
+    y: float  # Point of the world in its middle [m]
     zoom: float
     turned: bool = False
+    # Width of the ends that are seen in the row before and in the next one, too [px].
     dim: tuple[float, float] = (0.0, 0.0)
 
     @property

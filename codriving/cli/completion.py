@@ -61,14 +61,10 @@ def complete_in_line(ctx: typer.Context, incomplete: str) -> list[tuple[str, str
 
 @dataclass(frozen=True, slots=True)
 class TypedLine:
-    """What has been typed before the word under the cursor.
-
-    Attributes:
-        overrides: ``key=value`` tokens.
-    """
+    """What has been typed before the word under the cursor."""
 
     config_dir: Path | None = None
-    overrides: tuple[str, ...] = ()
+    overrides: tuple[str, ...] = ()  # ``key=value`` tokens
 
     def choices(self, group: str) -> dict[str, Path]:
         """Return what a group offers."""

@@ -20,21 +20,16 @@ LARGEST_SEED = 2**31 - 1  # Seeds beyond this are refused by some of the generat
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """One plain key of the root.
-
-    Attributes:
-        words: Words that are allowed instead of the type, for instance ``auto``.
-        optional: Whether ``null`` is allowed.
-    """
+    """One plain key of the root."""
 
     name: str
     meaning: str
     kind: type
     low: int = 0
     high: int = 0
-    words: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()  # Words that are allowed instead of the type, for instance ``auto``
     pattern: str | None = None
-    optional: bool = False
+    optional: bool = False  # Whether ``null`` is allowed
 
     @property
     def rule(self) -> str:

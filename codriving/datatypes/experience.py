@@ -37,23 +37,17 @@ class Description:
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """What came of one action, in numbers.
+    """What came of one action, in numbers."""
 
-    Attributes:
-        dttcp_before: Difference of the times to the conflict point when the CAV decided [s]; None without a conflict.
-        dttcp_after: The same after the step [s]; None if the conflict was over or there was none.
-        own_change: By how much the action itself widened (positive) or narrowed that difference, against keeping the
-            speed [s].
-        own_braking: Hardest mean deceleration of the CAV over one of the next decision steps [m/s2].
-        forced_braking: Hardest mean deceleration of another vehicle in its way over this or the next step [m/s2].
-        collision: Time until the CAV was in a collision [s]; None if it was in none within the horizon.
-    """
-
+    # Difference of the times to the conflict point when the CAV decided [s]; None without a conflict.
     dttcp_before: float | None = None
-    dttcp_after: float | None = None
+    dttcp_after: float | None = None  # The same after the step [s]; None if the conflict was over or there was none
+    # By how much the action itself widened (positive) or narrowed that difference, against keeping the speed [s].
     own_change: float = 0.0
-    own_braking: float = 0.0
+    own_braking: float = 0.0  # Hardest mean deceleration of the CAV over one of the next decision steps [m/s2]
+    # Hardest mean deceleration of another vehicle in its way over this or the next step [m/s2].
     forced_braking: float = 0.0
+    # Time until the CAV was in a collision [s]; None if it was in none within the horizon.
     collision: float | None = None
     to_blame: bool = False
     needless: bool = False

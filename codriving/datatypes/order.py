@@ -73,12 +73,7 @@ Pair = tuple[str, str]  # Two vehicles, the first of which passes first
 
 @dataclass(slots=True)
 class ApproachingVehicle:
-    """What an order has to know of one CAV that still has a conflict ahead.
-
-    Attributes:
-        windows: Intervals in which it must not pass the reference point, because of human drivers [s].
-        crossing: Time from the reference point until it has left its last conflict zone, at top speed [s].
-    """
+    """What an order has to know of one CAV that still has a conflict ahead."""
 
     id: str
     reference: float  # Arc length of its first conflict zone [m]
@@ -86,11 +81,12 @@ class ApproachingVehicle:
     committed: bool = False
     turning: bool = False
     leader: str | None = None
+    # Intervals in which it must not pass the reference point, because of human drivers [s].
     windows: list[tuple[float, float]] = field(default_factory=list)
     lane: str = ""
     stream: str = ""
     distance: float = 0.0  # Distance to the reference point [m]; 0 past it
-    crossing: float = 0.0
+    crossing: float = 0.0  # Time from the reference point until it has left its last conflict zone, at top speed [s]
     remaining: float = 0.0  # Distance to the end of its route [m]
     speed: float = 0.0  # [m/s]
     priority: int = 0
@@ -98,15 +94,12 @@ class ApproachingVehicle:
 
 @dataclass(frozen=True, slots=True)
 class Instance:
-    """The ordering problem of one moment.
-
-    Attributes:
-        separation: Time that must lie between two vehicles at their reference points, by (first, second), for every
-            pair that shares a zone or a lane [s].
-    """
+    """The ordering problem of one moment."""
 
     time: float  # Simulated time [s]
     vehicles: Mapping[str, ApproachingVehicle]
+    # Time that must lie between two vehicles at their reference points, by (first, second), for every pair that shares
+    # a zone or a lane [s].
     separation: Mapping[Pair, float]
     before: Set[Pair]
 

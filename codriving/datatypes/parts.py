@@ -23,15 +23,10 @@ Account: TypeAlias = tuple[dict[str, float], list[dict[str, Any]]]
 
 
 class Scenario(ABC):
-    """A road, the vehicles that a seed puts on it, and the pace of the simulation.
+    """A road, the vehicles that a seed puts on it, and the pace of the simulation."""
 
-    Attributes:
-        name: Name in tables and folders.
-        pace: Frequencies, target speeds, time limit and perception.
-    """
-
-    name: str = ""
-    pace: Pace
+    name: str = ""  # Name in tables and folders
+    pace: Pace  # Frequencies, target speeds, time limit and perception
 
     @property
     @abstractmethod
@@ -48,14 +43,10 @@ class Scenario(ABC):
 
 
 class Simulator(ABC):
-    """A world that takes actions, from a seed to an outcome.
-
-    Attributes:
-        driving_model: How a CAV answers to actions.
-    """
+    """A world that takes actions, from a seed to an outcome."""
 
     road_map: RoadMap
-    driving_model: DrivingModel
+    driving_model: DrivingModel  # How a CAV answers to actions
 
     @property
     @abstractmethod
@@ -76,23 +67,14 @@ class Simulator(ABC):
 
 
 class Model(ABC):
-    """What ``llm=`` chooses; a method that has a parameter with this annotation is handed it.
+    """What ``llm=`` chooses; a method that has a parameter with this annotation is handed it."""
 
-    Attributes:
-        name: Name in tables.
-        max_concurrency: Most episodes that are worth driving at once.
-        failures_in_a_row: The batch stops after so many episodes without an answer.
-        cache: ``off``, ``use`` or ``replay``.
-        ask_plain: Whether it is asked even where no other vehicle is near and the best action is plain.
-        prompts: Folder with templates that replace ours; None takes ours.
-    """
-
-    name: str
-    max_concurrency: int
-    failures_in_a_row: int
-    cache: str
-    ask_plain: bool
-    prompts: str | None
+    name: str  # Name in tables
+    max_concurrency: int  # Most episodes that are worth driving at once
+    failures_in_a_row: int  # The batch stops after so many episodes without an answer
+    cache: str  # ``off``, ``use`` or ``replay``
+    ask_plain: bool  # Whether it is asked even where no other vehicle is near and the best action is plain
+    prompts: str | None  # Folder with templates that replace ours; None takes ours
 
     @abstractmethod
     def chat(self) -> Chat | None:
@@ -114,19 +96,12 @@ class RuleModel(Model):
 
 
 class CaseMemory(ABC):
-    """What ``memory=`` chooses; a method that has a parameter with this annotation is handed it.
+    """What ``memory=`` chooses; a method that has a parameter with this annotation is handed it."""
 
-    Attributes:
-        label: What it is called in tables.
-        digest: SHA-256 of the contents of a snapshot; empty where there is none.
-        learns: Whether episodes learn from one another, so that they have to be driven in order.
-        reflections: Mistakes of an episode whose lessons a language model writes at most.
-    """
-
-    label: str = ""
-    digest: str = ""
-    learns: bool = False
-    reflections: int = 0
+    label: str = ""  # What it is called in tables
+    digest: str = ""  # SHA-256 of the contents of a snapshot; empty where there is none
+    learns: bool = False  # Whether episodes learn from one another, so that they have to be driven in order
+    reflections: int = 0  # Mistakes of an episode whose lessons a language model writes at most
 
     def begin(self, seed: int) -> None:
         """Begin an episode."""
@@ -150,18 +125,12 @@ class Method(ABC):
 
     A method that needs a language model or a memory has a parameter of its constructor annotated with ``Model`` or
     ``CaseMemory``, and is handed what ``llm=`` and ``memory=`` choose.
-
-    Attributes:
-        name: Name in tables.
-        variant: Its variant in tables; empty if there is only one.
-        reasoner: What reasons: ``rules``, the name of a language model, or ``none``.
-        remembers: Its memory in tables; empty without one.
     """
 
-    name: str = ""
-    variant: str = ""
-    reasoner: str = "none"
-    remembers: str = ""
+    name: str = ""  # Name in tables
+    variant: str = ""  # Its variant in tables; empty if there is only one
+    reasoner: str = "none"  # What reasons: ``rules``, the name of a language model, or ``none``
+    remembers: str = ""  # Its memory in tables; empty without one
 
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
         """Refuse a road that the method was not made for, before anything is driven.
@@ -208,13 +177,9 @@ class Method(ABC):
 
 
 class Metric(ABC):
-    """Scores one driven episode.
+    """Scores one driven episode."""
 
-    Attributes:
-        name: Name of the definitions, for instance ``standard``.
-    """
-
-    name: str = ""
+    name: str = ""  # Name of the definitions, for instance ``standard``
 
     @abstractmethod
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:

@@ -87,49 +87,35 @@ class Pet:
 
 @dataclass(frozen=True, slots=True)
 class TravelScore:
-    """How one vehicle travelled.
-
-    Attributes:
-        delay: Travel time beyond that of free flow [s], or None where the metric has no such notion.
-    """
+    """How one vehicle travelled."""
 
     id: str
     velocity: float  # Mean travel velocity [m/s]
     time: float  # Travel time [s]
-    delay: float | None
+    delay: float | None  # Travel time beyond that of free flow [s], or None where the metric has no such notion
 
 
 @dataclass(frozen=True, slots=True)
 class NamedNumber:
-    """A number that a metric measures besides; a column of its own in the tables.
+    """A number that a metric measures besides; a column of its own in the tables."""
 
-    Attributes:
-        name: Name of the column, for instance ``waiting_time``.
-        value: None where it is not defined, which is not zero.
-        unit: Its unit, for instance ``s``; empty without one.
-        better: Whether a higher or a lower number is better; None where neither is.
-        shown: Whether its mean is a column on the screen and in Markdown, too.
-    """
-
-    name: str
-    value: float | None
-    unit: str = ""
+    name: str  # Name of the column, for instance ``waiting_time``
+    value: float | None  # None where it is not defined, which is not zero
+    unit: str = ""  # Its unit, for instance ``s``; empty without one
+    # Whether a higher or a lower number is better; None where neither is.
     better: Literal["higher", "lower"] | None = None
-    shown: bool = False
+    shown: bool = False  # Whether its mean is a column on the screen and in Markdown, too
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """The measured quality of one episode.
-
-    Attributes:
-        settings: Those of the metric that gave it, as JSON by key; filled in by what calls the metric.
-    """
+    """The measured quality of one episode."""
 
     success: bool
     pets: tuple[Pet, ...] = ()
     travels: tuple[TravelScore, ...] = ()
     numbers: tuple[NamedNumber, ...] = ()
+    # Those of the metric that gave it, as JSON by key; filled in by what calls the metric.
     settings: dict[str, str] = field(default_factory=dict)
 
 
@@ -145,11 +131,7 @@ class Participant:
 
 @dataclass(frozen=True, slots=True)
 class EpisodeRecord:
-    """The result of one episode; free of anything that depends on the machine or its clock.
-
-    Attributes:
-        scores: Its score by the name of the metric; none for ``error``.
-    """
+    """The result of one episode; free of anything that depends on the machine or its clock."""
 
     scenario: str
     method: str
@@ -157,7 +139,7 @@ class EpisodeRecord:
     reasoner: str  # Who reasoned: ``rules`` or the name of a model
     seed: int
     outcome: Outcome
-    scores: dict[str, Score]
+    scores: dict[str, Score]  # Its score by the name of the metric; none for ``error``
     participants: tuple[Participant, ...]
     decisions: int
     counts: dict[str, int | float]

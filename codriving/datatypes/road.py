@@ -83,18 +83,14 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """A way through the road from a source to a destination.
-
-    Attributes:
-        entry: Arc length at which the shared part of the road (junction, ring, merge) begins [m].
-        taper: Length of the way from one lane to the one beside it, which ends where the lane that is left does [m].
-    """
+    """A way through the road from a source to a destination."""
 
     id: str  # Name that is unique on the road, for instance ``south-north``
     lanes: tuple[LaneId, ...]
     turn: Turn
-    entry: float
+    entry: float  # Arc length at which the shared part of the road (junction, ring, merge) begins [m]
     goal: float  # Arc length at which a vehicle has arrived [m]
+    # Length of the way from one lane to the one beside it, which ends where the lane that is left does [m].
     taper: float = 40.0
 
 

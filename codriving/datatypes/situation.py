@@ -26,12 +26,7 @@ class Role(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class TrackedVehicle:
-    """A vehicle as far as the ego vehicle knows it; what it does not know is None.
-
-    Attributes:
-        routes: Each route that it may be on, with its arc length there [m]; one entry if it shared its route.
-        gap: Free distance along the ego lane for a leading or rearing vehicle [m].
-    """
+    """A vehicle as far as the ego vehicle knows it; what it does not know is None."""
 
     id: str
     kind: Kind | None
@@ -42,11 +37,12 @@ class TrackedVehicle:
     acceleration: float | None  # [m/s2]
     lane: LaneId | None
     length: float  # [m]
+    # Each route that it may be on, with its arc length there [m]; one entry if it shared its route.
     routes: tuple[tuple[str, float], ...] = ()
     intent: Intent | None = None
     standing: float = 0.0  # How long it has been standing [s]
     role: Role = Role.OTHER
-    gap: float | None = None
+    gap: float | None = None  # Free distance along the ego lane for a leading or rearing vehicle [m]
 
     @property
     def is_cav(self) -> bool:
@@ -69,11 +65,7 @@ class LaneChange:
 
 @dataclass(frozen=True, slots=True)
 class SceneDescription:
-    """The surroundings of one CAV, by lane and by relation.
-
-    Attributes:
-        covers: Other routes onto whose lanes its body reaches while it changes lanes, with its arc length there [m].
-    """
+    """The surroundings of one CAV, by lane and by relation."""
 
     ego: VehicleState
     intent: Intent
@@ -81,6 +73,7 @@ class SceneDescription:
     adjacent_lanes: tuple[LaneId, ...]
     conflict_lanes: tuple[LaneId, ...]
     neighbours: tuple[TrackedVehicle, ...]
+    # Other routes onto whose lanes its body reaches while it changes lanes, with its arc length there [m].
     covers: tuple[tuple[str, float], ...] = ()
     must_change: LaneChange | None = None  # The lane change that its route asks for next, or None
 
@@ -117,32 +110,26 @@ class SceneDescription:
 
 @dataclass(frozen=True, slots=True)
 class ActionAssessment:
-    """What the three-layer safety check says of one action.
-
-    Attributes:
-        arrivals: Earliest time to reach each conflict zone of the ego vehicle after this action and then full
-            speed [s]; inf if never.
-        progress: How far the CAV gets within the horizon if it then keeps the order [m]; None if it cannot keep it.
-    """
+    """What the three-layer safety check says of one action."""
 
     action: Action
     safe: bool
     reasons: tuple[str, ...]
+    # Earliest time to reach each conflict zone of the ego vehicle after this action and then full speed [s]; inf if
+    # never.
     arrivals: tuple[float, ...]
+    # How far the CAV gets within the horizon if it then keeps the order [m]; None if it cannot keep it.
     progress: float | None
 
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """The input of one decision.
-
-    Attributes:
-        clear_times: When each conflict zone is expected to be free of those who go first [s]; 0 if the CAV goes first.
-    """
+    """The input of one decision."""
 
     scene: SceneDescription
     conflicts: tuple[Conflict, ...]
     order: PassingOrder
+    # When each conflict zone is expected to be free of those who go first [s]; 0 if the CAV goes first.
     clear_times: tuple[float, ...]
     assessments: tuple[ActionAssessment, ...]
     memories: tuple[Memory, ...] = ()
@@ -164,14 +151,11 @@ class Decision:
 
 
 class Deliberation(ABC):
-    """One decision step of a method.
+    """One decision step of a method."""
 
-    Attributes:
-        counts: Counters of this step (fallbacks, repaired orders, cost, ...), summed over the episode.
-        transcript: What a language model was asked, one line of ``transcript.jsonl`` a question.
-    """
-
+    # Counters of this step (fallbacks, repaired orders, cost, ...), summed over the episode.
     counts: Mapping[str, float]
+    # What a language model was asked, one line of ``transcript.jsonl`` a question.
     transcript: tuple[dict[str, Any], ...] = ()
 
     @property

@@ -10,16 +10,11 @@ from codriving.errors import require, require_range
 
 @dataclass(frozen=True, slots=True)
 class ControlGains:
-    """How hard a vehicle follows its target speed and lane.
+    """How hard a vehicle follows its target speed and lane."""
 
-    Attributes:
-        speed: K_a in a = K_a (v_r - v) [1/s]; the paper's value is 1.6.
-        heading: K_h in delta = arcsin(K_h (phi_r - phi) l / 2v) [1/s]; the paper's value is 5.
-        lateral: Gain from the lateral offset to the lateral speed that sets phi_r [1/s]; highway-env's value is 1/0.6.
-    """
-
-    speed: float
-    heading: float
+    speed: float  # K_a in a = K_a (v_r - v) [1/s]; the paper's value is 1.6
+    heading: float  # K_h in delta = arcsin(K_h (phi_r - phi) l / 2v) [1/s]; the paper's value is 5
+    # Gain from the lateral offset to the lateral speed that sets phi_r [1/s]; highway-env's value is 1/0.6.
     lateral: float
 
     def __post_init__(self) -> None:
@@ -37,10 +32,6 @@ class Corrections:
     """One switch for every fault; all on in ``conf/config.yaml``.
 
     With every switch off a vehicle moves as highway-env's own classes do, bit for bit.
-
-    Attributes:
-        own_parameters: highway-env's intersection writes driver parameters into the class, for every later scenario of
-            the process. On: they belong to the driver.
     """
 
     no_reverse: bool
@@ -50,6 +41,8 @@ class Corrections:
     yield_at_entry: bool
     start_into_gap: bool
     connected_lanes: bool
+    # highway-env's intersection writes driver parameters into the class, for every later scenario of the process. On:
+    # they belong to the driver.
     own_parameters: bool
     remove_at_sink: bool
     true_collisions: bool
@@ -57,28 +50,17 @@ class Corrections:
 
 @dataclass(frozen=True, slots=True)
 class DriverProfile:
-    """Parameters of the Intelligent Driver Model and of MOBIL.
+    """Parameters of the Intelligent Driver Model and of MOBIL."""
 
-    Attributes:
-        acceleration: IDM's comfortable acceleration a [m/s2].
-        deceleration: IDM's comfortable deceleration b [m/s2].
-        limit: Hardest acceleration or braking that a driver can do [m/s2].
-        jam_distance: Distance between the centres of two standing cars [m].
-        headway: Desired time gap [s].
-        sight: How far ahead along the route a driver looks for bodies [m].
-        gain_threshold: MOBIL's smallest gain for a lane change [m/s2].
-        safe_braking: MOBIL's hardest braking imposed on the new follower [m/s2].
-    """
-
-    acceleration: float
-    deceleration: float
-    limit: float
-    jam_distance: float
-    headway: float
-    sight: float
+    acceleration: float  # IDM's comfortable acceleration a [m/s2]
+    deceleration: float  # IDM's comfortable deceleration b [m/s2]
+    limit: float  # Hardest acceleration or braking that a driver can do [m/s2]
+    jam_distance: float  # Distance between the centres of two standing cars [m]
+    headway: float  # Desired time gap [s]
+    sight: float  # How far ahead along the route a driver looks for bodies [m]
     politeness: float
-    gain_threshold: float
-    safe_braking: float
+    gain_threshold: float  # MOBIL's smallest gain for a lane change [m/s2]
+    safe_braking: float  # MOBIL's hardest braking imposed on the new follower [m/s2]
 
     def __post_init__(self) -> None:
         ranges = {

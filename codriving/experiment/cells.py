@@ -21,20 +21,16 @@ class Cell:
     """One row of a table.
 
     Rows that differ in their metrics alone are driven once, and share a folder.
-
-    Attributes:
-        metrics: What the metric calls itself.
-        score: Name of its scores in a record; empty for that of the metric.
     """
 
     folder: str
     labels: Labels
     resolved: Mapping[str, Any]
-    metrics: str = "standard"
+    metrics: str = "standard"  # What the metric calls itself
     swept: Mapping[str, str] = field(default_factory=dict)
     choices: Mapping[str, str] = field(default_factory=dict)
     files: tuple[NamedFile, ...] = ()
-    score: str = ""
+    score: str = ""  # Name of its scores in a record; empty for that of the metric
 
     @property
     def config_text(self) -> str:

@@ -45,13 +45,9 @@ LOADED = ("scenario=intersection,roundabout", f"{CAVS}=4,6,8,12")
 
 @dataclass(frozen=True)
 class Comparison:
-    """What a comparison gives to Python.
+    """What a comparison gives to Python."""
 
-    Attributes:
-        table: The comparison itself, as in ``comparison.csv`` or ``load.csv``.
-    """
-
-    table: "DataFrame"
+    table: "DataFrame"  # The comparison itself, as in ``comparison.csv`` or ``load.csv``
     episodes: "DataFrame"
     summary: "DataFrame"
     folder: Path

@@ -74,15 +74,11 @@ class HaltedError(ModelError):
 
 @dataclass(frozen=True, slots=True)
 class Driven:
-    """All episodes of a run.
-
-    Attributes:
-        timings: What each of them cost, None where that is lost.
-    """
+    """All episodes of a run."""
 
     cells: Sequence[Cell]
     records: Sequence[Sequence[EpisodeRecord]]
-    timings: Sequence[Sequence[Timing | None]]
+    timings: Sequence[Sequence[Timing | None]]  # What each of them cost, None where that is lost
     folder: Path = Path()
 
     @property
@@ -93,15 +89,10 @@ class Driven:
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """What a command makes of its episodes beyond the tables of every run.
+    """What a command makes of its episodes beyond the tables of every run."""
 
-    Attributes:
-        files: Content by path below the run folder.
-        printed: What is printed in place of the summary.
-    """
-
-    files: Mapping[str, bytes] = field(default_factory=dict)
-    printed: tuple[PrintedTable, ...] = ()
+    files: Mapping[str, bytes] = field(default_factory=dict)  # Content by path below the run folder
+    printed: tuple[PrintedTable, ...] = ()  # What is printed in place of the summary
     tables: tuple[Table, ...] = ()
 
     def write(self, folder: Path) -> None:
@@ -115,20 +106,15 @@ class Outputs:
 
 @dataclass(frozen=True, slots=True)
 class Finished:
-    """A run that is complete.
-
-    Attributes:
-        left_out: Episodes of the folder that were not asked for.
-        changed: Versions that differ between episodes.
-    """
+    """A run that is complete."""
 
     folder: Path
     tables: RunTables
     driven: int
     kept: int
     failed: tuple[Report, ...]
-    left_out: int = 0
-    changed: tuple[str, ...] = ()
+    left_out: int = 0  # Episodes of the folder that were not asked for
+    changed: tuple[str, ...] = ()  # Versions that differ between episodes
     filmed: int = 0
     unfilmed: tuple[Unit, ...] = ()
     outputs: Outputs = field(default_factory=Outputs)

@@ -14,39 +14,27 @@ from codriving.metrics import Scorer
 
 @dataclass(frozen=True, slots=True)
 class Labels:
-    """What the records of a cell are labelled with.
-
-    Attributes:
-        reasoner: What reasons: ``rules`` or the name of a model.
-    """
+    """What the records of a cell are labelled with."""
 
     scenario: str
     method: str
     variant: str
-    reasoner: str
+    reasoner: str  # What reasons: ``rules`` or the name of a model
     memory: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class EpisodeResult:
-    """Everything that one episode leaves.
-
-    Attributes:
-        trajectory: What was driven, or None if it never began.
-        decisions: One line a decision step, for ``decisions.jsonl``.
-        seconds: Wall-clock time of the episode [s].
-        decision_seconds: Wall-clock time of each decision [s].
-        decision_cpu: CPU time of each decision, of the thread that decides [s].
-        transcript: One line a question that a language model was asked, for ``transcript.jsonl``.
-    """
+    """Everything that one episode leaves."""
 
     record: EpisodeRecord
-    trajectory: Trajectory | None
-    decisions: tuple[dict[str, Any], ...]
-    seconds: float
-    decision_seconds: tuple[float, ...]
-    decision_cpu: tuple[float, ...] = ()
+    trajectory: Trajectory | None  # What was driven, or None if it never began
+    decisions: tuple[dict[str, Any], ...]  # One line a decision step, for ``decisions.jsonl``
+    seconds: float  # Wall-clock time of the episode [s]
+    decision_seconds: tuple[float, ...]  # Wall-clock time of each decision [s]
+    decision_cpu: tuple[float, ...] = ()  # CPU time of each decision, of the thread that decides [s]
     traceback: str = ""
+    # One line a question that a language model was asked, for ``transcript.jsonl``.
     transcript: tuple[dict[str, Any], ...] = ()
 
 

@@ -24,21 +24,16 @@ SHARED = (*(name for name in ROOT if name not in ("plugins", "prompts")), "launc
 
 @dataclass(frozen=True)
 class Plan:
-    """A run that can be started.
-
-    Attributes:
-        workers: Number of processes, or ``auto``.
-        run: Name of the run, or None for its time.
-    """
+    """A run that can be started."""
 
     cells: tuple[Cell, ...]
     first_seed: int
     episodes: int
     launcher: Launcher
-    workers: int | str
+    workers: int | str  # Number of processes, or ``auto``
     output: Path
     experiment: str
-    run: str | None
+    run: str | None  # Name of the run, or None for its time
     notes: tuple[str, ...] = ()
     render: bool = False
 

@@ -25,25 +25,16 @@ SPEEDS, SCALES = (0.05, 50.0), (0.5, 4.0)
 
 @dataclass(frozen=True, slots=True)
 class ReplayOptions:
-    """How an episode is to be shown.
+    """How an episode is to be shown."""
 
-    Attributes:
-        cell: Name of the cell, or a part of it; None if there is but one.
-        episode: Seed; None takes the first.
-        format: ``mp4`` or ``gif``; None goes by the name of the file, and is a film otherwise.
-        out: The file; None puts it beside the record.
-        fps: Frames a second of film; None takes 25, and 10 for a GIF.
-        frame: Simulated time of a single picture [s]; None makes a film.
-    """
-
-    cell: str | None = None
-    episode: int | None = None
-    format: str | None = None
-    out: Path | None = None
+    cell: str | None = None  # Name of the cell, or a part of it; None if there is but one
+    episode: int | None = None  # Seed; None takes the first
+    format: str | None = None  # ``mp4`` or ``gif``; None goes by the name of the file, and is a film otherwise
+    out: Path | None = None  # The file; None puts it beside the record
     speed: float | None = None
-    fps: float | None = None
+    fps: float | None = None  # Frames a second of film; None takes 25, and 10 for a GIF
     scale: float = 1.0
-    frame: float | None = None
+    frame: float | None = None  # Simulated time of a single picture [s]; None makes a film
     config_dir: Path | None = None
 
 

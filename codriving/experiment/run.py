@@ -36,18 +36,13 @@ REMOVALS: tuple[tuple[str, ...], ...] = (
 
 @dataclass(frozen=True)
 class Command:
-    """A command that drives cells and prints their tables.
+    """A command that drives cells and prints their tables."""
 
-    Attributes:
-        name: What is typed after ``codriving``.
-        points: Gives the configs that ``key=value`` tokens, with a folder of YAMLs of the user's or None, stand for.
-        check: Refuses a plan with a ``ConfigError``.
-        make_outputs: What it makes of its episodes beyond the tables of every run.
-    """
-
-    name: str
+    name: str  # What is typed after ``codriving``
+    # Gives the configs that ``key=value`` tokens, with a folder of YAMLs of the user's or None, stand for.
     points: Callable[[Sequence[str], Path | None], Sequence[Point]]
-    check: Callable[[Plan], None] = lambda _: None
+    check: Callable[[Plan], None] = lambda _: None  # Refuses a plan with a ``ConfigError``
+    # What it makes of its episodes beyond the tables of every run.
     make_outputs: Callable[[Driven], Outputs] = lambda _: Outputs()
 
 

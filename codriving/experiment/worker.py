@@ -36,14 +36,10 @@ class Objects(NamedTuple):
 
 @dataclass(frozen=True)
 class SaveEpisode:
-    """Writes episodes into a run folder.
-
-    Attributes:
-        variables: Environment variables whose values must not be written.
-    """
+    """Writes episodes into a run folder."""
 
     run: Path
-    variables: tuple[str, ...] = ()
+    variables: tuple[str, ...] = ()  # Environment variables whose values must not be written
 
     def __call__(self, unit: Unit, result: EpisodeResult) -> None:
         """Write one episode, whole or not at all."""
@@ -61,15 +57,11 @@ class SaveEpisode:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What the parent is told of a unit.
-
-    Attributes:
-        message: What went wrong, for ``error``.
-    """
+    """What the parent is told of a unit."""
 
     unit: Unit
     ending: Ending
-    message: str = ""
+    message: str = ""  # What went wrong, for ``error``
 
 
 class AfterEpisode(ABC):

@@ -19,15 +19,10 @@ _BLOCK = 16  # Path points that are first compared as one disc, so that long pat
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cells:
-    """Pairs of path points, one on each path.
+    """Pairs of path points, one on each path."""
 
-    Attributes:
-        i: Indices on the first path (n,).
-        j: Indices on the second path (n,).
-    """
-
-    i: IntArray
-    j: IntArray
+    i: IntArray  # Indices on the first path (n,)
+    j: IntArray  # Indices on the second path (n,)
 
     def only(self, mask: NDArray[np.bool_]) -> "Cells":
         """Return the cells for which a mask (n,) is true."""

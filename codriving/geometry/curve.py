@@ -16,14 +16,10 @@ _FINE = 0.02  # Step of the numeric integration of arc length [m]
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A centre line measured by arc length.
+    """A centre line measured by arc length."""
 
-    Attributes:
-        length: Arc length [m].
-        at: Maps arc lengths (n,) [m] to points (n, 2) [m] and headings (n,) [rad].
-    """
-
-    length: float
+    length: float  # Arc length [m]
+    # Maps arc lengths (n,) [m] to points (n, 2) [m] and headings (n,) [rad].
     at: Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 

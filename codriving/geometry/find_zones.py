@@ -27,16 +27,11 @@ _END = 1.0  # A stretch that comes this near to the end of a route touches it [m
 
 @dataclass(frozen=True, slots=True)
 class Coincidence:
-    """The stretch on which two centre lines coincide, and what it makes of the conflict.
-
-    Attributes:
-        merge: Where the centre lines begin to coincide on each route [m], or None.
-        split: Where they stop on each route [m], or None.
-    """
+    """The stretch on which two centre lines coincide, and what it makes of the conflict."""
 
     relation: Relation
-    merge: tuple[float, float] | None
-    split: tuple[float, float] | None
+    merge: tuple[float, float] | None  # Where the centre lines begin to coincide on each route [m], or None
+    split: tuple[float, float] | None  # Where they stop on each route [m], or None
 
 
 def find_zones(path_i: Path, path_j: Path, footprint: Footprint) -> tuple[ConflictZone, ...]:

@@ -13,19 +13,12 @@ _BEHIND, _AHEAD = 5.0, 30.0  # How far around the expected place a projection lo
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Path:
-    """A centre line sampled uniformly by arc length.
+    """A centre line sampled uniformly by arc length."""
 
-    Attributes:
-        points: Points of the centre line (n, 2) [m], n at least 2.
-        headings: Unwrapped headings at the points (n,) [rad].
-        length: Arc length of the whole path [m].
-        spacing: Arc length between two points [m].
-    """
-
-    points: FloatArray
-    headings: FloatArray
-    length: float
-    spacing: float = field(init=False, repr=False)
+    points: FloatArray  # Points of the centre line (n, 2) [m], n at least 2
+    headings: FloatArray  # Unwrapped headings at the points (n,) [rad]
+    length: float  # Arc length of the whole path [m]
+    spacing: float = field(init=False, repr=False)  # Arc length between two points [m]
     # The same numbers once more: contiguous for all points at once, and as plain numbers for one place.
     _x: FloatArray = field(init=False, repr=False)
     _y: FloatArray = field(init=False, repr=False)

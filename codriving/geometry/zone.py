@@ -21,18 +21,12 @@ class Band:
 
     Between two rows the worse of both holds. A placement that the table calls free is free, but for grazes of less
     than 0.1 m where the zone begins or ends between two rows.
-
-    Attributes:
-        start: Arc length of the first row [m].
-        spacing: Arc length between two rows [m].
-        low: Start of the stretch that is blocked for the other at each row (n,) [m].
-        high: End of that stretch at each row (n,) [m].
     """
 
-    start: float
-    spacing: float
-    low: FloatArray
-    high: FloatArray
+    start: float  # Arc length of the first row [m]
+    spacing: float  # Arc length between two rows [m]
+    low: FloatArray  # Start of the stretch that is blocked for the other at each row (n,) [m]
+    high: FloatArray  # End of that stretch at each row (n,) [m]
 
     def highest(self, s: ArrayLike) -> FloatArray:
         """Return the end of the blocked stretch [m] while one is at s [m]; -inf outside the zone."""
@@ -94,28 +88,20 @@ class FollowingBand:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ConflictZone:
-    """One connected zone of the collision set of two routes, seen from route i; all values are arc lengths [m].
-
-    Attributes:
-        entry_i: Where the zone begins on route i; `exit_i` where it ends. The same for route j.
-        point_i: Conflict point, where the centre lines are closest.
-        merge_i: Where the centre lines begin to coincide; None unless converging or weaving.
-        split_i: Where they stop to coincide; None unless diverging or weaving.
-        over_i: What is blocked on route j, tabulated over route i.
-    """
+    """One connected zone of the collision set of two routes, seen from route i; all values are arc lengths [m]."""
 
     relation: Relation
-    entry_i: float
+    entry_i: float  # Where the zone begins on route i; `exit_i` where it ends. The same for route j.
     exit_i: float
     entry_j: float
     exit_j: float
-    point_i: float
+    point_i: float  # Conflict point, where the centre lines are closest
     point_j: float
-    merge_i: float | None
+    merge_i: float | None  # Where the centre lines begin to coincide; None unless converging or weaving
     merge_j: float | None
-    split_i: float | None
+    split_i: float | None  # Where they stop to coincide; None unless diverging or weaving
     split_j: float | None
-    over_i: Band | FollowingBand
+    over_i: Band | FollowingBand  # What is blocked on route j, tabulated over route i
     over_j: Band | FollowingBand
 
     def front(self, s_j: ArrayLike) -> FloatArray:

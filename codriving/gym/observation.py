@@ -61,13 +61,10 @@ FloatArray = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What an observation looks like.
-
-    Attributes:
-        coordinates: ``relative``: places of others are seen from the ego vehicle; ``absolute``: on the map.
-    """
+    """What an observation looks like."""
 
     rows: int = 8
+    # ``relative``: places of others are seen from the ego vehicle; ``absolute``: on the map.
     coordinates: str = "relative"
     normalise: bool = False
 

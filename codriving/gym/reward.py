@@ -13,21 +13,16 @@ from codriving.errors import ConfigError
 class RewardWeights:
     """What is added to the reward of a CAV for one decision; the defaults are those of the learning baseline.
 
-    Attributes:
-        time: For each second on the road [1/s].
-        speed: For each second at the highest target speed, in proportion below it [1/s].
-        comfort: For each second, times the square of its mean acceleration in the step [s3/m2].
-
     Raises:
         ConfigError: If a weight is not a finite number, or the share is not one.
     """
 
     arrival: float = 1.0
     collision: float = -3.0
-    time: float = -0.025
-    speed: float = 0.0375
+    time: float = -0.025  # For each second on the road [1/s]
+    speed: float = 0.0375  # For each second at the highest target speed, in proportion below it [1/s]
     lane_change: float = -0.02
-    comfort: float = 0.0
+    comfort: float = 0.0  # For each second, times the square of its mean acceleration in the step [s3/m2]
     cooperation: float = 0.0
 
     def __post_init__(self) -> None:
@@ -41,14 +36,10 @@ class RewardWeights:
 
 @dataclass(frozen=True, slots=True)
 class CavStep:
-    """What one CAV did in one decision step.
-
-    Attributes:
-        after: Its state now; None if it has arrived and left the road.
-    """
+    """What one CAV did in one decision step."""
 
     before: VehicleState
-    after: VehicleState | None
+    after: VehicleState | None  # Its state now; None if it has arrived and left the road
     action: Action
     failed: bool
 

@@ -86,16 +86,12 @@ PATIENCE = 120.0  # A server that asks for a longer wait than this is given up [
 
 @dataclass(frozen=True, slots=True)
 class Retry:
-    """A retry that is about to be made.
-
-    Attributes:
-        wait: How long until the next one [s].
-    """
+    """A retry that is about to be made."""
 
     model: str
     attempt: int
     attempts: int
-    wait: float
+    wait: float  # How long until the next one [s]
     reason: str
 
     def __str__(self) -> str:
@@ -104,15 +100,11 @@ class Retry:
 
 @dataclass(frozen=True)
 class Retries:
-    """How a request is tried again: only after what may pass, a bounded number of times, each visible.
-
-    Attributes:
-        deadline: How long one attempt may take, from sending to the last byte [s].
-    """
+    """How a request is tried again: only after what may pass, a bounded number of times, each visible."""
 
     model: str
     attempts: int
-    deadline: float
+    deadline: float  # How long one attempt may take, from sending to the last byte [s]
     notify: Callable[[Retry], None]
     sleep: Sleep = asyncio.sleep
     jitter: Callable[[], float] = random.Random().random

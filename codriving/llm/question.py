@@ -10,51 +10,37 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One message of a conversation.
+    """One message of a conversation."""
 
-    Attributes:
-        role: ``system``, ``user`` or ``assistant``.
-    """
-
-    role: str
+    role: str  # ``system``, ``user`` or ``assistant``
     content: str
 
 
 @dataclass(frozen=True)
 class Question:
-    """One question.
+    """One question."""
 
-    Attributes:
-        purpose: ``negotiate``, ``decide`` or ``reflect``.
-        shorter: Gives the same question with less in it, if the model's context is too short; None if nothing more
-            can be left out.
-    """
-
-    purpose: str
+    purpose: str  # ``negotiate``, ``decide`` or ``reflect``
     subject: str
     messages: tuple[Message, ...]
     schema: "type[BaseModel]"
     check: "Callable[[BaseModel], str]" = lambda answer: ""
+    # Gives the same question with less in it, if the model's context is too short; None if nothing more can be left
+    # out.
     shorter: "Callable[[], Question | None]" = lambda: None
 
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """One request that was answered or failed for good.
-
-    Attributes:
-        form: How the answer was asked for: ``json_schema``, ``json_object`` or ``text``.
-        cost: What it cost [USD]; None where no price is known.
-        seconds: How long it took, retries included [s]; of a cached answer, how long it took when it was asked.
-    """
+    """One request that was answered or failed for good."""
 
     messages: tuple[Message, ...]
     text: str
-    form: str
+    form: str  # How the answer was asked for: ``json_schema``, ``json_object`` or ``text``
     prompt_tokens: int
     completion_tokens: int
-    cost: float | None
-    seconds: float
+    cost: float | None  # What it cost [USD]; None where no price is known
+    seconds: float  # How long it took, retries included [s]; of a cached answer, how long it took when it was asked
     attempts: int
     cached: bool
     problem: str = ""
@@ -62,13 +48,9 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What became of a question.
+    """What became of a question."""
 
-    Attributes:
-        value: The answer, or None if the model gave none that can be used.
-    """
-
-    value: "BaseModel | None"
+    value: "BaseModel | None"  # The answer, or None if the model gave none that can be used
     calls: tuple[Call, ...]
     problem: str = ""
     shortened: int = 0

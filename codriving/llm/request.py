@@ -22,40 +22,28 @@ UNREADABLE = "unreadable"  # Finish reason of a reply that is no chat completion
 
 @dataclass(frozen=True, slots=True)
 class ChatRequest:
-    """What is asked of a server, apart from the form of the answer.
-
-    Attributes:
-        api_base: Address of the server; None for the provider's own.
-        temperature: Sampling temperature; None leaves it to the server.
-        max_tokens: Longest answer [tokens].
-        schema: JSON schema of the answer; None if any text will do.
-    """
+    """What is asked of a server, apart from the form of the answer."""
 
     model: str
-    api_base: str | None
+    api_base: str | None  # Address of the server; None for the provider's own
     messages: tuple[Message, ...]
-    temperature: float | None
-    max_tokens: int
-    schema: Mapping[str, Any] | None
+    temperature: float | None  # Sampling temperature; None leaves it to the server
+    max_tokens: int  # Longest answer [tokens]
+    schema: Mapping[str, Any] | None  # JSON schema of the answer; None if any text will do
 
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """What a server sent.
-
-    Attributes:
-        cost: What it cost [USD]; None where no price is known.
-        seconds: How long it took, retries included [s].
-    """
+    """What a server sent."""
 
     text: str
     finish_reason: str
     refusal: str = ""
     prompt_tokens: int = 0
     completion_tokens: int = 0
-    cost: float | None = None
+    cost: float | None = None  # What it cost [USD]; None where no price is known
     form: str = ""
-    seconds: float = 0.0
+    seconds: float = 0.0  # How long it took, retries included [s]
     attempts: int = 1
 
     @classmethod

@@ -23,39 +23,25 @@ _RANGES = {
 
 @dataclass(frozen=True)
 class ModelSettings:
-    """The settings of a model through LiteLLM.
-
-    Attributes:
-        api_base: Address of the server; None for the provider's own.
-        api_key_env: Name of the environment variable that holds the key; None sends none.
-        temperature: Sampling temperature; None leaves it to the server.
-        max_tokens: Longest answer [tokens].
-        deadline: How long one attempt may take, from sending to the last byte [s].
-        cache: ``off``, ``use`` (asks what is not there) or ``replay`` (asks nothing).
-        max_cost: What the batch may cost [USD]; None sets no limit.
-        max_tokens_total: Tokens that the batch may use; None sets no limit.
-        input_cost_per_token: Price of a token of the prompt [USD]; None takes LiteLLM's.
-        output_cost_per_token: Price of a token of the answer [USD]; None takes LiteLLM's.
-        prompts: Folder with templates that replace ours; None takes ours.
-    """
+    """The settings of a model through LiteLLM."""
 
     model: str
-    api_base: str | None
-    api_key_env: str | None
-    temperature: float | None
-    max_tokens: int
-    deadline: float
+    api_base: str | None  # Address of the server; None for the provider's own
+    api_key_env: str | None  # Name of the environment variable that holds the key; None sends none
+    temperature: float | None  # Sampling temperature; None leaves it to the server
+    max_tokens: int  # Longest answer [tokens]
+    deadline: float  # How long one attempt may take, from sending to the last byte [s]
     attempts: int
     max_concurrency: int
-    cache: str
+    cache: str  # ``off``, ``use`` (asks what is not there) or ``replay`` (asks nothing)
     cache_file: str
-    max_cost: float | None
-    max_tokens_total: int | None
-    input_cost_per_token: float | None
-    output_cost_per_token: float | None
+    max_cost: float | None  # What the batch may cost [USD]; None sets no limit
+    max_tokens_total: int | None  # Tokens that the batch may use; None sets no limit
+    input_cost_per_token: float | None  # Price of a token of the prompt [USD]; None takes LiteLLM's
+    output_cost_per_token: float | None  # Price of a token of the answer [USD]; None takes LiteLLM's
     failures_in_a_row: int
     ask_plain: bool
-    prompts: str | None
+    prompts: str | None  # Folder with templates that replace ours; None takes ours
 
     def __post_init__(self) -> None:
         prices = self.input_cost_per_token, self.output_cost_per_token

@@ -11,16 +11,12 @@ from codriving.errors import SpendingLimitError
 
 @dataclass(frozen=True, slots=True)
 class Totals:
-    """What has been used up; answers from the cache are free and not in it.
-
-    Attributes:
-        cost: Money [USD]; None if the price of a call is not known.
-    """
+    """What has been used up; answers from the cache are free and not in it."""
 
     calls: int = 0
     prompt_tokens: int = 0
     completion_tokens: int = 0
-    cost: float | None = 0.0
+    cost: float | None = 0.0  # Money [USD]; None if the price of a call is not known
 
     @property
     def tokens(self) -> int:

@@ -36,46 +36,32 @@ LESSONS: Mapping[Verdict, str] = {
 
 @dataclass(frozen=True, slots=True)
 class HistoryStep:
-    """The world when one CAV decided, and what it decided.
-
-    Attributes:
-        lead_gap: Free distance to the vehicle ahead on its lane [m]; None without one.
-        action: What it decided; None at the end of the episode.
-    """
+    """The world when one CAV decided, and what it decided."""
 
     ego: VehicleState
     others: Mapping[str, VehicleState]
     conflicts: tuple[Conflict, ...]
-    lead_gap: float | None
-    action: Action | None
+    lead_gap: float | None  # Free distance to the vehicle ahead on its lane [m]; None without one
+    action: Action | None  # What it decided; None at the end of the episode
     could_go: bool
 
 
 @dataclass(frozen=True, slots=True)
 class OwnCollision:
-    """A collision, seen from one of the two.
+    """A collision, seen from one of the two."""
 
-    Attributes:
-        time: When it was, counted from the first step [s].
-    """
-
-    time: float
+    time: float  # When it was, counted from the first step [s]
     other: str
     striker: bool
 
 
 @dataclass(frozen=True, slots=True)
 class DecisionHistory:
-    """The decision steps of one CAV until it arrived or the episode ended.
-
-    Attributes:
-        interval: Time between two of them [s].
-        collision: The collision that it was in; None if in none.
-    """
+    """The decision steps of one CAV until it arrived or the episode ended."""
 
     steps: tuple[HistoryStep, ...]
-    interval: float
-    collision: OwnCollision | None = None
+    interval: float  # Time between two of them [s]
+    collision: OwnCollision | None = None  # The collision that it was in; None if in none
 
     def at(self, k: int) -> HistoryStep | None:
         """Return a step, or None before the first and after the last."""

@@ -152,18 +152,12 @@ _TOKEN = re.compile(r"-?\d+(?:\.\d+)?|[a-z]+(?:_[a-z]+)*", re.IGNORECASE)
 
 @dataclass(frozen=True, slots=True)
 class EmbeddingServer:
-    """Where an embedding model is.
-
-    Attributes:
-        api_base: Address of the server; None for the provider's own.
-        api_key_env: Name of the environment variable that holds the key; None sends none.
-        deadline: How long one attempt may take [s].
-    """
+    """Where an embedding model is."""
 
     model: str
-    api_base: str | None
-    api_key_env: str | None
-    deadline: float
+    api_base: str | None  # Address of the server; None for the provider's own
+    api_key_env: str | None  # Name of the environment variable that holds the key; None sends none
+    deadline: float  # How long one attempt may take [s]
 
 
 class WordEmbedder(Embedder):

@@ -19,20 +19,13 @@ from codriving.memory.store_file import COLUMNS, about, check_embedder, damaged,
 
 @dataclass
 class StoredExperience:
-    """An experience of a file, read from its row when it is first needed.
-
-    Attributes:
-        row: The values of ``COLUMNS``.
-        count: How often it was made.
-        step: Decision step at which it was first made.
-        ego: The CAV that first made it.
-    """
+    """An experience of a file, read from its row when it is first needed."""
 
     id: int
-    row: tuple[Any, ...]
-    count: int
-    step: int
-    ego: str
+    row: tuple[Any, ...]  # The values of ``COLUMNS``
+    count: int  # How often it was made
+    step: int  # Decision step at which it was first made
+    ego: str  # The CAV that first made it
 
     @cached_property
     def experience(self) -> Experience:

@@ -32,13 +32,9 @@ FASTER_THAN: Mapping[Action | None, tuple[Action, ...]] = {
 
 @dataclass(frozen=True, slots=True)
 class LoggedDecision:
-    """One decision of one CAV.
+    """One decision of one CAV."""
 
-    Attributes:
-        time: Simulated time [s].
-    """
-
-    time: float
+    time: float  # Simulated time [s]
     step: int
     situation: Situation
     decision: Decision

@@ -27,17 +27,12 @@ from codriving.reasoning import (
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a search has found.
-
-    Attributes:
-        cost: Its J [s].
-        complete: Whether every order was tried or shown to be no better.
-    """
+    """What a search has found."""
 
     order: tuple[str, ...]
-    cost: float
+    cost: float  # Its J [s]
     tried: int
-    complete: bool
+    complete: bool  # Whether every order was tried or shown to be no better
 
 
 class SearchedOrder(OrderRule):
@@ -96,20 +91,14 @@ class SearchedOrder(OrderRule):
 
 @dataclass(slots=True)
 class Prefix:
-    """The first vehicles of an order, scheduled. It knows all that the rest of the order depends on.
-
-    Attributes:
-        earliest: When each vehicle can pass at the earliest after those placed, by number [s].
-        delay: Weighted delay of those placed [s].
-        finish: When the last of those placed has left its zones [s].
-    """
+    """The first vehicles of an order, scheduled. It knows all that the rest of the order depends on."""
 
     order: list[int]
     waiting: list[int]
     mask: int
-    earliest: list[float]
-    delay: float
-    finish: float
+    earliest: list[float]  # When each vehicle can pass at the earliest after those placed, by number [s]
+    delay: float  # Weighted delay of those placed [s]
+    finish: float  # When the last of those placed has left its zones [s]
 
     def copy(self) -> "Prefix":
         """Return a prefix of its own."""

@@ -19,19 +19,14 @@ from codriving.reasoning import (
 
 @dataclass(slots=True)
 class Pipeline:
-    """One episode of the paper's reasoning; an ablation puts another object into a slot.
-
-    Attributes:
-        margin: Time that should lie between one vehicle's leaving a zone and the next one's entering it [s].
-        memory: Experiences of like situations; None without the memory module.
-    """
+    """One episode of the paper's reasoning; an ablation puts another object into a slot."""
 
     perception: Perception
     negotiation: Negotiation
     safety: SafetyCheck
     decider: Decider
-    margin: float
-    memory: CaseMemory | None = None
+    margin: float  # Time that should lie between one vehicle's leaving a zone and the next one's entering it [s]
+    memory: CaseMemory | None = None  # Experiences of like situations; None without the memory module
     ledger: Ledger | None = None  # What is asked of a language model; None if none is
 
     def act(self, world: WorldState) -> ReasonedDeliberation:

@@ -16,18 +16,12 @@ from codriving.geometry import FloatArray, RoadMap
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Log:
-    """The logged rows of one vehicle, as in the authors' recordings.
-
-    Attributes:
-        x: Position relative to the middle of the intersection (n,) [m].
-        y: Position relative to the middle of the intersection (n,) [m].
-        speed: Speed (n,) [m/s].
-    """
+    """The logged rows of one vehicle, as in the authors' recordings."""
 
     id: str
-    x: FloatArray
-    y: FloatArray
-    speed: FloatArray
+    x: FloatArray  # Position relative to the middle of the intersection (n,) [m]
+    y: FloatArray  # Position relative to the middle of the intersection (n,) [m]
+    speed: FloatArray  # Speed (n,) [m/s]
     first_row: int = 0
 
 

@@ -12,15 +12,10 @@ BESIDE = 2.0  # Farther than this from the centre line of its route a vehicle is
 
 
 class Passage(NamedTuple):
-    """When a vehicle was in a conflict area.
+    """When a vehicle was in a conflict area."""
 
-    Attributes:
-        entry: Time of entering [s].
-        exit: Time of leaving [s].
-    """
-
-    entry: float
-    exit: float
+    entry: float  # Time of entering [s]
+    exit: float  # Time of leaving [s]
     id: str
 
 

@@ -14,21 +14,16 @@ from codriving.reasoning.sharing.tracking import Tracking
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """All that the CAVs know at one time, each by its id; functions are handed ``(moment, ego)``.
-
-    Attributes:
-        vehicles: The vehicles that each CAV knows of, itself included, by id.
-        sees_conflicts: Whether conflicts can be told at all, which takes routes that are shared or guessed.
-    """
+    """All that the CAVs know at one time, each by its id; functions are handed ``(moment, ego)``."""
 
     time: float  # Simulated time [s]
     scenes: Mapping[str, SceneDescription]
     conflicts: Mapping[str, tuple[Conflict, ...]]
-    vehicles: Mapping[str, dict[str, TrackedVehicle]]
+    vehicles: Mapping[str, dict[str, TrackedVehicle]]  # The vehicles that each CAV knows of, itself included, by id
     available: Mapping[str, tuple[Action, ...]]
     road_map: RoadMap
     forecast: Forecast
-    sees_conflicts: bool = True
+    sees_conflicts: bool = True  # Whether conflicts can be told at all, which takes routes that are shared or guessed
 
 
 @dataclass(slots=True)

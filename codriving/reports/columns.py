@@ -25,29 +25,17 @@ def plain(value: Value) -> str:
 
 @dataclass(frozen=True)
 class Column(Generic[T]):
-    """One column of a table whose rows are made of `T`.
+    """One column of a table whose rows are made of `T`."""
 
-    Attributes:
-        key: Its name in the CSV.
-        value: Gives its value; None where it is not defined.
-        head: Its head on the screen and in Markdown; empty where it is in neither.
-        text: Writes its value for the screen and Markdown.
-        words: Whether it holds words, which stand left and are no numbers.
-        csv: Whether it is in the CSV.
-        page: Whether it is in Markdown; what differs from run to run is on the screen alone.
-        sparse: Whether it is shown only where a row has a value other than 0.
-        swept: Whether it is of a swept key, which may take numbers as well as words.
-    """
-
-    key: str
-    value: Callable[[T], Value]
-    head: str = ""
-    text: Callable[[Value], str] = plain
-    words: bool = False
-    csv: bool = True
-    page: bool = True
-    sparse: bool = False
-    swept: bool = False
+    key: str  # Its name in the CSV
+    value: Callable[[T], Value]  # Gives its value; None where it is not defined
+    head: str = ""  # Its head on the screen and in Markdown; empty where it is in neither
+    text: Callable[[Value], str] = plain  # Writes its value for the screen and Markdown
+    words: bool = False  # Whether it holds words, which stand left and are no numbers
+    csv: bool = True  # Whether it is in the CSV
+    page: bool = True  # Whether it is in Markdown; what differs from run to run is on the screen alone
+    sparse: bool = False  # Whether it is shown only where a row has a value other than 0
+    swept: bool = False  # Whether it is of a swept key, which may take numbers as well as words
 
     def of(self, part: Callable[[Any], T | None], key: str = "", head: str = "") -> "Column[Any]":
         """The same column in a table whose rows have such a part; not defined for those that lack it."""

@@ -53,20 +53,14 @@ PAIRED_NOTES = (
 
 @dataclass(frozen=True)
 class Compared:
-    """One row of the comparison.
-
-    Attributes:
-        cell: What was driven; None for a method that was not.
-        reference: The cell of codriving that it is compared with, if it is another one.
-        quoted: The paper's row, if it has one.
-    """
+    """One row of the comparison."""
 
     scenario: str
     method: str
     status: str = DRIVEN
-    cell: CellResults | None = None
-    reference: CellResults | None = None
-    quoted: PaperRow | None = None
+    cell: CellResults | None = None  # What was driven; None for a method that was not
+    reference: CellResults | None = None  # The cell of codriving that it is compared with, if it is another one
+    quoted: PaperRow | None = None  # The paper's row, if it has one
     swept: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -243,15 +237,12 @@ AT_EACH = ("completed", "success_rate", "success_low", "success_high", "pet_mean
 
 @dataclass(frozen=True, slots=True)
 class LoadRow:
-    """One method at all numbers of CAVs.
-
-    Attributes:
-        at: Its cell at each number of CAVs; empty for a method that was not driven.
-    """
+    """One method at all numbers of CAVs."""
 
     scenario: str
     method: str
     swept: Mapping[str, str]
+    # Its cell at each number of CAVs; empty for a method that was not driven.
     at: dict[int, CellResults] = field(default_factory=dict)
 
     @property

@@ -22,20 +22,15 @@ NOTES = (
 
 @dataclass(frozen=True)
 class LearningRow:
-    """One cell of the tests.
-
-    Attributes:
-        setting: Number of the setting that it was tested in.
-        fewest: The cell of the same setting with the fewest interactions; None for that one itself.
-        claim: What the paper says of its scenario after so many interactions.
-    """
+    """One cell of the tests."""
 
     cell: CellResults
     interactions: int
-    setting: int
+    setting: int  # Number of the setting that it was tested in
     shots: int
+    # The cell of the same setting with the fewest interactions; None for that one itself.
     fewest: CellResults | None = None
-    claim: str | None = None
+    claim: str | None = None  # What the paper says of its scenario after so many interactions
 
     @cached_property
     def pairs(self) -> PairedCells | None:

@@ -17,18 +17,12 @@ AGAINST = "against codriving"
 
 @dataclass(frozen=True)
 class Difference:
-    """The method minus codriving, over the seeds on which both succeed and have such a number.
-
-    Attributes:
-        mean: Mean difference, or None of no seed.
-        low: Lower limit of its 95 % bootstrap interval; None of too few seeds.
-        high: Upper limit.
-    """
+    """The method minus codriving, over the seeds on which both succeed and have such a number."""
 
     pairs: int
-    mean: float | None
-    low: float | None
-    high: float | None
+    mean: float | None  # Mean difference, or None of no seed
+    low: float | None  # Lower limit of its 95 % bootstrap interval; None of too few seeds
+    high: float | None  # Upper limit
 
     def shown(self, sign: int) -> bool:
         """Tell whether the whole interval is above (1) or below (-1) zero."""

@@ -15,18 +15,13 @@ WHOLE = frozenset({"", "full"})  # Variants of which nothing has been removed
 
 @dataclass(frozen=True, slots=True)
 class PaperRow:
-    """One row of the paper's comparison, or of the authors' extra comparison of single-vehicle methods.
+    """One row of the paper's comparison, or of the authors' extra comparison of single-vehicle methods."""
 
-    Attributes:
-        scenario: Name of the scenario; the paper compares methods at the intersection alone.
-        episodes: How many seeds it drove; None where that is not told.
-    """
-
-    scenario: str
+    scenario: str  # Name of the scenario; the paper compares methods at the intersection alone
     method: str
     label: str
     numbers: dict[str, float]
-    episodes: int | None = SEEDS
+    episodes: int | None = SEEDS  # How many seeds it drove; None where that is not told
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,14 +35,10 @@ class PaperStatement:
 
 @dataclass(frozen=True, slots=True)
 class LearningStatement:
-    """One statement of the paper on its learning figure.
-
-    Attributes:
-        interactions: After how many interactions; None where it gives no number.
-    """
+    """One statement of the paper on its learning figure."""
 
     scenario: str
-    interactions: int | None
+    interactions: int | None  # After how many interactions; None where it gives no number
     statement: str
     success: float | None
 

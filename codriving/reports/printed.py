@@ -15,29 +15,20 @@ _GAP = 2  # Characters between two columns on a terminal
 
 @dataclass(frozen=True, slots=True)
 class PrintedRow:
-    """One printed row.
-
-    Attributes:
-        ours: Whether it was measured here; the paper's own are dim.
-        last: Whether a block ends with it.
-    """
+    """One printed row."""
 
     cells: tuple[str, ...]
-    ours: bool = True
-    last: bool = False
+    ours: bool = True  # Whether it was measured here; the paper's own are dim
+    last: bool = False  # Whether a block ends with it
 
 
 @dataclass(frozen=True, slots=True)
 class PrintedTable:
-    """A table that only has to be drawn.
-
-    Attributes:
-        words: Heads of the columns that stand left.
-    """
+    """A table that only has to be drawn."""
 
     title: str
     columns: tuple[str, ...]
-    words: frozenset[str]
+    words: frozenset[str]  # Heads of the columns that stand left
     rows: tuple[PrintedRow, ...]
     notes: tuple[str, ...]
 

@@ -46,19 +46,14 @@ UNPRICED = "unpriced_calls"  # Counter of calls whose price is not known; it has
 
 @dataclass(frozen=True)
 class CellResults:
-    """The episodes of one cell, which is one row of a table.
-
-    Attributes:
-        seconds: Wall-clock time of a decision step [s], or None where that is lost.
-        cpu: CPU time of a decision [s], or None where that is lost; it goes into no file that has to repeat.
-        metric: Name of the metric whose scores are shown.
-    """
+    """The episodes of one cell, which is one row of a table."""
 
     records: Sequence[EpisodeRecord]
     swept: Mapping[str, str] = field(default_factory=dict)
-    seconds: float | None = None
+    seconds: float | None = None  # Wall-clock time of a decision step [s], or None where that is lost
+    # CPU time of a decision [s], or None where that is lost; it goes into no file that has to repeat.
     cpu: float | None = None
-    metric: str = "standard"
+    metric: str = "standard"  # Name of the metric whose scores are shown
 
     @property
     def first(self) -> EpisodeRecord:
@@ -137,14 +132,10 @@ class CellResults:
 
 @dataclass(frozen=True)
 class ScoredEpisode:
-    """One episode by one metric.
-
-    Attributes:
-        score: None for an episode that ended in an error.
-    """
+    """One episode by one metric."""
 
     record: EpisodeRecord
-    score: Score | None
+    score: Score | None  # None for an episode that ended in an error
     swept: Mapping[str, str] = field(default_factory=dict)
 
     @property

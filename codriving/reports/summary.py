@@ -235,17 +235,12 @@ def _is_number(value: object) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class RunTables:
-    """The tables of one run.
-
-    Attributes:
-        page: The summary as people read it, of ``summary.md``.
-        printed: The same for the screen, with times.
-    """
+    """The tables of one run."""
 
     episodes: Table
     summary: Table
-    page: PrintedTable
-    printed: PrintedTable
+    page: PrintedTable  # The summary as people read it, of ``summary.md``
+    printed: PrintedTable  # The same for the screen, with times
 
     def write(self, folder: Path) -> None:
         """Write ``episodes.csv``, ``summary.csv`` and ``summary.md``.

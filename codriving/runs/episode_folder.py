@@ -34,22 +34,15 @@ def episode_folder(run: Path, cell: str, seed: int) -> Path:
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """Wall-clock time of one episode, and the computing time of its decisions.
+    """Wall-clock time of one episode, and the computing time of its decisions."""
 
-    Attributes:
-        seconds: The whole episode [s].
-        decision_mean: Mean time of a decision [s], or None without decisions.
-        decision_max: Longest decision [s], or None without decisions.
-        decision_cpu_mean: Mean CPU time of a decision, of the thread that decides [s]; None where it was not measured.
-        decision_cpu_max: Largest CPU time of a decision [s], or None.
-    """
-
-    seconds: float
+    seconds: float  # The whole episode [s]
     decisions: int
-    decision_mean: float | None
-    decision_max: float | None
+    decision_mean: float | None  # Mean time of a decision [s], or None without decisions
+    decision_max: float | None  # Longest decision [s], or None without decisions
+    # Mean CPU time of a decision, of the thread that decides [s]; None where it was not measured.
     decision_cpu_mean: float | None = None
-    decision_cpu_max: float | None = None
+    decision_cpu_max: float | None = None  # Largest CPU time of a decision [s], or None
 
 
 def timing_of(seconds: float, decision_seconds: Sequence[float], decision_cpu: Sequence[float] = ()) -> Timing:

@@ -44,38 +44,26 @@ _COPIED = (*CHOICES, "cda")
 
 @dataclass(frozen=True, slots=True)
 class NamedFile:
-    """A file that the config of a cell names and whose content is part of what the cell is.
+    """A file that the config of a cell names and whose content is part of what the cell is."""
 
-    Attributes:
-        name: What it is, for instance ``weights`` or ``template decide.user.md.j2``.
-    """
-
-    name: str
+    name: str  # What it is, for instance ``weights`` or ``template decide.user.md.j2``
     path: str
     sha256: str
 
 
 @dataclass(frozen=True, slots=True)
 class CellEntry:
-    """One cell of the run: one config on many seeds.
+    """One cell of the run: one config on many seeds."""
 
-    Attributes:
-        folder: Name of its folder under ``episodes/``.
-        reasoner: What reasons: ``rules`` or the name of a model.
-        swept: What tells it from other rows of its table.
-        settings: The values that drive, as JSON by dotted key.
-        choices: Name of the YAML of each group; empty for a cell of release 0.1.
-    """
-
-    folder: str
+    folder: str  # Name of its folder under ``episodes/``
     scenario: str
     method: str
     variant: str
-    reasoner: str
+    reasoner: str  # What reasons: ``rules`` or the name of a model
     fingerprint: str
-    swept: dict[str, str]
-    settings: dict[str, str]
-    choices: dict[str, str]
+    swept: dict[str, str]  # What tells it from other rows of its table
+    settings: dict[str, str]  # The values that drive, as JSON by dotted key
+    choices: dict[str, str]  # Name of the YAML of each group; empty for a cell of release 0.1
     files: tuple[NamedFile, ...]
 
     @property

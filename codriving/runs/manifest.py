@@ -19,24 +19,18 @@ FORMAT = 3  # Layout of the run folder; raised when an older reader could no lon
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """What a run was made of and with.
-
-    Attributes:
-        behaviour: Behaviour number of the version that drives in it.
-        rows: Folders of the cells that were asked for last.
-        commit: Commit of the checkout, with ``+changes`` if it was not clean; None for an installed package.
-    """
+    """What a run was made of and with."""
 
     format: int
-    behaviour: int
+    behaviour: int  # Behaviour number of the version that drives in it
     experiment: str
     created: str
     first_seed: int
     episodes: int
-    rows: tuple[str, ...]
+    rows: tuple[str, ...]  # Folders of the cells that were asked for last
     cells: tuple[CellEntry, ...]
     versions: dict[str, str]
-    commit: str | None
+    commit: str | None  # Commit of the checkout, with ``+changes`` if it was not clean; None for an installed package
     machine: dict[str, str]
 
 

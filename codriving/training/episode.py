@@ -21,22 +21,16 @@ Policy = Callable[[FloatArray, Masks], list[int]]
 
 @dataclass(frozen=True, slots=True)
 class AgentStep:
-    """One decision step of all agents on the road, and what it brought them; a row an agent.
-
-    Attributes:
-        observations: What they observed (n, features).
-        masks: What they were allowed (n, actions).
-        ending: How the episode ended with this step; None if it goes on.
-    """
+    """One decision step of all agents on the road, and what it brought them; a row an agent."""
 
     agents: list[str]
-    observations: FloatArray
-    masks: Masks
+    observations: FloatArray  # What they observed (n, features)
+    masks: Masks  # What they were allowed (n, actions)
     actions: list[int]
     rewards: list[float]
     arrived: frozenset[str]
     failed: frozenset[str]
-    ending: Ending | None
+    ending: Ending | None  # How the episode ended with this step; None if it goes on
     later: dict[str, FloatArray] = field(repr=False)
     allowed: dict[str, Masks] = field(repr=False)
 

@@ -12,23 +12,14 @@ from codriving.training.nstep import Transition
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """Some transitions, one a row.
+    """Some transitions, one a row."""
 
-    Attributes:
-        observations: What was observed (n, features).
-        actions: Numbers of the actions (n,).
-        gains: Discounted sums of rewards (n,).
-        discounts: What the value of the last observation counts (n,).
-        later: Last observations (n, features).
-        masks: Actions that are allowed then (n, actions).
-    """
-
-    observations: FloatArray
-    actions: NDArray[np.int64]
-    gains: FloatArray
-    discounts: FloatArray
-    later: FloatArray
-    masks: NDArray[np.bool_]
+    observations: FloatArray  # What was observed (n, features)
+    actions: NDArray[np.int64]  # Numbers of the actions (n,)
+    gains: FloatArray  # Discounted sums of rewards (n,)
+    discounts: FloatArray  # What the value of the last observation counts (n,)
+    later: FloatArray  # Last observations (n, features)
+    masks: NDArray[np.bool_]  # Actions that are allowed then (n, actions)
 
 
 class Replay:

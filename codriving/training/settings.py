@@ -20,14 +20,9 @@ LEAST_SEED = 10_000  # Seeds below this are for tables alone
 
 @dataclass(frozen=True)
 class Settings:
-    """What every training has to know: what is learned, how it is validated and which states are kept.
+    """What every training has to know: what is learned, how it is validated and which states are kept."""
 
-    Attributes:
-        family: ``junction`` or ``lanes``.
-        exam_seed: First seed of the validations; ``LEAST_SEED`` or more.
-    """
-
-    family: str
+    family: str  # ``junction`` or ``lanes``
     seed: int
     decisions: int
     hidden: tuple[int, ...]
@@ -38,7 +33,7 @@ class Settings:
     reward: Mapping[str, float]
     exams: tuple[Exam, ...]
     exam_every: int
-    exam_seed: int
+    exam_seed: int  # First seed of the validations; ``LEAST_SEED`` or more
     finalists: int
     final_episodes: int
 
@@ -66,21 +61,15 @@ class Settings:
 
 @dataclass(frozen=True)
 class SingleSettings(Settings):
-    """How a network is trained by PPO (Schulman et al., 2017), with one CAV that learns.
+    """How a network is trained by PPO (Schulman et al., 2017), with one CAV that learns."""
 
-    Attributes:
-        learner: ``ppo`` or ``tell``.
-        form: Kind of the actor, ``perceptron`` or ``attention``.
-        guidance: The teacher; None for none.
-    """
-
-    learner: str
-    form: str
+    learner: str  # ``ppo`` or ``tell``
+    form: str  # Kind of the actor, ``perceptron`` or ``attention``
     rollout: int
     epochs: int
     trace: float
     entropy: float
-    guidance: Guidance | None
+    guidance: Guidance | None  # The teacher; None for none
     traffic: tuple[SingleTraffic, ...]
 
     shared = False  # A vehicle on its own is told nothing by others

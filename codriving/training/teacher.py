@@ -20,13 +20,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Guidance:
-    """How a student is guided (TeLL, Xu et al., 2025).
+    """How a student is guided (TeLL, Xu et al., 2025)."""
 
-    Attributes:
-        llm: Who teaches: a language model, or ``offline`` for the driver below.
-    """
-
-    llm: Model
+    llm: Model  # Who teaches: a language model, or ``offline`` for the driver below
     driver: Driver
     every: int
     pull: Linear

@@ -38,15 +38,11 @@ class Exam:
 
 @dataclass(frozen=True, slots=True)
 class Grade:
-    """The result of an exam.
-
-    Attributes:
-        duration: Mean duration of the successful ones [s]; None without any.
-    """
+    """The result of an exam."""
 
     success: float
     collision: float
-    duration: float | None
+    duration: float | None  # Mean duration of the successful ones [s]; None without any
 
 
 def examine(exam: Exam, network: AnyNetwork, family: str, shared: bool, first_seed: int, episodes: int) -> Grade:

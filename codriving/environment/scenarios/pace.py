@@ -12,22 +12,15 @@ TOP_SPEED = 40.0  # No vehicle of highway-env drives faster [m/s]
 class Pace:
     """Time, speeds and perception of a scenario.
 
-    Attributes:
-        simulation_frequency: Simulation steps per second [Hz].
-        decision_frequency: Decisions per second [Hz].
-        time_limit: Longest duration of an episode [s].
-        target_speeds: Speeds that FASTER and SLOWER step through [m/s].
-        detection_range: Radius of perception [m].
-
     Raises:
         ConfigError: If a value is out of range.
     """
 
-    simulation_frequency: float
-    decision_frequency: float
-    time_limit: float
-    target_speeds: tuple[float, ...]
-    detection_range: float
+    simulation_frequency: float  # Simulation steps per second [Hz]
+    decision_frequency: float  # Decisions per second [Hz]
+    time_limit: float  # Longest duration of an episode [s]
+    target_speeds: tuple[float, ...]  # Speeds that FASTER and SLOWER step through [m/s]
+    detection_range: float  # Radius of perception [m]
 
     def __post_init__(self) -> None:
         require_range("simulation_frequency", self.simulation_frequency, 5, 50, " Hz")

@@ -24,21 +24,14 @@ Spot = Callable[[Start], tuple[Hashable, float]]
 
 @dataclass(frozen=True, slots=True)
 class Crowd:
-    """How many CAVs and human drivers there are, and how they start.
-
-    Attributes:
-        start: Nearest and farthest start along a route [m].
-        cav_speed: Lowest and highest start speed of CAVs [m/s].
-        hdv_speed: Lowest and highest start speed of HDVs, which is also the speed they want [m/s].
-        spacing: Smallest distance between two starts on one lane [m].
-    """
+    """How many CAVs and human drivers there are, and how they start."""
 
     cavs: int
     hdvs: tuple[int, int]
-    start: tuple[float, float]
-    cav_speed: tuple[float, float]
-    hdv_speed: tuple[float, float]
-    spacing: float
+    start: tuple[float, float]  # Nearest and farthest start along a route [m]
+    cav_speed: tuple[float, float]  # Lowest and highest start speed of CAVs [m/s]
+    hdv_speed: tuple[float, float]  # Lowest and highest start speed of HDVs, which is also the speed they want [m/s]
+    spacing: float  # Smallest distance between two starts on one lane [m]
 
     def check(self, cavs: int, hdvs: int, latest: float, why: str, speed_limit: float) -> None:
         """Refuse what is out of range.

@@ -19,15 +19,10 @@ GAP = 4.0  # Time gap before which a driver who stands starts onto the lane besi
 
 
 class HumanDriver(RouteFollower, IDMVehicle):
-    """An uncontrolled vehicle that shares nothing and follows its own route.
+    """An uncontrolled vehicle that shares nothing and follows its own route."""
 
-    Attributes:
-        waits_at: Arc length of the line at which the driver has to wait [m], or None.
-        sight: How far ahead along the route it looks for bodies [m].
-    """
-
-    waits_at: float | None = None
-    sight: float
+    waits_at: float | None = None  # Arc length of the line at which the driver has to wait [m], or None
+    sight: float  # How far ahead along the route it looks for bodies [m]
 
     @classmethod
     def start(

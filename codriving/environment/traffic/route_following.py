@@ -28,30 +28,19 @@ NEARBY = 10.0  # From a square that a route does not note, every point of it is 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoutePath:
-    """A route, its centre line, and where each of its lanes begins.
-
-    Attributes:
-        starts: Arc length at which each lane of the route begins [m].
-        x: The points of the centre line (n,) [m].
-        y: The same (n,) [m].
-        points: The same one by one, which is faster for a few of them [m].
-        headings: Heading at each point [rad].
-        spacing: Arc length between two points [m].
-        lane_end: Arc length at which a lane ends that has to be left before [m]; inf if there is none.
-        ending: That lane, or None.
-    """
+    """A route, its centre line, and where each of its lanes begins."""
 
     route: Route
     path: Path
-    starts: tuple[float, ...]
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    points: tuple[tuple[float, float], ...]
-    headings: tuple[float, ...]
-    spacing: float
+    starts: tuple[float, ...]  # Arc length at which each lane of the route begins [m]
+    x: NDArray[np.float64]  # The points of the centre line (n,) [m]
+    y: NDArray[np.float64]  # The same (n,) [m]
+    points: tuple[tuple[float, float], ...]  # The same one by one, which is faster for a few of them [m]
+    headings: tuple[float, ...]  # Heading at each point [rad]
+    spacing: float  # Arc length between two points [m]
     cells: frozenset[tuple[int, int]]
-    lane_end: float = math.inf
-    ending: LaneId | None = None
+    lane_end: float = math.inf  # Arc length at which a lane ends that has to be left before [m]; inf if there is none
+    ending: LaneId | None = None  # That lane, or None
 
     @property
     def end(self) -> float:
@@ -124,21 +113,16 @@ def plain(lane: LaneId) -> LaneId:
 
 
 class RouteFollower(PlainMotion):
-    """Mixin over highway-env's controlled vehicles.
-
-    Attributes:
-        s: Arc length along the route [m].
-        offset: Lateral offset from the route [m].
-        shift: Lateral offset of the present lane's centre from the route [m]; 0 on the lane of the route itself.
-    """
+    """Mixin over highway-env's controlled vehicles."""
 
     kind = Kind.HDV
     target_lane_index: LaneId
     id: str
     route_path: RoutePath
     route_paths: Mapping[str, RoutePath]
-    s: float
-    offset: float
+    s: float  # Arc length along the route [m]
+    offset: float  # Lateral offset from the route [m]
+    # Lateral offset of the present lane's centre from the route [m]; 0 on the lane of the route itself.
     shift: float = 0.0
     corrections: Corrections
 

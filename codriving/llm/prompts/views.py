@@ -18,13 +18,9 @@ class VehicleView:
 
 @dataclass(frozen=True, slots=True)
 class LaneView:
-    """A lane that runs the CAV's way, with the next vehicles ahead and behind there.
+    """A lane that runs the CAV's way, with the next vehicles ahead and behind there."""
 
-    Attributes:
-        name: ``ego lane``, ``left lane`` or ``right lane``.
-    """
-
-    name: str
+    name: str  # ``ego lane``, ``left lane`` or ``right lane``
     leading: VehicleView | None
     rear: VehicleView | None
 
@@ -42,16 +38,11 @@ class OtherView:
 
 @dataclass(frozen=True, slots=True)
 class WayView:
-    """One way that a vehicle may take, and where it meets that of the CAV.
-
-    Attributes:
-        mine: The CAV's distance to the zone.
-        its: The other's distance to the zone.
-    """
+    """One way that a vehicle may take, and where it meets that of the CAV."""
 
     relation: str
-    mine: float
-    its: float
+    mine: float  # The CAV's distance to the zone
+    its: float  # The other's distance to the zone
     my_ttcp: float
     its_ttcp: float
     dttcp: float
@@ -60,18 +51,14 @@ class WayView:
 
 @dataclass(frozen=True, slots=True)
 class ConflictView(WayView):
-    """Everything that one other vehicle may get in the CAV's way; of several zones the most urgent one.
-
-    Attributes:
-        free: When the CAV's way through all of them is expected to be free; 0 if the CAV goes first.
-    """
+    """Everything that one other vehicle may get in the CAV's way; of several zones the most urgent one."""
 
     id: str
     driver: str
     lane: str
     speed: float
     zones: int
-    free: float
+    free: float  # When the CAV's way through all of them is expected to be free; 0 if the CAV goes first
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,40 +80,29 @@ class OrderView:
 
 @dataclass(frozen=True, slots=True)
 class ActionView:
-    """Actions of which the safety check says the same.
-
-    Attributes:
-        progress: How far the CAV gets within 10 s if it then keeps the order; None if it cannot keep it.
-        arrivals: Earliest arrival at the zones of each conflict, in the order of the conflicts.
-    """
+    """Actions of which the safety check says the same."""
 
     names: tuple[str, ...]
     safe: bool
     reasons: tuple[str, ...]
-    progress: float | None
-    arrivals: tuple[float, ...]
+    progress: float | None  # How far the CAV gets within 10 s if it then keeps the order; None if it cannot keep it
+    arrivals: tuple[float, ...]  # Earliest arrival at the zones of each conflict, in the order of the conflicts
 
 
 @dataclass(frozen=True, slots=True)
 class EntrantView:
-    """A CAV that is to be ordered.
-
-    Attributes:
-        distance: Distance to its first conflict zone.
-        earliest: Earliest time at which it can be there.
-        blocked: Intervals in which human drivers may be in its way there.
-    """
+    """A CAV that is to be ordered."""
 
     id: str
     speed: float
     route: str
     turns: bool
     target_speed: float
-    distance: float
-    earliest: float
+    distance: float  # Distance to its first conflict zone
+    earliest: float  # Earliest time at which it can be there
     can_stop: bool
     behind: str
-    blocked: tuple[tuple[float, float], ...]
+    blocked: tuple[tuple[float, float], ...]  # Intervals in which human drivers may be in its way there
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,19 +130,13 @@ class FixedView:
 
 @dataclass(frozen=True, slots=True)
 class SeenView:
-    """A vehicle as the CAV sees it; who drives it and where it goes is not known.
-
-    Attributes:
-        where: Where it is seen from the CAV, for instance ``ahead left``.
-        distance: Distance of the centres.
-        standing: How long it has been standing.
-    """
+    """A vehicle as the CAV sees it; who drives it and where it goes is not known."""
 
     id: str
-    where: str
-    distance: float
+    where: str  # Where it is seen from the CAV, for instance ``ahead left``
+    distance: float  # Distance of the centres
     speed: float
-    standing: float
+    standing: float  # How long it has been standing
     ways: tuple[WayView, ...]
     elsewhere: int
 

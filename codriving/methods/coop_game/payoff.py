@@ -43,20 +43,15 @@ def on_one_scale(distance: float, turning: bool, scale: Scale) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Payoff:
-    """What a joint plan is worth to each vehicle.
-
-    Attributes:
-        reference_acceleration: Acceleration that costs the whole weight of comfort [m/s2].
-        risk_time: Gap in time at which the risk has fallen to 1/e [s].
-    """
+    """What a joint plan is worth to each vehicle."""
 
     objective: Goal
     scale: Scale
     efficiency: float
     comfort: float
     safety: float
-    reference_acceleration: float
-    risk_time: float
+    reference_acceleration: float  # Acceleration that costs the whole weight of comfort [m/s2]
+    risk_time: float  # Gap in time at which the risk has fallen to 1/e [s]
 
     def of(self, instance: Instance, plan: JointPlan, planner: JointPlanner, ahead: float = 0.0) -> dict[str, float]:
         """Return what a plan is worth to each vehicle, by id."""

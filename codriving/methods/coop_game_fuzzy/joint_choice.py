@@ -20,15 +20,10 @@ TOLERANCE = 1e-12  # Costs that differ by less are equal
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """What joint actions cost.
+    """What joint actions cost."""
 
-    Attributes:
-        own: Cost of each option of each vehicle, whatever the others do (n, options).
-        pair: Cost of each option of the first vehicle for each option of the second (n, options, n, options).
-    """
-
-    own: Array
-    pair: Array
+    own: Array  # Cost of each option of each vehicle, whatever the others do (n, options)
+    pair: Array  # Cost of each option of the first vehicle for each option of the second (n, options, n, options)
 
     def of(self, joints: Sequence[Joint]) -> Array:
         """Return what joint actions cost each vehicle."""

@@ -30,16 +30,12 @@ class Poses:
 
 @dataclass(frozen=True, slots=True)
 class Weights:
-    """How much each term counts.
-
-    Attributes:
-        reference_acceleration: Acceleration that costs the whole weight of comfort [m/s2].
-    """
+    """How much each term counts."""
 
     risk: float
     efficiency: float
     comfort: float
-    reference_acceleration: float
+    reference_acceleration: float  # Acceleration that costs the whole weight of comfort [m/s2]
 
 
 def joint_costs(

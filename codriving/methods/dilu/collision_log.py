@@ -27,20 +27,14 @@ LONGEST = 100  # Characters of a mistake, and of a lesson: a memory is told in a
 
 @dataclass(frozen=True, slots=True)
 class Mistake:
-    """The last decision before a collision that was not to slow down.
-
-    Attributes:
-        other: The vehicle of the collision.
-        later: How much later that was [s].
-        struck: Whether the CAV ran into the other vehicle, rather than the other way round.
-    """
+    """The last decision before a collision that was not to slow down."""
 
     situation: Situation
     decision: Decision
     step: int
-    other: str
-    later: float
-    struck: bool
+    other: str  # The vehicle of the collision
+    later: float  # How much later that was [s]
+    struck: bool  # Whether the CAV ran into the other vehicle, rather than the other way round
 
 
 @dataclass(frozen=True, slots=True)

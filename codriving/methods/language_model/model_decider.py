@@ -14,13 +14,9 @@ SAFEST = (Action.SLOWER, Action.IDLE, Action.FASTER, Action.LANE_RIGHT, Action.L
 
 
 class ModelDecider(Decider):
-    """Asks a model for every CAV, all in one go; a method has a template, its variables and a fallback of its own.
+    """Asks a model for every CAV, all in one go; a method has a template, its variables and a fallback of its own."""
 
-    Attributes:
-        template: Which template is filled in.
-    """
-
-    template: ClassVar[str]
+    template: ClassVar[str]  # Which template is filled in
 
     def __init__(self, model: PromptedModel) -> None:
         self.model = model

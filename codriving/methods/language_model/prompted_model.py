@@ -42,15 +42,10 @@ def check_model(llm: Model, memory: CaseMemory | None) -> None:
 
 
 class ModelMethod(Method):
-    """A method that reasons by a language model or by rules in its place, and may remember.
+    """A method that reasons by a language model or by rules in its place, and may remember."""
 
-    Attributes:
-        asked: Purposes of the questions of every episode.
-        reflects: Purpose of the questions on mistakes, if the memory asks any.
-    """
-
-    asked: ClassVar[tuple[str, ...]]
-    reflects: ClassVar[str]
+    asked: ClassVar[tuple[str, ...]]  # Purposes of the questions of every episode
+    reflects: ClassVar[str]  # Purpose of the questions on mistakes, if the memory asks any
 
     def __init__(self, llm: Model, memory: CaseMemory | None) -> None:
         check_model(llm, memory)

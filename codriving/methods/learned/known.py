@@ -14,29 +14,18 @@ SHARED = ""  # In whose name the CAVs watch together when they share what they s
 
 @dataclass(frozen=True, slots=True)
 class Other:
-    """Another vehicle, as far as it is known.
-
-    Attributes:
-        x: Position [m].
-        y: Position [m].
-        speed: Speed [m/s].
-        heading: Heading [rad].
-        target: Speed that it is bound for [m/s]; 0 where nothing is known of it.
-        length: Length [m].
-        places: Each route that it may be on, with its arc length there [m].
-        priority: Rank of its lane by the rules of the road; None where these do not count.
-    """
+    """Another vehicle, as far as it is known."""
 
     id: str
     is_cav: bool
-    x: float
-    y: float
-    speed: float
-    heading: float
-    target: float
-    length: float
-    places: Places
-    priority: int | None = None
+    x: float  # Position [m]
+    y: float  # Position [m]
+    speed: float  # Speed [m/s]
+    heading: float  # Heading [rad]
+    target: float  # Speed that it is bound for [m/s]; 0 where nothing is known of it
+    length: float  # Length [m]
+    places: Places  # Each route that it may be on, with its arc length there [m]
+    priority: int | None = None  # Rank of its lane by the rules of the road; None where these do not count
 
 
 class Knowledge:

@@ -22,14 +22,9 @@ REASONS = {VALUES: ("the network expects the most of", ".2f"), PROBABILITIES: ("
 
 @dataclass(frozen=True, slots=True)
 class Judged(Deliberation):
-    """One decision step of a learned method.
+    """One decision step of a learned method."""
 
-    Attributes:
-        time: Simulated time [s].
-        meaning: What the values are, ``values`` or ``probabilities``.
-    """
-
-    time: float
+    time: float  # Simulated time [s]
     step: int
     family: str
     routes: Mapping[str, str]
@@ -37,7 +32,7 @@ class Judged(Deliberation):
     values: Mapping[str, Mapping[Action, float]]
     chosen: Mapping[str, Action]
     counts: Mapping[str, float]
-    meaning: str = VALUES
+    meaning: str = VALUES  # What the values are, ``values`` or ``probabilities``
 
     @property
     def actions(self) -> dict[str, Action]:
@@ -65,14 +60,10 @@ class Judged(Deliberation):
 
 
 class Learned(Method):
-    """Drives with trained weights, those of the family of the road; the best action is taken, and nothing is drawn.
-
-    Attributes:
-        meaning: What the network says of an action, ``values`` or ``probabilities``.
-    """
+    """Drives with trained weights, those of the family of the road; the best action is taken, and nothing is drawn."""
 
     shared: ClassVar[bool]
-    meaning: ClassVar[str]
+    meaning: ClassVar[str]  # What the network says of an action, ``values`` or ``probabilities``
 
     def __init__(self, weights: Path | None) -> None:
         self._file = weights

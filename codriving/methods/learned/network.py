@@ -39,15 +39,11 @@ OWN = "ego"  # The layer that takes what is no slot: the ego vehicle, and on lan
 
 @dataclass(frozen=True, slots=True)
 class Attention:
-    """One layer of attention over slots, then a multilayer perceptron (after TeLL, Xu et al., 2025).
-
-    Attributes:
-        layers: Weight and bias of each of ``LAYERS``, by name.
-    """
+    """One layer of attention over slots, then a multilayer perceptron (after TeLL, Xu et al., 2025)."""
 
     LAYERS: ClassVar[tuple[str, ...]] = (OWN, "other", "query", "key", "value")
 
-    layers: Mapping[str, tuple[FloatArray, FloatArray]]
+    layers: Mapping[str, tuple[FloatArray, FloatArray]]  # Weight and bias of each of ``LAYERS``, by name
     judge: Network
 
     def __call__(self, observations: FloatArray) -> FloatArray:

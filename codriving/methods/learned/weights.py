@@ -22,29 +22,19 @@ CLOSE = 1e-6  # Numbers of a road and of the weights that differ by less are the
 
 @dataclass(frozen=True, slots=True)
 class Purpose:
-    """What weights were trained for.
+    """What weights were trained for."""
 
-    Attributes:
-        method: Name of the learner, for instance ``madqn``.
-        family: ``junction`` or ``lanes``.
-        near: Unit of length of gaps and zones, as a time at the highest target speed [s].
-        far: Unit of length along the own route, likewise [s].
-        decision_interval: Time between two decisions [s].
-        target_speeds: The grids of target speeds that were driven with [m/s].
-        form: Kind of the network, ``perceptron`` or ``attention``.
-    """
-
-    method: str
-    family: str
+    method: str  # Name of the learner, for instance ``madqn``
+    family: str  # ``junction`` or ``lanes``
     features: int
-    near: float
-    far: float
-    decision_interval: float
-    target_speeds: tuple[tuple[float, ...], ...]
+    near: float  # Unit of length of gaps and zones, as a time at the highest target speed [s]
+    far: float  # Unit of length along the own route, likewise [s]
+    decision_interval: float  # Time between two decisions [s]
+    target_speeds: tuple[tuple[float, ...], ...]  # The grids of target speeds that were driven with [m/s]
     actions: tuple[str, ...]
     hidden: tuple[int, ...]
     training: Mapping[str, Any]
-    form: str = PERCEPTRON
+    form: str = PERCEPTRON  # Kind of the network, ``perceptron`` or ``attention``
 
     @classmethod
     def read(cls, text: str, where: str) -> Self:

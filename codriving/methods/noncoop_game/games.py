@@ -21,17 +21,11 @@ KEEP, CHANGE = 0, 1  # Rows of the game
 
 @dataclass(frozen=True, slots=True)
 class Game:
-    """All outcomes of a game of two: rows are the ego vehicle's accelerations, columns the other's.
+    """All outcomes of a game of two: rows are the ego vehicle's accelerations, columns the other's."""
 
-    Attributes:
-        choices: Accelerations of the ego vehicle (n,) and of the other one (m,) [m/s2].
-        progress: Way covered by each acceleration, as a share of what is possible, of both players (2, n).
-        gaps: Gap in time between the one that leaves a zone and the one that enters it next (n, m) [s].
-    """
-
-    choices: tuple[Array, Array]
-    progress: Array
-    gaps: Array
+    choices: tuple[Array, Array]  # Accelerations of the ego vehicle (n,) and of the other one (m,) [m/s2]
+    progress: Array  # Way covered by each acceleration, as a share of what is possible, of both players (2, n)
+    gaps: Array  # Gap in time between the one that leaves a zone and the one that enters it next (n, m) [s]
     overlaps: Flags  # Whether the two come too close within the horizon (n, m)
 
     def own(self, temper: Temper) -> Array:

@@ -202,13 +202,9 @@ class Patience:
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class WaitingDriver(Driver):
-    """A driver who lets those pass who are first, and starts into an empty zone once it has waited long enough.
+    """A driver who lets those pass who are first, and starts into an empty zone once it has waited long enough."""
 
-    Attributes:
-        ranges: Least and largest value of each setting.
-    """
-
-    ranges: ClassVar[Mapping[str, tuple[float, float]]]
+    ranges: ClassVar[Mapping[str, tuple[float, float]]]  # Least and largest value of each setting
     tie: float
     firm: float
     patience: float

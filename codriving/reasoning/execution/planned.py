@@ -17,33 +17,24 @@ from codriving.reasoning.prediction.rollout import PLANS, Plan
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """What an executor makes of an order.
-
-    Attributes:
-        progress: How far each CAV gets within the horizon after each first action with which it can keep the order
-            [m], by id; no entry for an action with which it cannot.
-    """
+    """What an executor makes of an order."""
 
     actions: Mapping[str, Action]
     reasons: Mapping[str, str]
     expected: Mapping[str, tuple[Expected, ...]]
+    # How far each CAV gets within the horizon after each first action with which it can keep the order [m], by id; no
+    # entry for an action with which it cannot.
     progress: Mapping[str, Mapping[Action, float]]
     counts: Mapping[str, int] = field(default_factory=dict)
 
 
 class Executor(ABC):
-    """Turns passing orders into actions, step after step of one episode.
-
-    Attributes:
-        gap: Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s].
-        margin: The same for motions, and for the gap test of lane changes [s].
-        library: Plans that it uses besides those that all methods predict.
-    """
+    """Turns passing orders into actions, step after step of one episode."""
 
     name: str = ""
-    gap: float
-    margin: float
-    library: tuple[Plan, ...] = ()
+    gap: float  # Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s]
+    margin: float  # The same for motions, and for the gap test of lane changes [s]
+    library: tuple[Plan, ...] = ()  # Plans that it uses besides those that all methods predict
 
     def reset(self) -> None:  # noqa: B027
         """Begin an episode; nothing is remembered from the one before."""

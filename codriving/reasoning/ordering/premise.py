@@ -11,12 +11,9 @@ CHANGES = 1.0  # Time by which the one that could be there later must have becom
 
 @dataclass(frozen=True, slots=True)
 class Premise:
-    """What was true when an order was agreed on.
+    """What was true when an order was agreed on."""
 
-    Attributes:
-        leads: By how much the first of each open pair could be there earlier than the second, by their ids [s].
-    """
-
+    # By how much the first of each open pair could be there earlier than the second, by their ids [s].
     leads: Mapping[Pair, float]
     held: frozenset[str]
     cannot_stop: frozenset[str]

@@ -29,13 +29,10 @@ Window = tuple[float, float]  # Begin and end of a time that a human driver bloc
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """An ordering problem and what is known of the human drivers in it.
-
-    Attributes:
-        passages: When each human driver may be in the way of each CAV, by CAV and driver [s].
-    """
+    """An ordering problem and what is known of the human drivers in it."""
 
     instance: Instance
+    # When each human driver may be in the way of each CAV, by CAV and driver [s].
     passages: Mapping[str, Mapping[str, Window]]
 
 

@@ -13,15 +13,11 @@ from codriving.datatypes import Action, Instance, Pair
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A CAV's wish to change lanes.
-
-    Attributes:
-        incentive: What it and those behind it gain (MOBIL) [m/s2]; inf if its route asks for the change.
-    """
+    """A CAV's wish to change lanes."""
 
     ego: str
     action: Action
-    incentive: float
+    incentive: float  # What it and those behind it gain (MOBIL) [m/s2]; inf if its route asks for the change
     since: float  # Simulated time at which it first asked [s]
     excludes: frozenset[str] = frozenset()
 
@@ -52,30 +48,23 @@ def best_subset(requests: Sequence[Request]) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class Ordering:
-    """The answer of an ordering rule.
-
-    Attributes:
-        not_before: Earliest time at which a vehicle may pass its reference point even if its way is free [s]; only of
-            those that the rule holds back for longer than their conflicts do.
-    """
+    """The answer of an ordering rule."""
 
     sequence: tuple[str, ...]
     times: Mapping[str, float]  # When each is to pass its reference point, in the same order [s]
     reasons: Mapping[Pair, str] = field(default_factory=dict)
     counts: Mapping[str, int] = field(default_factory=dict)
+    # Earliest time at which a vehicle may pass its reference point even if its way is free [s]; only of those that the
+    # rule holds back for longer than their conflicts do.
     not_before: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class JointPlan:
-    """What all CAVs would do in one order, planned one after another with the exact vehicle model.
-
-    Attributes:
-        travels: Distance of each CAV over time, by id; each (steps + 1,) [m].
-    """
+    """What all CAVs would do in one order, planned one after another with the exact vehicle model."""
 
     feasible: bool
-    travels: Mapping[str, NDArray[np.float64]]
+    travels: Mapping[str, NDArray[np.float64]]  # Distance of each CAV over time, by id; each (steps + 1,) [m]
     sample: float  # Time between two samples [s]
     stuck: int = 0
 

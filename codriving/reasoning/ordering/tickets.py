@@ -14,13 +14,9 @@ TIE = 1e-6  # Tickets that lie no farther apart are equal [s]
 
 
 class Ticket(NamedTuple):
-    """When a vehicle can arrive at the earliest, as it was when it came near.
+    """When a vehicle can arrive at the earliest, as it was when it came near."""
 
-    Attributes:
-        time: Simulated time of the earliest arrival [s].
-    """
-
-    time: float
+    time: float  # Simulated time of the earliest arrival [s]
     rank: int
     id: str
 

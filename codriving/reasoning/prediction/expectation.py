@@ -23,16 +23,13 @@ CLEARS = 1.6
 
 @dataclass(frozen=True, slots=True)
 class Expected:
-    """The expected motion of one vehicle.
-
-    Attributes:
-        progress: How far it gets within the horizon if it begins with an action and keeps the order [m]; no entry for
-            an action with which it could not keep the order, and none at all for human drivers.
-    """
+    """The expected motion of one vehicle."""
 
     route: str
     places: Array  # Arc length over time (n,) [m]
     free: bool
+    # How far it gets within the horizon if it begins with an action and keeps the order [m]; no entry for an action
+    # with which it could not keep the order, and none at all for human drivers.
     progress: Mapping[Action, float]
 
 

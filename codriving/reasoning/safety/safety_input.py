@@ -39,18 +39,13 @@ CONTINUATIONS: tuple[Plan, ...] = tuple(f(a) for f in (then_stop, then_go) for a
 
 @dataclass(frozen=True, slots=True)
 class SafetyInput:
-    """What the actions of one CAV are checked against.
-
-    Attributes:
-        expected: How each vehicle that it knows of is expected to move, by id.
-        lag: Samples that should lie between one vehicle's leaving a zone and the next one's entering it.
-    """
+    """What the actions of one CAV are checked against."""
 
     moment: Moment
     ego: str
     order: PassingOrder  # The order that the CAV goes by
-    expected: Mapping[str, tuple[Expected, ...]]
-    lag: int
+    expected: Mapping[str, tuple[Expected, ...]]  # How each vehicle that it knows of is expected to move, by id
+    lag: int  # Samples that should lie between one vehicle's leaving a zone and the next one's entering it
     stops: Array  # Arc length if it brakes after each action (actions, n) [m]
     goes: Array  # Arc length if it accelerates after each action (actions, n) [m]
     _sides: "dict[Action, SafetyInput | None]" = field(default_factory=dict)

@@ -67,15 +67,10 @@ def _within(one: VehicleState, other: VehicleState, distance: float) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class IntentSharing:
-    """Which intents are known, and whether conflicts can be found at all.
+    """Which intents are known, and whether conflicts can be found at all."""
 
-    Attributes:
-        shared: Whether every CAV tells its route, target lane and target speed; human drivers never do.
-        finds_conflicts: Whether conflicts are found, with the routes that are shared or that the map allows.
-    """
-
-    shared: bool
-    finds_conflicts: bool
+    shared: bool  # Whether every CAV tells its route, target lane and target speed; human drivers never do
+    finds_conflicts: bool  # Whether conflicts are found, with the routes that are shared or that the map allows
 
     def intents(self, world: WorldState) -> Mapping[str, Intent]:
         """Return the intents that every CAV knows of the others."""
