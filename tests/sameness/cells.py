@@ -1,10 +1,14 @@
 """What is driven to show that a change of the code changes no behaviour: cells, as a user types them."""
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 SEED, EPISODES = 10_000, 3
 """First seed and number of episodes of each cell."""
+
+FULL = bool(os.environ.get("CI") or os.environ.get("SAMENESS"))
+"""Whether all episodes are driven, as in CI; otherwise only the first of a cell whose episodes are independent."""
 
 LIMITS = {"intersection": 20, "roundabout": 22, "highway": 10, "merge": 12}
 """How long an episode lasts at most [s]: through the junction, past the first lane changes, into the merge."""
@@ -56,7 +60,13 @@ class Cell:
         """The whole command but for the name of the run and the address of the model."""
         if self.command == ("memory", "build"):
             return (*self.command, *self.overrides, "launcher=serial")
-        return (*self.command, *self.overrides, f"seed={SEED}", f"episodes={EPISODES}", "launcher=serial")
+        return (*self.command, *self.overrides, f"seed={SEED}", f"episodes={self.episodes}", "launcher=serial")
+
+    @property
+    def episodes(self) -> int:
+        """How many episodes are driven."""
+        learns = self.model or any("memory" in token for token in (*self.command, *self.overrides))
+        return EPISODES if FULL or learns else 1
 
 
 def _in(scenario: str, *more: str, limit: float | None = None) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ def start(checkout: Path, folder: Path, words: Sequence[str]) -> subprocess.Pope
         words: Which cells; all if there are none.
     """
     folder.mkdir()
-    environment = {**os.environ, "PYTHONPATH": str(checkout)}
+    environment = {**os.environ, "PYTHONPATH": str(checkout), "SAMENESS": "all"}
     return subprocess.Popen([sys.executable, HERE / "driving.py", folder, *words], cwd=folder, env=environment)
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import hashes
 import pytest
-from cells import CELLS, Cell
+from cells import CELLS, EPISODES, SEED, Cell
 from driving import drive
 
 GOLDEN = hashes.read()
@@ -17,5 +17,7 @@ def test_cells_and_golden_values_belong_together() -> None:
 
 @pytest.mark.parametrize("cell", CELLS, ids=lambda cell: cell.name.replace(" ", "-"))
 def test_a_cell_is_driven_as_version_0_1_did(cell: Cell, tmp_path: Path) -> None:
-    found = hashes.differences(cell.name, drive(cell, tmp_path), GOLDEN[cell.name])
+    beyond = tuple(str(SEED + k) for k in range(cell.episodes, EPISODES))
+    golden = [row for row in GOLDEN[cell.name] if not row["of"].endswith(beyond)]
+    found = hashes.differences(cell.name, drive(cell, tmp_path), golden)
     assert not found, "\n".join(found)
