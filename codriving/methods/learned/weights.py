@@ -119,8 +119,7 @@ def save(file: Path, trained: Trained) -> None:
     arrays = {name: np.ascontiguousarray(tensor) for name, tensor in tensors(trained.network).items()}
     # Not by the library's own file, which only its owner may read.
     file.write_bytes(packed(arrays))
-    text = json.dumps(asdict(trained.purpose), indent=2) + "\n"
-    sidecar(file).write_text(text, encoding="utf-8", newline="\n")
+    sidecar(file).write_text(json.dumps(asdict(trained.purpose), indent=2) + "\n", encoding="utf-8", newline="\n")
 
 
 def load(file: Path) -> Trained:

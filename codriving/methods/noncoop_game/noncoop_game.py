@@ -26,7 +26,6 @@ class NonCooperativeGame(Driver):
     """
 
     name = "noncoop_game"
-    variant = ""
 
     def __init__(
         self,
