@@ -231,9 +231,8 @@ class CoopGame(OrderRule):
 
         def reason(one: str, other: str) -> str:
             if level and level[one] < level[other]:
-                return (
-                    f"all gain most with the stream of {one} on level {level[one]}, that of {other} on {level[other]}"
-                )
+                levels = f"the stream of {one} on level {level[one]}, that of {other} on {level[other]}"
+                return f"all gain most with {levels}"
             if agreed:
                 return f"all gain most if {one} goes before {other}"
             return by_ticket(one, other, self.tickets.held)

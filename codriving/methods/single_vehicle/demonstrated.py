@@ -84,15 +84,10 @@ class Demonstrated(WaitingDriver):
         and enters no zone in which another vehicle may be first before it has left the way. All others are expected to
         keep the speed.
         """
-        travel, times = self._motions(moment, ego, PREFERRED)
-        sample = moment.forecast.sample
-        refusals = [
-            (f"{leader.id} ahead is close", self._too_close(leader, travel, times, sample, self.headway))
-            for leader in leaders(moment.scenes[ego], moment.road_map)
-        ]
-        refusals += [
-            (f"{e.conflict.other} may be there first", self._in_the_way(e, travel, times, sample)) for e in before
-        ]
+        motion = (*self._motions(moment, ego, PREFERRED), moment.forecast.sample)
+        ahead = leaders(moment.scenes[ego], moment.road_map)
+        refusals = [(f"{leader.id} ahead is close", self._too_close(leader, *motion, self.headway)) for leader in ahead]
+        refusals += [(f"{e.conflict.other} may be there first", self._in_the_way(e, *motion)) for e in before]
         found: dict[Action, str] = {}
         for why, refused in refusals:
             for k in np.flatnonzero(refused).tolist():
