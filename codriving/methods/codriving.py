@@ -55,21 +55,14 @@ class CoDriving(ModelMethod):
         """Fill the slots for a new episode."""
         super().reset(road_map, model, seed)
         coordinator, decider = ports(self._model, self.llm.ask_plain, self.cda.binding, self.cda.intent_sharing)
-        self._pipeline = Pipeline(
-            perception=Perception(
-                road_map,
-                Forecast(model, (*CONTINUATIONS, *PLANS)),
-                Tracking(road_map),
-                SharedStates() if self.cda.state_sharing else SensedStates(),
-                SHARED_INTENTS if self.cda.intent_sharing else HIDDEN_INTENTS,
-            ),
-            negotiation=AgreedOrder(coordinator) if self.cda.negotiation else OwnOrders(self.cda.own_order, seed),
-            safety=ThreeLayers() if self.cda.safety_check else NoCheck(),
-            decider=decider,
-            margin=self.margin,
-            memory=self.memory,
-            ledger=self._model.ledger if self._model is not None else None,
-        )
+        forecast = Forecast(model, (*CONTINUATIONS, *PLANS))
+        states = SharedStates() if self.cda.state_sharing else SensedStates()
+        intents = SHARED_INTENTS if self.cda.intent_sharing else HIDDEN_INTENTS
+        perception = Perception(road_map, forecast, Tracking(road_map), states, intents)
+        negotiation = AgreedOrder(coordinator) if self.cda.negotiation else OwnOrders(self.cda.own_order, seed)
+        safety = ThreeLayers() if self.cda.safety_check else NoCheck()
+        ledger = self._model.ledger if self._model is not None else None
+        self._pipeline = Pipeline(perception, negotiation, safety, decider, self.margin, self.memory, ledger)
         self._road_map = road_map
         self._log = ConflictLog(road_map, model) if self.memory is not None and self.memory.learns else None
 

@@ -71,8 +71,7 @@ class Auction(OrderRule):
 
 def overtaken(ranking: Sequence[str], bids: Mapping[str, float], by: float) -> list[str]:
     """Let a vehicle that bids enough more than the one right before it go first, until none does."""
-    order = list(ranking)
-    moved = True
+    order, moved = list(ranking), True
     while moved:
         moved = False
         for k in range(len(order) - 1):

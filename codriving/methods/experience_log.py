@@ -100,15 +100,11 @@ class ConflictLog(ExperienceLog):
         views = self._sharing.detections(world, self._model)
         for name, scene in describe_scenes(world, views, world.intents, self._tracking).items():
             situation, action = decided.get(name, (None, None))
-            step = HistoryStep(
-                ego=scene.ego,
-                others={vehicle.id: vehicle for vehicle in world.vehicles if vehicle.id != name},
-                conflicts=find_conflicts(scene, self._road_map),
-                lead_gap=next((n.gap for n in scene.neighbours if n.role is Role.LEADING), None),
-                action=action,
-                could_go=situation is not None and any(a in situation.allowed for a in FASTER_THAN.get(action, ())),
-            )
-            self._steps.setdefault(name, []).append(step)
+            others = {vehicle.id: vehicle for vehicle in world.vehicles if vehicle.id != name}
+            conflicts = find_conflicts(scene, self._road_map)
+            gap = next((n.gap for n in scene.neighbours if n.role is Role.LEADING), None)
+            could_go = situation is not None and any(a in situation.allowed for a in FASTER_THAN.get(action, ()))
+            self._steps.setdefault(name, []).append(HistoryStep(scene.ego, others, conflicts, gap, action, could_go))
 
     def _own_collision(self, name: str, collision: Collision | None) -> OwnCollision | None:
         if collision is None or name not in (collision.striker, collision.struck) or self._begun is None:

@@ -38,8 +38,7 @@ class Ordered(Method):
     """
 
     def __init__(self, rule: OrderRule, executor: Executor) -> None:
-        self.rule, self.executor = rule, executor
-        self.name = rule.name
+        self.rule, self.executor, self.name = rule, executor, rule.name
         driven = "" if executor.name == "planned" else executor.name
         self.variant = "/".join(word for word in (rule.variant, driven) if word)
 
@@ -47,8 +46,7 @@ class Ordered(Method):
         """Begin an episode; nothing is remembered from the one before."""
         forecast = Forecast(model, (*CONTINUATIONS, *PLANS, *self.executor.library))
         self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SHARED_INTENTS)
-        self._requests = LaneRequests()
-        self._lag = round(self.executor.margin / forecast.sample)
+        self._requests, self._lag = LaneRequests(), round(self.executor.margin / forecast.sample)
         self.rule.reset(seed)
         self.executor.reset()
 
@@ -77,11 +75,8 @@ class Ordered(Method):
             return {}
         granted = self.rule.grant(requests)
         self._requests.granted(granted, moment.time)
-        return {
-            r.ego: Decision(r.ego, r.action, f"{r.action} was granted among {len(requests)} requests")
-            for r in requests
-            if r.ego in granted
-        }
+        why = f"was granted among {len(requests)} requests"
+        return {r.ego: Decision(r.ego, r.action, f"{r.action} {why}") for r in requests if r.ego in granted}
 
 
 def _situation(moment: Moment, name: str, agreed: PassingOrder, drive: Drive, change: Decision | None) -> Situation:

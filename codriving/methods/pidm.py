@@ -15,20 +15,10 @@ ONCE: tuple[Plan, ...] = ((Action.SLOWER, Action.IDLE), (Action.IDLE,), (Action.
 
 # Least and largest value of each setting.
 LIMITS = {
-    "acceleration": (0.1, 10.0),
-    "deceleration": (0.1, 10.0),
-    "hardest": (1.0, 15.0),
-    "gap": (0.0, 20.0),
-    "headway": (0.0, 5.0),
-    "projection": (0.0, 20.0),
-    "stop_gap": (0.0, 20.0),
-    "tie": (0.0, 5.0),
-    "firm": (0.5, 10.0),
-    "patience": (0.0, 60.0),
-    "clear": (0.0, 10.0),
-    "window": (0.1, 5.0),
-    "brake_at": (0.0, 10.0),
-}
+    "acceleration": (0.1, 10.0), "deceleration": (0.1, 10.0), "hardest": (1.0, 15.0), "gap": (0.0, 20.0),
+    "headway": (0.0, 5.0), "projection": (0.0, 20.0), "stop_gap": (0.0, 20.0), "tie": (0.0, 5.0), "firm": (0.5, 10.0),
+    "patience": (0.0, 60.0), "clear": (0.0, 10.0), "window": (0.1, 5.0), "brake_at": (0.0, 10.0),
+}  # fmt: skip
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -36,7 +26,6 @@ class ProjectedIdm(WaitingDriver):
     """A driver who follows real leaders, and those whom it projects onto its lane (after Kreutz and Eggert, 2021)."""
 
     name = "pidm"
-    variant = ""
     ranges = LIMITS
 
     acceleration: float
@@ -80,8 +69,7 @@ class ProjectedIdm(WaitingDriver):
         waits = f"it has waited for {waited:.0f} s and the zone is empty" if starts else ""
         before, precedences = self.yields_to(moment, ego, met, waits)
         for e, why in before:
-            wished = self._behind(e, self._line(e, met), moment, ego)
-            options.append((wished, f"{e.conflict.other} goes first: {why}"))
+            options.append((self._behind(e, self._line(e, met), moment, ego), f"{e.conflict.other} goes first: {why}"))
         # Of several that wish the same the first one counts, so that no vehicle is named that is not in the way.
         wished, why = min(options, key=lambda option: option[0])
         return wished, why, precedences

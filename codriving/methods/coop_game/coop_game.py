@@ -61,21 +61,20 @@ class Agreement:
         return [n for n, was in sorted(other.payoffs.items()) if self.payoffs.get(n, was) < was - TOLERANCE]
 
 
+@dataclass(eq=False)
 class Coalition:
     """Evaluates orders, each of them once."""
 
-    def __init__(
-        self,
-        instance: Instance,
-        planner: JointPlanner,
-        payoff: Payoff,
-        streams: Streams,
-        arrived: Sequence[str],
-        limit: int,
-    ) -> None:
-        self.instance, self.planner, self.payoff = instance, planner, payoff
-        self.streams, self.arrived, self.limit = streams, tuple(arrived), limit
-        self._free = [(a, b) for k, a in enumerate(arrived) for b in arrived[:k] if is_free(instance, a, b)]
+    instance: Instance
+    planner: JointPlanner
+    payoff: Payoff
+    streams: Streams
+    arrived: Sequence[str]
+    limit: int
+
+    def __post_init__(self) -> None:
+        pairs = ((a, b) for k, a in enumerate(self.arrived) for b in self.arrived[:k])
+        self._free = [pair for pair in pairs if is_free(self.instance, *pair)]
         self._known: dict[tuple[bool, ...], Agreement] = {}
 
     @property
@@ -189,14 +188,9 @@ class CoopGame(OrderRule):
         kept = before is not None and self._keeps(before, best, alone, planner)
         chosen = before if kept and before is not None else best
         self._agreed = chosen.order
-        counts = {
-            "orders": len(coalition.evaluated),
-            "infeasible": sum(not a.plan.feasible for a in coalition.evaluated),
-            "enumerated": int(enumerated),
-            "fallback": int(not chosen.plan.feasible),
-            "kept": int(kept),
-            "worse_off": len(chosen.worse_off(alone)),
-        }
+        infeasible, worse_off = sum(not a.plan.feasible for a in coalition.evaluated), len(chosen.worse_off(alone))
+        counts = {"orders": len(coalition.evaluated), "infeasible": infeasible, "enumerated": int(enumerated)}
+        counts |= {"fallback": int(not chosen.plan.feasible), "kept": int(kept), "worse_off": worse_off}
         return self._ordering(instance, streams, chosen, counts)
 
     def _as_before(self, arrived: Sequence[str]) -> list[str]:
@@ -237,9 +231,8 @@ class CoopGame(OrderRule):
 
         def reason(one: str, other: str) -> str:
             if level and level[one] < level[other]:
-                return (
-                    f"all gain most with the stream of {one} on level {level[one]}, that of {other} on {level[other]}"
-                )
+                levels = f"the stream of {one} on level {level[one]}, that of {other} on {level[other]}"
+                return f"all gain most with {levels}"
             if agreed:
                 return f"all gain most if {one} goes before {other}"
             return by_ticket(one, other, self.tickets.held)

@@ -89,9 +89,6 @@ class Payoff:
         partners = [name for name in instance.vehicles if name != vehicle.id and instance.conflict(name, vehicle.id)]
         gaps = [max(planner.gap_time(plan, vehicle.id, name), 0.0) for name in partners]
         risk = sum(math.exp(-gap / self.risk_time) for gap in gaps) / len(gaps) if gaps else 0.0
-        terms = (
-            self.efficiency * (distance - left) / distance
-            - self.comfort * float((acceleration**2).mean()) / self.reference_acceleration**2
-            - self.safety * risk
-        )
+        effort = self.comfort * float((acceleration**2).mean()) / self.reference_acceleration**2
+        terms = self.efficiency * (distance - left) / distance - effort - self.safety * risk
         return terms / (self.efficiency + self.comfort + self.safety)

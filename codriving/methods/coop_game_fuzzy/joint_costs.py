@@ -48,10 +48,8 @@ def joint_costs(
     accelerations = np.gradient(speeds, forecast.sample, axis=2)
     own = weights.efficiency * ((top - speeds) ** 2).mean(axis=2) / top**2
     own += weights.comfort * (accelerations**2).mean(axis=2) / weights.reference_acceleration**2
-    bodies = [
-        poses(moment.road_map.paths[v.routes[0][0]], v.routes[0][1] + p, s)
-        for v, p, s in zip(vehicles.values(), places, speeds, strict=True)
-    ]
+    motions = zip(vehicles.values(), places, speeds, strict=True)
+    bodies = [poses(moment.road_map.paths[v.routes[0][0]], v.routes[0][1] + p, s) for v, p, s in motions]
     for i, (name, where) in enumerate(zip(vehicles, bodies, strict=True)):
         own[i] += weights.risk * human_risk(moment, name, where, samples, top)
     x, y, heading, speed = (np.array([getattr(b, key) for b in bodies]) for key in ("x", "y", "heading", "speed"))

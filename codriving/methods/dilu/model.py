@@ -83,13 +83,8 @@ def _question(model: PromptedModel, road_map: RoadMap, driving: DrivingModel, mi
             return f"{one_line(correction.action)} cannot have been right; choose one of: {', '.join(right)}"
         return "" if correction.lesson else "the lesson is missing"
 
-    return Question(
-        purpose="reflect",
-        subject=situation.scene.ego.id,
-        messages=model.prompts.messages("dilu_reflect", variables),
-        schema=correction_reply(tuple(right)),
-        check=check,
-    )
+    messages = model.prompts.messages("dilu_reflect", variables)
+    return Question("reflect", situation.scene.ego.id, messages, correction_reply(tuple(right)), check)
 
 
 def _correction(mistake: Mistake, answer: Answer) -> Correction:
@@ -102,16 +97,7 @@ def _correction(mistake: Mistake, answer: Answer) -> Correction:
 MOST = 6  # Vehicles at most of which it is told where they are and which ways they may take
 
 # Words for eighths of a turn, clockwise from straight ahead.
-DIRECTIONS = (
-    "ahead",
-    "ahead right",
-    "to the right",
-    "behind right",
-    "behind",
-    "behind left",
-    "to the left",
-    "ahead left",
-)
+EIGHTHS = ("ahead", "ahead right", "to the right", "behind right", "behind", "behind left", "to the left", "ahead left")
 
 
 def seen_view(
@@ -151,15 +137,9 @@ def _seen(situation: Situation, n: TrackedVehicle, names: Names) -> SeenView:
     for c in situation.conflicts:
         if c.other == n.id:
             ways.setdefault(c.routes[1], c)
-    return SeenView(
-        id=names(n.id),
-        where=_direction(scene, n),
-        distance=scene.distance(n),
-        speed=n.speed,
-        standing=n.standing,
-        ways=_apart([WayView(str(c.relation), *c.distances, *c.ttcp, c.dttcp, str(c.severity)) for c in ways.values()]),
-        elsewhere=sum(route not in ways for route, _ in n.routes),
-    )
+    views = [WayView(str(c.relation), *c.distances, *c.ttcp, c.dttcp, str(c.severity)) for c in ways.values()]
+    elsewhere, where = sum(route not in ways for route, _ in n.routes), _direction(scene, n)
+    return SeenView(names(n.id), where, scene.distance(n), n.speed, n.standing, _apart(views), elsewhere)
 
 
 def _apart(ways: list[WayView]) -> tuple[WayView, ...]:
@@ -171,8 +151,7 @@ def _apart(ways: list[WayView]) -> tuple[WayView, ...]:
 def _direction(scene: SceneDescription, n: TrackedVehicle) -> str:
     ahead, right = scene.offset(n)
     # The y axis points to the right of the x axis, so that angles grow clockwise.
-    angle = degrees(atan2(right, ahead))
-    return DIRECTIONS[round(angle / 45) % len(DIRECTIONS)]
+    return EIGHTHS[round(degrees(atan2(right, ahead)) / 45) % len(EIGHTHS)]
 
 
 def _targets_after(model: DrivingModel, speed: float, target: float) -> dict[Action, float]:

@@ -15,15 +15,12 @@ def decide_by_rule(
     rule: Driver, moment: Moment, situations: Sequence[Situation]
 ) -> tuple[list[Situation], list[Decision], Counter[str]]:
     """Stand in for the language model; this is not DiLu, and tables call it ``dilu-rule``."""
-    choices = [rule.decide(moment, situation.scene.ego.id) for situation in situations]
-    based_on = [
-        replace(account(moment, situation.scene.ego.id, choice), memories=situation.memories)
-        for choice, situation in zip(choices, situations, strict=True)
-    ]
-    decisions = [
-        corrected(situation, Decision(situation.scene.ego.id, choice.action, choice.reason))
-        for situation, choice in zip(based_on, choices, strict=True)
-    ]
+    egos = [situation.scene.ego.id for situation in situations]
+    choices = [rule.decide(moment, ego) for ego in egos]
+    accounts = [account(moment, ego, choice) for ego, choice in zip(egos, choices, strict=True)]
+    based_on = [replace(own, memories=s.memories) for own, s in zip(accounts, situations, strict=True)]
+    plain = [Decision(ego, choice.action, choice.reason) for ego, choice in zip(egos, choices, strict=True)]
+    decisions = [corrected(situation, decision) for situation, decision in zip(based_on, plain, strict=True)]
     counts = Counter[str]()
     for choice in choices:
         counts.update(choice.counts)
@@ -45,12 +42,8 @@ def corrected(situation: Situation, decision: Decision) -> Decision:
     cases = [m for m in memories if m.action is action and m.verdict is Verdict.INTENSIFIED]
     number = sum(m.count for m in cases)
     times = "once" if number == 1 else f"{number} times"
-    return replace(
-        decision,
-        action=other,
-        reason=f"{action} was a mistake {times} in situations like this one, so {other}",
-        recalled=tuple(m.id for m in cases),
-    )
+    reason = f"{action} was a mistake {times} in situations like this one, so {other}"
+    return replace(decision, action=other, reason=reason, recalled=tuple(m.id for m in cases))
 
 
 def correct_by_rule(mistakes: Sequence[Mistake]) -> list[Correction]:

@@ -107,14 +107,8 @@ class ModelCoordinator(Coordinator):
             half = dict(list(pairs.items())[: len(pairs) // 2])
             return self._question(scenes, problem, half, names) if half else None
 
-        return Question(
-            purpose="negotiate",
-            subject="",
-            messages=self.model.prompts.messages("negotiate", values),
-            schema=order_reply(shown),
-            check=check,
-            shorter=shorter,
-        )
+        messages = self.model.prompts.messages("negotiate", values)
+        return Question("negotiate", "", messages, order_reply(shown), check, shorter)
 
 
 def _most_urgent(problem: Problem, conflicts: Mapping[str, tuple[Conflict, ...]]) -> dict[Pair, Conflict]:

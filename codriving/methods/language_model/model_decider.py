@@ -53,14 +53,9 @@ class ModelDecider(Decider):
             left = (len(situation.scene.neighbours) if nearest is None else nearest) // 2
             return self.question(situation, left, False) if left else None
 
-        return Question(
-            purpose="decide",
-            subject=situation.scene.ego.id,
-            messages=self.model.prompts.messages(self.template, self.variables(situation, nearest, with_memories)),
-            schema=decision_reply(tuple(allowed)),
-            check=check,
-            shorter=shorter,
-        )
+        variables = self.variables(situation, nearest, with_memories)
+        messages = self.model.prompts.messages(self.template, variables)
+        return Question("decide", situation.scene.ego.id, messages, decision_reply(tuple(allowed)), check, shorter)
 
     def _decision(self, situation: Situation, answer: Answer) -> Decision:
         ego, reply = situation.scene.ego.id, cast(DecisionReply | None, answer.value)

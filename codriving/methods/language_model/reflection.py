@@ -25,13 +25,11 @@ def reflect(model: PromptedModel, experiences: Sequence[Experience], most: int) 
 
 
 def _question(model: PromptedModel, experience: Experience) -> Question:
-    return Question(
-        purpose="reflect",
-        subject=experience.ego,
-        messages=model.prompts.messages("reflect", reflection_view(experience)),
-        schema=LessonReply,
-        check=lambda reply: "" if cast(LessonReply, reply).lesson else "the lesson is empty",
-    )
+    def check(reply: object) -> str:
+        return "" if cast(LessonReply, reply).lesson else "the lesson is empty"
+
+    messages = model.prompts.messages("reflect", reflection_view(experience))
+    return Question("reflect", experience.ego, messages, LessonReply, check)
 
 
 def _gravity(e: Experience) -> tuple[bool, bool, float, int, str]:

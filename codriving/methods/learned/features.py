@@ -69,5 +69,4 @@ class Features:
             ahead, beside = self._beside.look(ego, intent, place, others, world.available[ego.id])
         if ahead is not None:
             slots.append(leader_slot(*ahead, top))
-        numbers += filled(slots)
-        return np.clip(np.array(numbers + beside, dtype=np.float32), -1.0, 1.0)
+        return np.clip(np.array(numbers + filled(slots) + beside, dtype=np.float32), -1.0, 1.0)

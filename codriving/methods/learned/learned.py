@@ -12,7 +12,7 @@ from codriving.errors import WeightsError
 from codriving.geometry import RoadMap
 from codriving.methods.learned.features import Features, Observation
 from codriving.methods.learned.layout import ACTIONS, allowed, family_of, feature_names
-from codriving.methods.learned.network import FloatArray, greedy, shares
+from codriving.methods.learned.network import greedy, shares
 from codriving.methods.learned.weights import Trained, load, shipped, sidecar
 
 VALUES, PROBABILITIES = "values", "probabilities"
@@ -97,11 +97,9 @@ class Learned(Method):
         observations = self._features.observe(world)
         outputs = ACTIONS[self._family]
         masks = np.array([allowed(self._family, world.available[name]) for name in observations])
-        chosen: list[int] = []
-        judged: FloatArray = np.empty((0, len(outputs)), np.float32)
-        if observations:
-            judged = self._network(np.stack(list(observations.values())))
-            chosen = greedy(judged, masks)
+        seen = np.stack(list(observations.values())) if observations else None
+        judged = np.empty((0, len(outputs)), np.float32) if seen is None else self._network(seen)
+        chosen = [] if seen is None else greedy(judged, masks)
         if self.meaning == PROBABILITIES:
             judged = shares(judged, masks)
         values = {
@@ -115,8 +113,7 @@ class Learned(Method):
     def _weights(self, family: str) -> Trained:
         if family not in self._trained:
             if self._own is not None:
-                raise WeightsError(
-                    f"the weights that were given are for roads of the family {self._own}, this road is one of {family}"
-                )
+                given = f"the weights that were given are for roads of the family {self._own}"
+                raise WeightsError(f"{given}, this road is one of {family}")
             self._trained[family] = load(shipped(self.name, family))
         return self._trained[family]

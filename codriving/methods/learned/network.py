@@ -21,8 +21,7 @@ class Network:
 
     def __call__(self, observations: FloatArray) -> FloatArray:
         """Return what the network makes of some observations."""
-        hidden = observations
-        last = len(self.weights) - 1
+        hidden, last = observations, len(self.weights) - 1
         for layer, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
             hidden = hidden @ weight + bias
             if layer != last:

@@ -119,8 +119,7 @@ def save(file: Path, trained: Trained) -> None:
     arrays = {name: np.ascontiguousarray(tensor) for name, tensor in tensors(trained.network).items()}
     # Not by the library's own file, which only its owner may read.
     file.write_bytes(packed(arrays))
-    text = json.dumps(asdict(trained.purpose), indent=2) + "\n"
-    sidecar(file).write_text(text, encoding="utf-8", newline="\n")
+    sidecar(file).write_text(json.dumps(asdict(trained.purpose), indent=2) + "\n", encoding="utf-8", newline="\n")
 
 
 def load(file: Path) -> Trained:
@@ -140,10 +139,8 @@ def load(file: Path) -> Trained:
     found = {name: tensor.shape for name, tensor in held.items()}
     if found != wanted:
         wrong = sorted(name for name in {*found, *wanted} if found.get(name) != wanted.get(name))
-        raise WeightsError(
-            f"{file} does not hold the layers that its JSON describes: "
-            + ", ".join(f"{name} is {found.get(name)} and should be {wanted.get(name)}" for name in wrong)
-        )
+        shown = ", ".join(f"{name} is {found.get(name)} and should be {wanted.get(name)}" for name in wrong)
+        raise WeightsError(f"{file} does not hold the layers that its JSON describes: {shown}")
     if any(t.dtype != np.float32 or not np.isfinite(t).all() for t in held.values()):
         raise WeightsError(f"{file} must hold finite numbers of 32 bits; it is damaged or of another program")
     return Trained(network_of(purpose.form, held), purpose)

@@ -26,7 +26,6 @@ class NonCooperativeGame(Driver):
     """
 
     name = "noncoop_game"
-    variant = ""
 
     def __init__(
         self,
@@ -92,8 +91,7 @@ class NonCooperativeGame(Driver):
             self._unmet.expected_to_brake(ego, other.id, other.speed)
         row, _ = best_answer(game.own(self.own), answers, self.shares)
         likely = answers[int(np.argmax(self.shares))]
-        leads = bool(game.own_first[row, likely])
-        pair = (ego, other.id) if leads else (other.id, ego)
+        pair = (ego, other.id) if game.own_first[row, likely] else (other.id, ego)
         said = f"the game with {other.id}, expected to choose {_steps(answers)} m/s2"
         return float(ACCELERATIONS[row]), said, Precedence(*pair, f"{pair[0]} is first by {said}")
 
@@ -104,9 +102,8 @@ class NonCooperativeGame(Driver):
         def agreed(row: int, column: int) -> bool:
             return bool(game.own_first[row, column]) is first
 
-        return tuple(
-            expected_action(own, game.other(temper)[:, :among], self.indifference, agreed)[0] for temper in self.tempers
-        )
+        others = (game.other(temper)[:, :among] for temper in self.tempers)
+        return tuple(expected_action(own, other, self.indifference, agreed)[0] for other in others)
 
     def refuses(self, moment: Moment, ego: str, side: Side, idm: IntelligentDriver) -> str:
         """Say why the game of a lane change ends with keeping the lane; nothing if it ends with the change."""
@@ -114,9 +111,8 @@ class NonCooperativeGame(Driver):
             return ""
         game = lane_game(moment, ego, side, idm, self.hold, self.times)
         own = game.own(self.own)
-        answers = tuple(
-            expected_action(own, game.other(temper), 0.0, lambda row, _: row == KEEP)[0] for temper in self.tempers
-        )
+        others = (game.other(temper) for temper in self.tempers)
+        answers = tuple(expected_action(own, other, 0.0, lambda row, _: row == KEEP)[0] for other in others)
         row, expected = best_answer(own, answers, self.shares)
         worth = f"{expected[KEEP]:.1f} on this lane and {expected[CHANGE]:.1f} on that one"
         return "" if row == CHANGE else f"the game with {side.behind.id} is worth {worth}"

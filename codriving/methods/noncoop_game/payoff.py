@@ -38,13 +38,9 @@ class Temper:
 
     def payoff(self, progress: Array, accelerations: Array, gaps: Array, overlaps: Flags) -> Array:
         """Return the payoff of every outcome of a game."""
-        risk = np.exp(-gaps / self.risk_time)
-        return np.asarray(
-            self.efficiency * progress
-            - self.comfort * accelerations**2 / HARDEST**2
-            - self.safety * risk
-            - CRASH * overlaps
-        )
+        effort = self.comfort * accelerations**2 / HARDEST**2
+        risk = self.safety * np.exp(-gaps / self.risk_time)
+        return np.asarray(self.efficiency * progress - effort - risk - CRASH * overlaps)
 
 
 def pure_equilibria(own: Array, other: Array) -> tuple[tuple[int, int], ...]:

@@ -51,7 +51,6 @@ class Careful(Driver):
     """
 
     name = "careful"
-    variant = ""
 
     look: float
     headway: float
@@ -87,9 +86,12 @@ class Careful(Driver):
 
     def _danger(self, moment: Moment, ego: str, action: Action) -> tuple[float, str, tuple[Precedence, ...]]:
         """When an action becomes dangerous [s], why (nothing if it does not), and who would go first."""
-        motion = self._motion(moment, ego, action)
+        model, scene = moment.forecast.model, moment.scenes[ego]
+        steps = round(self.look / model.step)
+        travelled, speeds = rollout(model, [scene.ego.speed], [scene.intent.target_speed], ((action,),), steps)
+        motion = _Motion(np.arange(steps + 1, dtype=np.float64) * model.step, travelled[0, 0], speeds[0, 0])
         dangers: list[tuple[float, str]] = []
-        for ahead in leaders(moment.scenes[ego], moment.road_map):
+        for ahead in leaders(scene, moment.road_map):
             gap = ahead.gap + ahead.speed * motion.times - motion.travelled
             close = gap < self.standstill + self.headway * motion.speeds
             if close.any():
@@ -120,9 +122,3 @@ class Careful(Driver):
                 return False
             return abs(own[0] - max(its[0], 0.0)) < self.headway
         return own[0] < its[1] + self.margin and its[0] < own[1] + self.margin
-
-    def _motion(self, moment: Moment, ego: str, action: Action) -> _Motion:
-        model, scene = moment.forecast.model, moment.scenes[ego]
-        steps = round(self.look / model.step)
-        travelled, speeds = rollout(model, [scene.ego.speed], [scene.intent.target_speed], ((action,),), steps)
-        return _Motion(np.arange(steps + 1, dtype=np.float64) * model.step, travelled[0, 0], speeds[0, 0])

@@ -22,17 +22,9 @@ CONSTANT: tuple[Plan, ...] = tuple((action,) for action in PREFERRED)
 
 # Least and largest value of each setting.
 LIMITS = {
-    "horizon": (0.5, 10.0),
-    "headway": (0.0, 5.0),
-    "merging": (0.0, 5.0),
-    "gap": (0.0, 20.0),
-    "stop_gap": (0.0, 20.0),
-    "after": (0.0, 5.0),
-    "tie": (0.0, 5.0),
-    "firm": (0.5, 10.0),
-    "patience": (0.0, 60.0),
-    "clear": (0.0, 10.0),
-}
+    "horizon": (0.5, 10.0), "headway": (0.0, 5.0), "merging": (0.0, 5.0), "gap": (0.0, 20.0), "stop_gap": (0.0, 20.0),
+    "after": (0.0, 5.0), "tie": (0.0, 5.0), "firm": (0.5, 10.0), "patience": (0.0, 60.0), "clear": (0.0, 10.0),
+}  # fmt: skip
 
 # A gap that grows by less does not grow: two who drive at the same speed are not told apart by rounding [m].
 OPENS = 1e-6
@@ -43,7 +35,6 @@ class Demonstrated(WaitingDriver):
     """A driver that takes the first acceptable action (after the reasoning shown in Wen et al., 2024)."""
 
     name = "demonstrated"
-    variant = ""
     ranges = LIMITS
 
     horizon: float
@@ -93,15 +84,10 @@ class Demonstrated(WaitingDriver):
         and enters no zone in which another vehicle may be first before it has left the way. All others are expected to
         keep the speed.
         """
-        travel, times = self._motions(moment, ego, PREFERRED)
-        sample = moment.forecast.sample
-        refusals = [
-            (f"{leader.id} ahead is close", self._too_close(leader, travel, times, sample, self.headway))
-            for leader in leaders(moment.scenes[ego], moment.road_map)
-        ]
-        refusals += [
-            (f"{e.conflict.other} may be there first", self._in_the_way(e, travel, times, sample)) for e in before
-        ]
+        motion = (*self._motions(moment, ego, PREFERRED), moment.forecast.sample)
+        ahead = leaders(moment.scenes[ego], moment.road_map)
+        refusals = [(f"{leader.id} ahead is close", self._too_close(leader, *motion, self.headway)) for leader in ahead]
+        refusals += [(f"{e.conflict.other} may be there first", self._in_the_way(e, *motion)) for e in before]
         found: dict[Action, str] = {}
         for why, refused in refusals:
             for k in np.flatnonzero(refused).tolist():

@@ -116,10 +116,8 @@ def encounters(moment: Moment, ego: str, firm: float) -> tuple[Encounter, ...]:
     """Return everything that is open, most urgent first."""
     stops = float(moment.forecast.reach(moment.scenes[ego].ego.speed, True).least[-1])
     others = {n.id: n for n in moment.scenes[ego].neighbours}
-    return tuple(
-        Encounter(c, others[c.other], moment.road_map.zones(*c.routes)[c.zone], stops, firm)
-        for c in moment.conflicts[ego]
-    )
+    zones = moment.road_map.zones
+    return tuple(Encounter(c, others[c.other], zones(*c.routes)[c.zone], stops, firm) for c in moment.conflicts[ego])
 
 
 def crossing_angle(c: Conflict, zone: ConflictZone, road_map: RoadMap) -> float:
@@ -177,8 +175,7 @@ def _lets_start(e: Encounter, moment: Moment, ego: str, clear: float) -> bool:
     if e.other_inside:
         return False
     go = moment.forecast.reach(moment.scenes[ego].ego.speed, True).most
-    through = moment.forecast.time_to(e.conflict.exits[0], go)
-    return e.conflict.ttcp[1] > through + clear
+    return e.conflict.ttcp[1] > moment.forecast.time_to(e.conflict.exits[0], go) + clear
 
 
 def _stood_longer(standing: float, other: str, waited: float, ego: str) -> bool:

@@ -97,9 +97,8 @@ class LaneChoice:
             return "a lane change is under way"
         if scene.ego.speed < SLOWEST:
             return "too slow to change lanes just to get farther"
-        if moment.time - self._changed.get(scene.ego.id, -self.cool_down) < self.cool_down:
-            return "lanes have just been changed"
-        return ""
+        since = moment.time - self._changed.get(scene.ego.id, -self.cool_down)
+        return "lanes have just been changed" if since < self.cool_down else ""
 
     def unsafe(self, moment: Moment, ego: str, side: Side, idm: IntelligentDriver, must: bool) -> str:
         """Say why a lane change is not safe, whatever the new follower does; nothing if it is."""
