@@ -76,8 +76,7 @@ def _ask(resolved: Mapping[str, Any], model: Model) -> tuple[str, Sequence[Mappi
         world = environment.step(deliberation.actions)
     asked.method.reset(environment.road_map, environment.driving_model, SEED)
     scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
-    scene = f"{scenario.name}, seed {SEED}, after {world.time:g} s"
-    return scene, asked.method.ask_once(world).transcript
+    return f"{scenario.name}, seed {SEED}, after {world.time:g} s", asked.method.ask_once(world).transcript
 
 
 def _is_open(line: Mapping[str, Any]) -> bool:

@@ -37,8 +37,7 @@ class Serial(Launcher):
 
 def worker_count(workers: int | str, units: int) -> int:
     """Return how many workers to use, at least 1."""
-    wanted = available_cores() if workers == "auto" else int(workers)
-    return max(1, min(wanted, units))
+    return max(1, min(available_cores() if workers == "auto" else int(workers), units))
 
 
 def available_cores() -> int:

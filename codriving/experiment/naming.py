@@ -41,8 +41,7 @@ def distinct(cells: Sequence["Cell"]) -> tuple["Cell", ...]:
     alike: dict[str, list[int]] = {}
     for index, cell in enumerate(told):
         alike.setdefault(cell.fingerprint, []).append(index)
-    driven = [told[group[0]] for group in alike.values()]
-    for group, folder in zip(alike.values(), _folders(driven), strict=True):
+    for group, folder in zip(alike.values(), _folders([told[group[0]] for group in alike.values()]), strict=True):
         names = names_of_scores([(told[index].metrics, told[index].metric_settings) for index in group])
         for index, name in zip(group, names, strict=True):
             told[index] = replace(told[index], folder=folder, score=name)
@@ -58,10 +57,9 @@ def _folders(cells: Sequence["Cell"]) -> list[str]:
     """Name each, with no more in the name than it takes to tell it from the others."""
     marks = [cell.fingerprint[:8] for cell in cells]
     plain, longer = ([folder_name(c.labels, c.driving_swept, reasoner) for c in cells] for reasoner in (False, True))
-    names = _apart(plain, longer)
     short = [
         name if len(name) <= LONGEST else f"{name[: LONGEST - len(mark) - 1]}-{mark}"
-        for name, mark in zip(names, marks, strict=True)
+        for name, mark in zip(_apart(plain, longer), marks, strict=True)
     ]
     return _apart(short, [f"{name}-{mark}" for name, mark in zip(short, marks, strict=True)])
 

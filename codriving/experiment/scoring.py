@@ -78,9 +78,7 @@ def alike(one: object, other: object) -> bool:
         return one.keys() == other.keys() and all(alike(value, other[key]) for key, value in one.items())
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
         return len(one) == len(other) and all(map(alike, one, other))
-    if isinstance(one, float) and isinstance(other, float):
-        return isclose(one, other, abs_tol=0.01)
-    return one == other
+    return isclose(one, other, abs_tol=0.01) if isinstance(one, float) and isinstance(other, float) else one == other
 
 
 def names_of_scores(metrics: Sequence[tuple[str, Mapping[str, str]]]) -> list[str]:

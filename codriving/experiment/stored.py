@@ -93,8 +93,7 @@ def road_of(cell: CellEntry, config_dir: Path | None = None) -> Road:
             "its YAML with --config-dir"
         )
     config = compose([f"scenario={name}"], config_dir)
-    node = _filled(config["scenario"], values["scenario"])
-    return build(node, Scenario, "scenario", config["plugins"]).road
+    return build(_filled(config["scenario"], values["scenario"]), Scenario, "scenario", config["plugins"]).road
 
 
 def _filled(node: object, values: object) -> Any:  # noqa: ANN401 - any plain value

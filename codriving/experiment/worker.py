@@ -109,8 +109,7 @@ class Worker:
             report = Report(unit, ending)
         else:
             try:
-                objects = self._objects_of(unit.cell)
-                result = run_episode(*objects[:3], seed=unit.seed, labels=labels, go_on=self._go_on)
+                result = run_episode(*self._objects_of(unit.cell)[:3], seed=unit.seed, labels=labels, go_on=self._go_on)
             except UserError:
                 raise
             except Exception as error:

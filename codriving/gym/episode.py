@@ -107,5 +107,4 @@ class AgentEpisode:
         failed = () if outcome is None else outcome.failed
         then, now = ({v.id: v for v in world.cavs} for world in (before, after))
         driven = [CavStep(then[name], now.get(name), done, name in failed) for name, done in self.actions.items()]
-        top_speed = self.environment.driving_model.target_speeds[-1]
-        return rewards(self.weights, driven, after.time - before.time, top_speed)
+        return rewards(self.weights, driven, after.time - before.time, self.environment.driving_model.target_speeds[-1])

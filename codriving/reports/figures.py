@@ -106,8 +106,7 @@ def load_figure(rows: Sequence[LoadRow], loads: Sequence[int], metrics: str) -> 
     axes[0][0].set_ylabel("success [%], 95 % interval")
     axes[1][0].set_ylabel("mean velocity [m/s]")
     handles = {line.get_label(): line for axis in axes[0] for line in axis.get_lines() if line.get_label() in names}
-    shown = {name: handles[name] for name in names if name in handles}
-    return _saved(figure, shown, heading, "load")
+    return _saved(figure, {name: handles[name] for name in names if name in handles}, heading, "load")
 
 
 @_plain_settings()

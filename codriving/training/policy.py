@@ -42,8 +42,7 @@ class DriverPolicy(ActorCriticPolicy):
                     nn.init.orthogonal_(layer.weight, 2**0.5)
                     nn.init.zeros_(layer.bias)
         # A first policy that prefers nothing explores best.
-        last = [layer for layer in self.actor.modules() if isinstance(layer, nn.Linear)][-1]
-        nn.init.orthogonal_(last.weight, 0.01)
+        nn.init.orthogonal_([layer for layer in self.actor.modules() if isinstance(layer, nn.Linear)][-1].weight, 0.01)
         self.optimizer = torch.optim.Adam(self.parameters(), lr=lr_schedule(1), eps=1e-5)
 
     def forward(self, obs: Tensor, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
@@ -81,8 +80,7 @@ class DriverPolicy(ActorCriticPolicy):
 
     def _logs(self, obs: Tensor) -> Tensor:
         """Logarithms of probabilities; those of forbidden actions are so low that they are never drawn."""
-        logits = self.actor(obs[:, : self._features]).masked_fill(~self._mask(obs), -1e9)
-        return torch.log_softmax(logits, 1)
+        return torch.log_softmax(self.actor(obs[:, : self._features]).masked_fill(~self._mask(obs), -1e9), 1)
 
 
 def actor_as_numpy(actor: nn.Module) -> AnyNetwork:

@@ -58,8 +58,7 @@ def _exams(settings: AnySettings, network: AnyNetwork, first: int, episodes: int
 
 
 def _columns(grades: Mapping[str, Grade]) -> dict[str, float | None]:
-    success = sum(grade.success for grade in grades.values()) / len(grades)
-    found: dict[str, float | None] = {"score": round(success, 4)}
+    found: dict[str, float | None] = {"score": round(sum(grade.success for grade in grades.values()) / len(grades), 4)}
     for name, grade in grades.items():
         found[f"{name}.{SUCCESS}"] = round(grade.success, 4)
         found[f"{name}.{COLLISION}"] = round(grade.collision, 4)
