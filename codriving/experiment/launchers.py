@@ -30,9 +30,7 @@ class Serial(Launcher):
     def launch(
         self, units: Sequence[Unit], job: Job, workers: int | str = 1, preload: Sequence[str] = ()
     ) -> Generator[Report, None, None]:
-        worker = Worker(job)
-        for unit in units:
-            yield worker.run(unit)
+        yield from map(Worker(job).run, units)
 
 
 def worker_count(workers: int | str, units: int) -> int:

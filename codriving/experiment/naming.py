@@ -27,8 +27,7 @@ def folder_name(labels: Labels, swept: Mapping[str, str] | None = None, reasoner
     words = [labels.scenario, labels.method, labels.variant, *([labels.reasoner] if reasoner else [])]
     plain = [re.sub(r"[^A-Za-z0-9._]+", "_", word).lstrip(".") for word in words if word]
     values = {key: re.sub(r"[^A-Za-z0-9._+-]+", "_", text).strip("_") for key, text in (swept or {}).items()}
-    pairs = [f"{key}={value or '_'}" for key, value in values.items()]
-    return "-".join([*plain, *pairs]).rstrip(".")
+    return "-".join([*plain, *(f"{key}={value or '_'}" for key, value in values.items())]).rstrip(".")
 
 
 def distinct(cells: Sequence["Cell"]) -> tuple["Cell", ...]:
@@ -105,8 +104,7 @@ def _config_value(node: object, key: str, typed: str) -> str:
 
 def shown_apart(cells: Sequence[tuple[Labels, Mapping[str, str]]]) -> list[dict[str, str]]:
     """Keep of the swept keys those that need a column of their own."""
-    keys = list(dict.fromkeys(key for _, swept in cells for key in swept))
-    kept = [key for key in keys if _needs_column(key, cells)]
+    kept = [key for key in dict.fromkeys(key for _, swept in cells for key in swept) if _needs_column(key, cells)]
     # A choice of scenario may have the name of another one: two files for one class.
     heads = {key: f"{key}_choice" if key in _LABELS else key for key in kept}
     return [{head: swept[key] for key, head in heads.items() if key in swept} for _, swept in cells]

@@ -66,9 +66,8 @@ class DriverPolicy(ActorCriticPolicy):
         others = mask & (advice < 0.5)
         rest = others.sum(1, keepdim=True)
         teacher = torch.where(advice > 0.5, torch.where(rest > 0, SURE, 1.0), others * (1 - SURE) / rest.clamp(min=1))
-        known = advice.sum(1, keepdim=True) > 0.5
         terms = torch.where(teacher > 0, teacher * (teacher.clamp(min=1e-9).log() - logs), 0.0)
-        return torch.where(known, terms, 0.0).sum(1)
+        return torch.where(advice.sum(1, keepdim=True) > 0.5, terms, 0.0).sum(1)
 
     def predict_values(self, obs: Tensor) -> Tensor:
         """Return what the critic expects (n, 1)."""
