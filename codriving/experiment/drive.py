@@ -247,8 +247,7 @@ class FailuresInARow:
 
     def note(self, report: Report) -> None:
         """Take note of an episode that has ended."""
-        model = self._models.get(report.unit.cell)
-        if model is None:
+        if (model := self._models.get(report.unit.cell)) is None:
             return
         name = f"{ModelUnavailableError.__name__}: "
         if report.ending is not Ending.ERROR or not report.message.startswith(name):

@@ -104,8 +104,7 @@ class Worker:
     def run(self, unit: Unit) -> Report:
         """Drive one unit and save it."""
         job, labels = self._job, self._job.labels[unit.cell]
-        ending = job.saved(unit)
-        if ending is not None:
+        if (ending := job.saved(unit)) is not None:
             report = Report(unit, ending)
         else:
             try:

@@ -48,8 +48,7 @@ class AgentEpisode:
                 f"fixed; it has {', '.join(self.cavs)} with seed 0 and {', '.join(world.available)} with seed {seed}"
             )
         self.world, self.driving, self.seed = world, list(self.cavs), seed
-        self._refused = dict.fromkeys(self.cavs, 0)
-        self._views = self.observer.observe(world)
+        self._refused, self._views = dict.fromkeys(self.cavs, 0), self.observer.observe(world)
 
     def step(self, actions: Mapping[str, object]) -> StepResult:
         """Carry out one decision of every CAV on the road."""

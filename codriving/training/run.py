@@ -74,8 +74,7 @@ def _choose(
     finals: list[dict[str, Any]] = []
     first = settings.exam_seed + FINAL_SEEDS
     for row in sorted(best, key=lambda row: int(row["decisions"])):
-        network = load(folder.state(row["decisions"])).network
-        grades = _exams(settings, network, first, settings.final_episodes)
+        grades = _exams(settings, load(folder.state(row["decisions"])).network, first, settings.final_episodes)
         finals.append({"decisions": row["decisions"], **_columns(grades)})
         display.final(finals[-1])
     write_text(folder.path / "finalists.csv", curve_csv(finals))
