@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from codriving.config import Point, build, show
+from codriving.config import Point, build
 from codriving.datatypes import Scenario
 from codriving.errors import ConfigError
 from codriving.experiment.contents import contents
@@ -13,7 +13,7 @@ from codriving.experiment.episode import Labels
 from codriving.experiment.naming import folder_name, swept_values
 from codriving.experiment.objects import make_method, memory_of, model_of
 from codriving.experiment.scoring import scorers_of, settings_of_metric
-from codriving.runs import CHOICES, CellEntry, NamedFile, fingerprint, redact, settings_of
+from codriving.runs import CHOICES, CellEntry, NamedFile, fingerprint, settings_of
 
 
 @dataclass(frozen=True)
@@ -31,11 +31,6 @@ class Cell:
     choices: Mapping[str, str] = field(default_factory=dict)
     files: tuple[NamedFile, ...] = ()
     score: str = ""  # Name of its scores in a record; empty for that of the metric
-
-    @property
-    def config_text(self) -> str:
-        """Its config as YAML, without secrets."""
-        return show(redact(self.resolved))
 
     @property
     def score_name(self) -> str:

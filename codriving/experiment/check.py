@@ -37,11 +37,9 @@ def run_check(overrides: Sequence[str], config_dir: Path | None = None) -> int:
     resolved = compose(overrides, config_dir)
     validate(resolved)
     resolved["llm"] = _settings(resolved["llm"])
-    model = model_of(resolved)
-    if model is None:
+    if (model := model_of(resolved)) is None:
         raise ConfigError("this method asks no language model; leave method= out, or choose method=codriving")
-    client = model.chat()
-    if client is None:
+    if (client := model.chat()) is None:
         others = ", ".join(name for name in choices("llm", config_dir) if name != "offline")
         print("No model is asked: with this llm the built-in rules reason, without network and key.")
         print(f"Models: {others or 'none'}. Check one with: codriving check llm=NAME")
@@ -76,8 +74,7 @@ def _ask(resolved: Mapping[str, Any], model: Model) -> tuple[str, Sequence[Mappi
         world = environment.step(deliberation.actions)
     asked.method.reset(environment.road_map, environment.driving_model, SEED)
     scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
-    scene = f"{scenario.name}, seed {SEED}, after {world.time:g} s"
-    return scene, asked.method.ask_once(world).transcript
+    return f"{scenario.name}, seed {SEED}, after {world.time:g} s", asked.method.ask_once(world).transcript
 
 
 def _is_open(line: Mapping[str, Any]) -> bool:

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from codriving.config import experiments_dir
+from codriving.config import experiments_dir, show
 from codriving.datatypes import Ending, EpisodeRecord
 from codriving.errors import ModelError, ModelUnavailableError
 from codriving.experiment.asking import Asked
@@ -47,6 +47,7 @@ from codriving.runs import (
     machine,
     new_run_path,
     read_timing,
+    redact,
     unwritable,
     variables_in,
     versions,
@@ -138,7 +139,7 @@ def drive(
     asked = manifest_of(plan)
     path = plan.output / plan.experiment
     path = path / plan.run if plan.run else new_run_path(path, datetime.now())
-    with RunFolder(path, asked, {cell.folder: cell.config_text for cell in plan.driven}) as folder:
+    with RunFolder(path, asked, {cell.folder: show(redact(cell.resolved)) for cell in plan.driven}) as folder:
         # A cell that is there already keeps its folder, whatever it would be called in this run.
         names = dict(zip((cell.folder for cell in plan.driven), folder.manifest.rows, strict=True))
         cells = [replace(cell, folder=names[cell.folder]) for cell in plan.driven]
@@ -246,8 +247,7 @@ class FailuresInARow:
 
     def note(self, report: Report) -> None:
         """Take note of an episode that has ended."""
-        model = self._models.get(report.unit.cell)
-        if model is None:
+        if (model := self._models.get(report.unit.cell)) is None:
             return
         name = f"{ModelUnavailableError.__name__}: "
         if report.ending is not Ending.ERROR or not report.message.startswith(name):

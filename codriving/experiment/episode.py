@@ -3,7 +3,7 @@
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from time import perf_counter, thread_time
 from typing import Any
 
@@ -70,11 +70,9 @@ def run_episode(
     What goes wrong becomes a record that ends in ``error``. An interruption by the user passes through, and so does a
     language model that must not be used any more: neither is this episode's fault.
     """
-    log = _EpisodeLog()
-    started = perf_counter()
+    log, started, trace = _EpisodeLog(), perf_counter(), ""
     trajectory: Trajectory | None = None
     scores: dict[str, Score] = {}
-    trace = ""
     try:
         world = environment.reset(seed)
         log.begun = True
@@ -134,17 +132,13 @@ def _record(
 ) -> EpisodeRecord:
     tracks = sorted(trajectory.tracks, key=lambda track: track.id) if trajectory else ()
     return EpisodeRecord(
-        scenario=labels.scenario,
-        method=labels.method,
-        variant=labels.variant,
-        reasoner=labels.reasoner,
+        **asdict(labels),
         seed=seed,
         outcome=outcome,
         scores=scores or {},
         participants=tuple(Participant(track.id, track.kind.value, track.route, track.arrived) for track in tracks),
         decisions=decisions,
         counts=counts or {},
-        memory=labels.memory,
     )
 
 

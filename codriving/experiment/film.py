@@ -33,8 +33,7 @@ class FilmEpisode(AfterEpisode):
 
     def lacks(self, unit: Unit) -> bool:
         """Tell whether an episode that is saved has no film though there is something to show."""
-        folder = self._place(unit)
-        return (folder / TRAJECTORY).exists() and not self.path(unit).exists()
+        return (self._place(unit) / TRAJECTORY).exists() and not self.path(unit).exists()
 
     def saved(self, unit: Unit) -> Ending | None:
         """Tell how an episode ended that need not be driven again."""

@@ -30,15 +30,12 @@ class Serial(Launcher):
     def launch(
         self, units: Sequence[Unit], job: Job, workers: int | str = 1, preload: Sequence[str] = ()
     ) -> Generator[Report, None, None]:
-        worker = Worker(job)
-        for unit in units:
-            yield worker.run(unit)
+        yield from map(Worker(job).run, units)
 
 
 def worker_count(workers: int | str, units: int) -> int:
     """Return how many workers to use, at least 1."""
-    wanted = available_cores() if workers == "auto" else int(workers)
-    return max(1, min(wanted, units))
+    return max(1, min(available_cores() if workers == "auto" else int(workers), units))
 
 
 def available_cores() -> int:

@@ -106,8 +106,7 @@ def frozen_points(points: Sequence[Point], files: Sequence[Path], sizes: Sequenc
 
 def learned(driven: Driven, settings: int) -> Outputs:
     """Make the learning table and figure."""
-    paper = read_learning(experiments_dir())
-    each = len(driven.cells) // settings
+    paper, each = read_learning(experiments_dir()), len(driven.cells) // settings
     cells = []
     for index, (cell, records) in enumerate(zip(driven.cells, driven.records, strict=True)):
         other = {key: value for key, value in cell.swept.items() if key not in (KEY, "scenario", "cda")}

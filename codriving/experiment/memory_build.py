@@ -28,9 +28,7 @@ def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> li
     named = set(keys.values())
     if "episodes" in named:
         raise ConfigError("codriving memory build takes interactions=N; each interaction is one episode")
-    count = 20
-    for text in given:
-        count = interactions_of(text)
+    count = [20, *map(interactions_of, given)][-1]
     if any(key == "memory" and token.partition("=")[2] != "online" for token, key in keys.items()):
         raise ConfigError("codriving memory build learns with memory=online; other choices recall and learn nothing")
     base = ["memory=online", f"episodes={count}"]

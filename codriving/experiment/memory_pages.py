@@ -108,9 +108,8 @@ def _verdicts(reading: Reading) -> list[str]:
     actions = sorted({action for _, action in counted})
     if not actions:
         return ["Nothing was worth keeping."]
-    rows = [["", *actions]]
-    for verdict in sorted({verdict for verdict, _ in counted}):
-        rows.append([verdict, *(str(counted[verdict, action]) for action in actions)])
+    verdicts = sorted({verdict for verdict, _ in counted})
+    rows = [["", *actions], *([v, *(str(counted[v, action]) for action in actions)] for v in verdicts)]
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     return [
         "  ".join([row[0].ljust(widths[0]), *(t.rjust(w) for t, w in zip(row[1:], widths[1:], strict=True))]).rstrip()

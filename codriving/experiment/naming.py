@@ -27,8 +27,7 @@ def folder_name(labels: Labels, swept: Mapping[str, str] | None = None, reasoner
     words = [labels.scenario, labels.method, labels.variant, *([labels.reasoner] if reasoner else [])]
     plain = [re.sub(r"[^A-Za-z0-9._]+", "_", word).lstrip(".") for word in words if word]
     values = {key: re.sub(r"[^A-Za-z0-9._+-]+", "_", text).strip("_") for key, text in (swept or {}).items()}
-    pairs = [f"{key}={value or '_'}" for key, value in values.items()]
-    return "-".join([*plain, *pairs]).rstrip(".")
+    return "-".join([*plain, *(f"{key}={value or '_'}" for key, value in values.items())]).rstrip(".")
 
 
 def distinct(cells: Sequence["Cell"]) -> tuple["Cell", ...]:
@@ -41,8 +40,7 @@ def distinct(cells: Sequence["Cell"]) -> tuple["Cell", ...]:
     alike: dict[str, list[int]] = {}
     for index, cell in enumerate(told):
         alike.setdefault(cell.fingerprint, []).append(index)
-    driven = [told[group[0]] for group in alike.values()]
-    for group, folder in zip(alike.values(), _folders(driven), strict=True):
+    for group, folder in zip(alike.values(), _folders([told[group[0]] for group in alike.values()]), strict=True):
         names = names_of_scores([(told[index].metrics, told[index].metric_settings) for index in group])
         for index, name in zip(group, names, strict=True):
             told[index] = replace(told[index], folder=folder, score=name)
@@ -58,10 +56,9 @@ def _folders(cells: Sequence["Cell"]) -> list[str]:
     """Name each, with no more in the name than it takes to tell it from the others."""
     marks = [cell.fingerprint[:8] for cell in cells]
     plain, longer = ([folder_name(c.labels, c.driving_swept, reasoner) for c in cells] for reasoner in (False, True))
-    names = _apart(plain, longer)
     short = [
         name if len(name) <= LONGEST else f"{name[: LONGEST - len(mark) - 1]}-{mark}"
-        for name, mark in zip(names, marks, strict=True)
+        for name, mark in zip(_apart(plain, longer), marks, strict=True)
     ]
     return _apart(short, [f"{name}-{mark}" for name, mark in zip(short, marks, strict=True)])
 
@@ -107,8 +104,7 @@ def _config_value(node: object, key: str, typed: str) -> str:
 
 def shown_apart(cells: Sequence[tuple[Labels, Mapping[str, str]]]) -> list[dict[str, str]]:
     """Keep of the swept keys those that need a column of their own."""
-    keys = list(dict.fromkeys(key for _, swept in cells for key in swept))
-    kept = [key for key in keys if _needs_column(key, cells)]
+    kept = [key for key in dict.fromkeys(key for _, swept in cells for key in swept) if _needs_column(key, cells)]
     # A choice of scenario may have the name of another one: two files for one class.
     heads = {key: f"{key}_choice" if key in _LABELS else key for key in kept}
     return [{head: swept[key] for key, head in heads.items() if key in swept} for _, swept in cells]

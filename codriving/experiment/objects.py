@@ -31,15 +31,9 @@ def make_method(config: Mapping[str, Any], llm: Model | None, memory: CaseMemory
 
 def make_objects(config: Mapping[str, Any], llm: Model | None = None) -> Objects:
     """Build the objects of a config; llm and memory are built once."""
-    plugins = config["plugins"]
     llm, memory = llm or model_of(config), memory_of(config)
-    return Objects(
-        environment=build(config["environment"], Simulator, "environment", plugins),
-        method=make_method(config, llm, memory),
-        metrics=scorers_of(config),
-        llm=llm,
-        memory=memory,
-    )
+    environment = build(config["environment"], Simulator, "environment", config["plugins"])
+    return Objects(environment, make_method(config, llm, memory), scorers_of(config), llm, memory)
 
 
 @dataclass(frozen=True)
@@ -59,5 +53,5 @@ def modules_to_preload(configs: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
     Only ours: a user's module that fails to import must fail where it is used, with its own message.
     """
     used = {target.rpartition(".")[0] for config in configs for target in targets(config)}
-    ours = {module for module in used if module.startswith("codriving.")}
-    return ("codriving.experiment.processes", __name__, *sorted(ours))
+    ours = sorted(module for module in used if module.startswith("codriving."))
+    return ("codriving.experiment.processes", __name__, *ours)

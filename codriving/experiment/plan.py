@@ -63,8 +63,7 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
         launcher.prepare(first["workers"], first["episodes"] * len(configs), modules_to_preload(configs))
     validated(points, configs)
     configs = each_cell(points, configs, pinned)
-    parts = list(zip(configs, points, choices, strict=True))
-    cells = each_cell(points, parts, lambda part: make_cell(*part))
+    cells = each_cell(points, list(zip(configs, points, choices, strict=True)), lambda part: make_cell(*part))
     return Plan(
         cells=distinct(cells),
         first_seed=first["seed"],

@@ -172,7 +172,6 @@ def drive_units(connection: Connection, job: Job) -> None:
 
 def _die_with_parent() -> None:
     """Wait for the parent's end, however it comes, and go at once: an orphan would write into a resumed run."""
-    parent = multiprocessing.parent_process()
-    if parent is not None:
+    if (parent := multiprocessing.parent_process()) is not None:
         wait([parent.sentinel])
     os._exit(1)

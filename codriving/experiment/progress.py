@@ -13,8 +13,7 @@ class _Count:
     """Units and cells that have ended."""
 
     def __init__(self, units: Mapping[str, int]) -> None:
-        self._left = dict(units)
-        self.total = sum(units.values())
+        self._left, self.total = dict(units), sum(units.values())
         self.done = self.failed = 0
 
     def add(self, cell: str, failed: bool) -> None:

@@ -20,8 +20,7 @@ def pinned(resolved: Mapping[str, Any]) -> dict[str, Any]:
 
 def learns(resolved: Mapping[str, Any]) -> bool:
     """Tell whether the episodes of a cell learn from one another, so that they have to be driven in order."""
-    memory = memory_of(resolved)
-    return memory is not None and memory.learns
+    return (memory := memory_of(resolved)) is not None and memory.learns
 
 
 def growing(resolved: Mapping[str, Any], run: Path, cell: str) -> dict[str, Any]:

@@ -105,9 +105,7 @@ def _pace(options: ReplayOptions, kind: str) -> tuple[Fraction, float]:
 
 
 def _target(options: ReplayOptions, default: Path) -> Path:
-    path = options.out or default
-    if options.out is not None and options.out.is_dir():
-        path = options.out / default.name
+    path = options.out / default.name if options.out and options.out.is_dir() else options.out or default
     if not path.parent.is_dir():
         raise ConfigError(f"the folder {path.parent} of --out does not exist; make it or choose another")
     return path

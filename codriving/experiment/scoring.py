@@ -39,13 +39,11 @@ def scored(episodes: Iterable[tuple[Path, EpisodeRecord]], config: Mapping[str, 
         if lacking:
             scorers = scorers or scorers_of(config)
             road = road or build(config["scenario"], Scenario, "scenario", config["plugins"]).road
-            trajectory = read_trajectory(folder, record)
-            if trajectory is None:
+            if (trajectory := read_trajectory(folder, record)) is None:
                 raise RunFolderError(f"{folder} has no trajectory to score; delete it and run again")
             try:
                 new = {name: scorers[name].score_stored(trajectory, record.outcome, road) for name in lacking}
-                kept = record.scores.get(UNNAMED)
-                if kept is not None:
+                if (kept := record.scores.get(UNNAMED)) is not None:
                     new = {name: replace(kept, settings=s.settings) if alike(s, kept) else s for name, s in new.items()}
                 record = replace(record, scores={**record.scores, **new})
                 if UNNAMED not in record.scores:
@@ -78,9 +76,7 @@ def alike(one: object, other: object) -> bool:
         return one.keys() == other.keys() and all(alike(value, other[key]) for key, value in one.items())
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
         return len(one) == len(other) and all(map(alike, one, other))
-    if isinstance(one, float) and isinstance(other, float):
-        return isclose(one, other, abs_tol=0.01)
-    return one == other
+    return isclose(one, other, abs_tol=0.01) if isinstance(one, float) and isinstance(other, float) else one == other
 
 
 def names_of_scores(metrics: Sequence[tuple[str, Mapping[str, str]]]) -> list[str]:

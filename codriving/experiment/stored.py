@@ -44,8 +44,7 @@ def find_run(run: Path) -> tuple[Path, Manifest]:
         nearby = sorted(p.parent for p in (run.parent if run.parent.is_dir() else Path()).glob(f"*/{MANIFEST}"))
         nearby = nearby or sorted(p.parent for p in Path("outputs").glob(f"*/*/{MANIFEST}"))
         raise RunFolderError(f"there is no run folder {run}; runs: {_names(nearby)}")
-    manifest = read_manifest(places[0])
-    if manifest is None:
+    if (manifest := read_manifest(places[0])) is None:
         inside = sorted(path.parent for path in places[0].glob(f"**/{MANIFEST}"))
         raise RunFolderError(f"{places[0]} has no {MANIFEST}, so it is no run folder; runs in it: {_names(inside)}")
     return places[0], manifest
@@ -74,8 +73,7 @@ def read_film(folder: Path, road: Road, scale: float = 1.0) -> "EpisodeFilm":
     from codriving.animation import EpisodeFilm
 
     record = read_record(folder)
-    trajectory = read_trajectory(folder, record)
-    if trajectory is None:
+    if (trajectory := read_trajectory(folder, record)) is None:
         why = f"it ended in an error ({record.outcome.message})" if record.outcome.message else "nothing was driven"
         raise RunFolderError(f"{folder} has no {TRAJECTORY}, so there is nothing to show: {why}")
     return EpisodeFilm(road, trajectory, read_decisions(folder), record, scale)
@@ -93,8 +91,7 @@ def road_of(cell: CellEntry, config_dir: Path | None = None) -> Road:
             "its YAML with --config-dir"
         )
     config = compose([f"scenario={name}"], config_dir)
-    node = _filled(config["scenario"], values["scenario"])
-    return build(node, Scenario, "scenario", config["plugins"]).road
+    return build(_filled(config["scenario"], values["scenario"]), Scenario, "scenario", config["plugins"]).road
 
 
 def _filled(node: object, values: object) -> Any:  # noqa: ANN401 - any plain value

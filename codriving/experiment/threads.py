@@ -27,9 +27,7 @@ class Threads(Launcher):
         batch = _Batch([unit for unit in units if unit not in set(saved)], job)
         try:
             batch.start(worker_count(workers, len(units)))
-            here = Worker(job)
-            for unit in saved:
-                yield here.run(unit)
+            yield from map(Worker(job).run, saved)
             for _ in range(batch.units):
                 report = batch.next_report()
                 if job.after:
@@ -49,9 +47,7 @@ class _Batch:
     """The threads of one batch and what they share."""
 
     def __init__(self, units: Sequence[Unit], job: Job) -> None:
-        self.units = len(units)
-        self._job = job
-        self._waiting = deque(units)
+        self.units, self._job, self._waiting = len(units), job, deque(units)
         self._news: SimpleQueue[Report | BaseException] = SimpleQueue()
         self._building, self._saving, self._stopped = Lock(), Lock(), Event()
         self.threads: list[Thread] = []

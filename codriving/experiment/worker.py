@@ -104,13 +104,11 @@ class Worker:
     def run(self, unit: Unit) -> Report:
         """Drive one unit and save it."""
         job, labels = self._job, self._job.labels[unit.cell]
-        ending = job.saved(unit)
-        if ending is not None:
+        if (ending := job.saved(unit)) is not None:
             report = Report(unit, ending)
         else:
             try:
-                objects = self._objects_of(unit.cell)
-                result = run_episode(*objects[:3], seed=unit.seed, labels=labels, go_on=self._go_on)
+                result = run_episode(*self._objects_of(unit.cell)[:3], seed=unit.seed, labels=labels, go_on=self._go_on)
             except UserError:
                 raise
             except Exception as error:

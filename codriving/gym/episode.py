@@ -48,8 +48,7 @@ class AgentEpisode:
                 f"fixed; it has {', '.join(self.cavs)} with seed 0 and {', '.join(world.available)} with seed {seed}"
             )
         self.world, self.driving, self.seed = world, list(self.cavs), seed
-        self._refused = dict.fromkeys(self.cavs, 0)
-        self._views = self.observer.observe(world)
+        self._refused, self._views = dict.fromkeys(self.cavs, 0), self.observer.observe(world)
 
     def step(self, actions: Mapping[str, object]) -> StepResult:
         """Carry out one decision of every CAV on the road."""
@@ -107,5 +106,4 @@ class AgentEpisode:
         failed = () if outcome is None else outcome.failed
         then, now = ({v.id: v for v in world.cavs} for world in (before, after))
         driven = [CavStep(then[name], now.get(name), done, name in failed) for name, done in self.actions.items()]
-        top_speed = self.environment.driving_model.target_speeds[-1]
-        return rewards(self.weights, driven, after.time - before.time, top_speed)
+        return rewards(self.weights, driven, after.time - before.time, self.environment.driving_model.target_speeds[-1])

@@ -152,5 +152,4 @@ class CdaObserver(Observer):
         if seen.heading is not None:
             vx, vy = seen.speed * cos(seen.heading), seen.speed * sin(seen.heading)
         lane = 0 if seen.lane is None else self.lanes[seen.lane]
-        bound = intention(intent, seen.lane, self._road_map.routes)
-        return seen.x - x, seen.y - y, vx, vy, float(lane), float(bound)
+        return seen.x - x, seen.y - y, vx, vy, float(lane), float(intention(intent, seen.lane, self._road_map.routes))

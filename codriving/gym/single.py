@@ -23,8 +23,7 @@ class OneCav(Scenario):
     """Another scenario with a single CAV among human drivers."""
 
     def __init__(self, scenario: Scenario) -> None:
-        self.scenario = scenario
-        self.name, self.pace = scenario.name, scenario.pace
+        self.scenario, self.name, self.pace = scenario, scenario.name, scenario.pace
 
     @property
     def road(self) -> Road:

@@ -27,11 +27,10 @@ class BuiltMemory:
 
 def print_built(memories: Sequence[BuiltMemory]) -> PrintedTable:
     """Prepare the table."""
-    swept = dict.fromkeys(key for memory in memories for key in memory.swept)
     columns: list[Column[BuiltMemory]] = [
         Column("scenario", lambda m: m.scenario, "scenario", words=True),
         Column("method", lambda m: m.method, "method", words=True),
-        *swept_columns(swept),
+        *swept_columns(dict.fromkeys(key for memory in memories for key in memory.swept)),
         Column("interactions", lambda m: len(m.reading.interactions), "interactions"),
         Column("experiences", lambda m: len(m.reading.snapshot.experiences), "experiences"),
         Column("made", lambda m: sum(entry.count for entry in m.reading.snapshot.experiences), "made"),

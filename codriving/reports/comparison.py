@@ -111,14 +111,13 @@ REASONER: Column[Any] = Column(
 def comparison_table(rows: Sequence[Compared], swept: Sequence[str] = ()) -> Table:
     """Make the table of a comparison."""
     rates = ("collision_rate", "timeout_rate", "off_road", "error_rate")
-    model = any(row.cell and row.cell.asked for row in rows)
     columns: list[Column[Any]] = [
         *status_columns(len({row.scenario for row in rows}) > 1),
         *swept_columns(swept),
         REASONER,
         *(column.of(lambda row: row.cell) for column in MEASURED if column.key not in rates),
         *(column.of(lambda row: row.cell) for column in number_columns(named_numbers(_cells(rows)), MEASURED)),
-        *([FALLBACKS.of(lambda row: row.cell)] if model else []),
+        *([FALLBACKS.of(lambda row: row.cell)] if any(row.cell and row.cell.asked for row in rows) else []),
         Column("cpu", lambda r: milliseconds(r.cell.cpu) if r.cell else "", CPU, csv=False, page=False),
         *(replace(column, head="").of(lambda r: r.pairs) for column in PAIRED if column.csv),
         *map(_quoted, QUOTED),
@@ -170,8 +169,7 @@ def print_comparison(
     theirs = {index: paper_row(row.quoted) for index, row in enumerate(rows) if row.quoted}
     reasoners = [row.cell.first.reasoner for row in rows if row.cell]
     heading = title("comparison of methods", [row.scenario for row in rows], reasoners, metrics)
-    cells = [(row.method, row.status, row.cell) for row in rows]
-    notes = (NOTE, *number_notes(_cells(rows)), *notes_of(cells, screen))
+    notes = (NOTE, *number_notes(_cells(rows)), *notes_of([(row.method, row.status, row.cell) for row in rows], screen))
     return printed(heading, comparison_table(rows, swept), [row.block for row in rows], notes, theirs, screen)
 
 
@@ -286,12 +284,11 @@ def _in_order(rows: Sequence[LoadRow], methods: Sequence[str]) -> list[LoadRow]:
 
 def load_table(rows: Sequence[LoadRow], loads: Sequence[int], swept: Sequence[str] = ()) -> Table:
     """Make the table of loads."""
-    model = any(cell.asked for row in rows for cell in row.at.values())
     at_each: list[Column[CellResults]] = [
         *(replace(BY_KEY[key], head="") for key in AT_EACH),
         Column("success", _success, "success (95 %)", csv=False),
         Column("velocity", lambda c: two_digits(BY_KEY["velocity_mean"].value(c)) or "-", "velocity [m/s]", csv=False),
-        *([FALLBACKS] if model else []),
+        *([FALLBACKS] if any(cell.asked for row in rows for cell in row.at.values()) else []),
         Column("cpu", lambda c: milliseconds(c.cpu), CPU, csv=False, page=False),
     ]
     columns: list[Column[Any]] = [

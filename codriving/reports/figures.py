@@ -106,8 +106,7 @@ def load_figure(rows: Sequence[LoadRow], loads: Sequence[int], metrics: str) -> 
     axes[0][0].set_ylabel("success [%], 95 % interval")
     axes[1][0].set_ylabel("mean velocity [m/s]")
     handles = {line.get_label(): line for axis in axes[0] for line in axis.get_lines() if line.get_label() in names}
-    shown = {name: handles[name] for name in names if name in handles}
-    return _saved(figure, shown, heading, "load")
+    return _saved(figure, {name: handles[name] for name in names if name in handles}, heading, "load")
 
 
 @_plain_settings()
@@ -137,10 +136,8 @@ def learning_figure(
             if s.scenario == scenario and s.success is not None and s.interactions in sizes:
                 place, label = sizes.index(s.interactions), "the paper (GPT-4o mini)"
                 axis.plot([place], [100 * s.success], "x", color="#7a7a7a", markersize=9, label=label)
-        axis.set_title(scenario)
         axis.set_xticks(range(len(sizes)), [str(size) for size in sizes])
-        axis.set_xlabel("past interactions")
-        axis.set_ylim(-3, 105)
+        axis.set(title=scenario, xlabel="past interactions", ylim=(-3, 105))
     axes[0].set_ylabel("success [%], 95 % interval")
     handles = {str(h.get_label()): h for axis in axes for h in axis.get_legend_handles_labels()[0]}
     return _saved(figure, handles, title("learning", (), [first.reasoner for first in firsts], metrics), "learn")

@@ -78,8 +78,7 @@ def _difference(there: Sequence[CellEntry], new: CellEntry) -> str:
     """The keys in which a cell differs from the one that is most like it, with both values."""
     # Only a masked value can differ in the fingerprint and not here.
     shown = min((_differences(old, new) for old in there), key=len) or ["a value that is not written down"]
-    more = f" and {len(shown) - 5} more keys" if len(shown) > 5 else ""
-    return ", ".join(shown[:5]) + more
+    return ", ".join(shown[:5]) + (f" and {len(shown) - 5} more keys" if len(shown) > 5 else "")
 
 
 def _differences(old: CellEntry, new: CellEntry) -> list[str]:

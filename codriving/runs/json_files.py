@@ -85,9 +85,7 @@ def _finite(value: object) -> object:
         return None
     if isinstance(value, Mapping):
         return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    return value
+    return [_finite(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 def read_episode_text(path: Path) -> str:

@@ -10,18 +10,9 @@ from pathlib import Path
 
 # Packages that can change a result.
 PACKAGES = (
-    "codriving",
-    "faiss-cpu",
-    "gymnasium",
-    "highway-env",
-    "hydra-core",
-    "litellm",
-    "numpy",
-    "omegaconf",
-    "pandas",
-    "pettingzoo",
-    "scipy",
-)
+    "codriving", "faiss-cpu", "gymnasium", "highway-env", "hydra-core", "litellm", "numpy", "omegaconf", "pandas",
+    "pettingzoo", "scipy",
+)  # fmt: skip
 
 
 def versions() -> dict[str, str]:

@@ -64,9 +64,7 @@ def scrubbed(value: Any, secrets: Iterable[str]) -> Any:  # noqa: ANN401 - any p
         return value
     if isinstance(value, Mapping):
         return {name: scrubbed(item, secrets) for name, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [scrubbed(item, secrets) for item in value]
-    return value
+    return [scrubbed(item, secrets) for item in value] if isinstance(value, list | tuple) else value
 
 
 def flat(settings: Mapping[str, object], prefix: str = "") -> dict[str, str]:

@@ -62,8 +62,7 @@ class RunFolder:
             self._lock = opening.pop_all()
 
     def _prepare(self, asked: Manifest, configs: Mapping[str, str]) -> Manifest:
-        there = read_manifest(self.path)
-        if there is None:
+        if (there := read_manifest(self.path)) is None:
             self._refuse_foreign()
         manifest = asked if there is None else continued(self.path, there, asked)
         if there is not None and there.behaviour != BEHAVIOUR and not self._complete(manifest):

@@ -12,8 +12,7 @@ class AttentionActor(nn.Module):
 
     def __init__(self, features: int, hidden: tuple[int, ...], outputs: int) -> None:
         super().__init__()
-        own = features - SLOTS * len(SLOT)
-        self.ego, self.other = nn.Linear(own, WIDTH), nn.Linear(len(SLOT), WIDTH)
+        self.ego, self.other = nn.Linear(features - SLOTS * len(SLOT), WIDTH), nn.Linear(len(SLOT), WIDTH)
         self.query, self.key, self.value = (nn.Linear(WIDTH, WIDTH) for _ in range(3))
         self.judge = perceptron((2 * WIDTH, *hidden, outputs))
 
@@ -21,8 +20,7 @@ class AttentionActor(nn.Module):
         """Return one number an action (n, actions)."""
         first, last = len(EGO), len(EGO) + SLOTS * len(SLOT)
         slots = observations[:, first:last].reshape(-1, SLOTS, len(SLOT))
-        own = torch.cat([observations[:, :first], observations[:, last:]], 1)
-        ego = torch.relu(self.ego(own))
+        ego = torch.relu(self.ego(torch.cat([observations[:, :first], observations[:, last:]], 1)))
         # The ego vehicle is a token as well, so that there is one to attend to on an empty road.
         tokens = torch.cat([ego[:, None], torch.relu(self.other(slots))], 1)
         there = torch.cat([torch.ones_like(slots[:, :1, 0]), slots[:, :, 0]], 1) > 0.0

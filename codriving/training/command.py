@@ -47,8 +47,7 @@ def run_training(
     from codriving.training.folder import Stop, open_folder
     from codriving.training.run import train
 
-    run = own.get("run", f"{name}_smoke" if smoke else name)
-    path = Path(own.get("output", "outputs"), "train", run)
+    path = Path(own.get("output", "outputs"), "train", own.get("run", f"{name}_smoke" if smoke else name))
     words = ["codriving", "train", learner, "--family", family, *(["--smoke"] if smoke else []), *others]
     again = shlex.join([*words, *(f"{key}={value}" for key, value in own.items())])
     with open_folder(path, name, shlex.join(words), config) as folder:

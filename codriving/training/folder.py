@@ -23,8 +23,7 @@ STATE = "state.json"
 def store(folder: Path, trainer: "Learner", more: dict[str, Any]) -> None:
     """Write a checkpoint."""
     with whole_folder(folder) as partial:
-        state = trainer.write(partial)
-        write_text(partial / STATE, json.dumps({"trainer": state, "more": more}))
+        write_text(partial / STATE, json.dumps({"trainer": trainer.write(partial), "more": more}))
 
 
 def recall(folder: Path, trainer: "Learner") -> dict[str, Any]:

@@ -42,8 +42,7 @@ class DriverPolicy(ActorCriticPolicy):
                     nn.init.orthogonal_(layer.weight, 2**0.5)
                     nn.init.zeros_(layer.bias)
         # A first policy that prefers nothing explores best.
-        last = [layer for layer in self.actor.modules() if isinstance(layer, nn.Linear)][-1]
-        nn.init.orthogonal_(last.weight, 0.01)
+        nn.init.orthogonal_([layer for layer in self.actor.modules() if isinstance(layer, nn.Linear)][-1].weight, 0.01)
         self.optimizer = torch.optim.Adam(self.parameters(), lr=lr_schedule(1), eps=1e-5)
 
     def forward(self, obs: Tensor, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
@@ -67,9 +66,8 @@ class DriverPolicy(ActorCriticPolicy):
         others = mask & (advice < 0.5)
         rest = others.sum(1, keepdim=True)
         teacher = torch.where(advice > 0.5, torch.where(rest > 0, SURE, 1.0), others * (1 - SURE) / rest.clamp(min=1))
-        known = advice.sum(1, keepdim=True) > 0.5
         terms = torch.where(teacher > 0, teacher * (teacher.clamp(min=1e-9).log() - logs), 0.0)
-        return torch.where(known, terms, 0.0).sum(1)
+        return torch.where(advice.sum(1, keepdim=True) > 0.5, terms, 0.0).sum(1)
 
     def predict_values(self, obs: Tensor) -> Tensor:
         """Return what the critic expects (n, 1)."""
@@ -81,8 +79,7 @@ class DriverPolicy(ActorCriticPolicy):
 
     def _logs(self, obs: Tensor) -> Tensor:
         """Logarithms of probabilities; those of forbidden actions are so low that they are never drawn."""
-        logits = self.actor(obs[:, : self._features]).masked_fill(~self._mask(obs), -1e9)
-        return torch.log_softmax(logits, 1)
+        return torch.log_softmax(self.actor(obs[:, : self._features]).masked_fill(~self._mask(obs), -1e9), 1)
 
 
 def actor_as_numpy(actor: nn.Module) -> AnyNetwork:

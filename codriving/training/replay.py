@@ -26,8 +26,7 @@ class Replay:
     """A ring of transitions; the oldest is overwritten first."""
 
     def __init__(self, capacity: int, features: int, actions: int) -> None:
-        self.capacity = capacity
-        self.added = 0
+        self.capacity, self.added = capacity, 0
         self._columns: dict[str, NDArray[np.generic]] = {
             "observations": np.zeros((capacity, features), np.float32),
             "actions": np.zeros(capacity, np.int64),
@@ -55,8 +54,7 @@ class Replay:
 
     def state(self) -> dict[str, NDArray[np.generic]]:
         """Return everything that it holds, by name."""
-        filled = {name: column[: len(self)] for name, column in self._columns.items()}
-        return {**filled, "added": np.array(self.added)}
+        return {name: column[: len(self)] for name, column in self._columns.items()} | {"added": np.array(self.added)}
 
     def restore(self, state: dict[str, NDArray[np.generic]]) -> None:
         """Go on with what another one held."""

@@ -58,8 +58,7 @@ def _exams(settings: AnySettings, network: AnyNetwork, first: int, episodes: int
 
 
 def _columns(grades: Mapping[str, Grade]) -> dict[str, float | None]:
-    success = sum(grade.success for grade in grades.values()) / len(grades)
-    found: dict[str, float | None] = {"score": round(success, 4)}
+    found: dict[str, float | None] = {"score": round(sum(grade.success for grade in grades.values()) / len(grades), 4)}
     for name, grade in grades.items():
         found[f"{name}.{SUCCESS}"] = round(grade.success, 4)
         found[f"{name}.{COLLISION}"] = round(grade.collision, 4)
@@ -75,8 +74,7 @@ def _choose(
     finals: list[dict[str, Any]] = []
     first = settings.exam_seed + FINAL_SEEDS
     for row in sorted(best, key=lambda row: int(row["decisions"])):
-        network = load(folder.state(row["decisions"])).network
-        grades = _exams(settings, network, first, settings.final_episodes)
+        grades = _exams(settings, load(folder.state(row["decisions"])).network, first, settings.final_episodes)
         finals.append({"decisions": row["decisions"], **_columns(grades)})
         display.final(finals[-1])
     write_text(folder.path / "finalists.csv", curve_csv(finals))

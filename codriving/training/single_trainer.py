@@ -90,13 +90,12 @@ class SingleTrainer:
         """Return what a row of the curve says besides the exams, and begin the next section."""
         endings, self._endings.found = self._endings.found, []
         guidance = self.settings.guidance
-        pull = {} if guidance is None else {"pull": round(guidance.pull.at(self.decisions), 4)}
         return {
             "decisions": self.decisions,
             "updates": self.rollouts,
             "rate": round(self.settings.rate.at(self.decisions), 6),
             "train_success": round(endings.count(Ending.SUCCESS) / len(endings), 4) if endings else None,
-            **pull,
+            **({} if guidance is None else {"pull": round(guidance.pull.at(self.decisions), 4)}),
         }
 
     def write(self, folder: Path) -> dict[str, Any]:

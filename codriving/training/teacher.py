@@ -40,8 +40,7 @@ class Advisor:
         # Drivers remember their CAVs by name, which is the same in all environments.
         self._alone = SingleVehicle(deepcopy(guidance.driver))
         self._every, self._road = guidance.every, (road_map, model)
-        self._decider = _decider(guidance.llm)
-        self.asks = True
+        self._decider, self.asks = _decider(guidance.llm), True
 
     def advise(self, world: WorldState) -> Mapping[str, Action]:
         """Return what CAVs should do, by id."""
@@ -72,8 +71,7 @@ def _weighed(situation: Situation, model: DrivingModel) -> Situation:
 
 
 def _decider(llm: Model) -> "CheckedDecider | None":
-    model = prompted(llm)
-    if model is None:
+    if (model := prompted(llm)) is None:
         return None
     from codriving.methods import CheckedDecider
 
