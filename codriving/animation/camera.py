@@ -33,16 +33,14 @@ class Camera:
 
     def __init__(self, trajectory: Trajectory, road_map: RoadMap, view: Area) -> None:
         tracks = [t for t in trajectory.tracks if t.kind is Kind.CAV] or list(trajectory.tracks)
-        driven = np.concatenate([np.column_stack((t.x, t.y)) for t in tracks])
-        self.still = overview(driven, road_map, view)
+        self.still = overview(np.concatenate([np.column_stack((t.x, t.y)) for t in tracks]), road_map, view)
         self._zooms = _zooms(tracks, trajectory.step, self.still[0]) if len(self.still) == 1 else None
 
     def at(self, time: float) -> tuple[Window, ...]:
         """Return what is seen at a moment."""
         if self._zooms is None:
             return self.still
-        zoom = float(np.interp(time / _EVERY, np.arange(len(self._zooms)), self._zooms))
-        return (replace(self.still[0], zoom=zoom),)
+        return (replace(self.still[0], zoom=float(np.interp(time / _EVERY, np.arange(len(self._zooms)), self._zooms))),)
 
 
 def overview(points: NDArray[np.float64], road_map: RoadMap, view: Area) -> tuple[Window, ...]:
@@ -76,8 +74,7 @@ def fitting(points: NDArray[np.float64], x: float, y: float, view: Area) -> floa
 
 def _zooms(tracks: list[Track], step: float, window: Window) -> NDArray[np.float64]:
     """How large the world is shown every tenth of a second (n,) [px/m]."""
-    end = max(t.first_step + len(t.x) - 1 for t in tracks) * step
-    wanted = np.full(round(end / _EVERY) + 1, np.nan)
+    wanted = np.full(round(max(t.first_step + len(t.x) - 1 for t in tracks) * step / _EVERY) + 1, np.nan)
     for k in range(len(wanted)):
         rows_now = [(t, round(k * _EVERY / step) - t.first_step) for t in tracks]
         points = [(t.x[row], t.y[row]) for t, row in rows_now if 0 <= row < len(t.x)]

@@ -204,8 +204,7 @@ def shortened(canvas: Canvas, words: str, size: float, room: float, bold: bool =
     if canvas.width_of(words, size, bold) <= room:
         return words
     cut = [words[:k].rstrip() + "…" for k in range(len(words) + 1)]
-    fit = bisect_right(cut, room, lo=1, key=lambda text: canvas.width_of(text, size, bold))
-    return cut[fit - 1]
+    return cut[bisect_right(cut, room, lo=1, key=lambda text: canvas.width_of(text, size, bold)) - 1]
 
 
 def wrapped(canvas: Canvas, words: str, size: float, room: float, lines: int) -> list[str]:

@@ -97,8 +97,7 @@ def conflict_lines(
         return np.array(paths[0].position(goals[0]), dtype=float), lines
     # Both have come together already: what is left is the way from the one to the other.
     first, last = sorted((here[0], paths[0].project(*ends[1])[0]))
-    line = _stretch(paths[0], first, last)
-    return np.array(paths[0].position((first + last) / 2), dtype=float), [line]
+    return np.array(paths[0].position((first + last) / 2), dtype=float), [_stretch(paths[0], first, last)]
 
 
 def _stretch(path: Path, start: float, end: float) -> Points:

@@ -156,8 +156,7 @@ def _ways(conflict: Mapping[str, Any], road_map: RoadMap) -> tuple[tuple[str, fl
         return None
     zone = zones[index]
     at_one = zone.point_i if zone.merge_i is None else zone.merge_i
-    at_other = zone.point_j if zone.merge_j is None else zone.merge_j
-    return (one, at_one), (other, at_other)
+    return (one, at_one), (other, zone.point_j if zone.merge_j is None else zone.merge_j)
 
 
 class StoredFrames:
@@ -188,8 +187,7 @@ class StoredFrames:
                 continue
             bodies.append(self._body(track, row, decided.routes))
             if track.kind is Kind.CAV and track.id not in thoughts:
-                action = action_named(track.action[min(int(row + 1), len(track.x) - 1)])
-                thoughts[track.id] = DrawnDecision(action)
+                thoughts[track.id] = DrawnDecision(action_named(track.action[min(int(row + 1), len(track.x) - 1)]))
         arrived = {name: at for name, at in self._outcome.arrivals.items() if at <= time + 1e-6}
         outcome = self._outcome if time >= self.duration - 1e-6 else None
         return replace(decided, time=time, bodies=tuple(bodies), thoughts=thoughts, arrived=arrived, outcome=outcome)

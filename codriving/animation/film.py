@@ -162,9 +162,8 @@ class EpisodeFilm:
 
     def frames(self, rate: Fraction, speed: float) -> Iterator[Frame]:
         """Draw all frames of a film."""
-        last = self.frame_count(rate, speed) - 1
         hold = ceil(_HOLD * rate)
-        for k in range(last - hold):
+        for k in range(self.frame_count(rate, speed) - 1 - hold):
             yield self.frame(min(k * speed / float(rate), self.duration))
         yield from [self.frame(self.duration)] * (hold + 1)
 
@@ -185,7 +184,6 @@ class EpisodeFilm:
             FilmError: If ffmpeg cannot be started or gives up.
         """
         rows, columns = self._picture.shape
-        samples = []
-        if format == GIF:
-            samples = [self.frame(self.duration * k / (_SAMPLES - 1)).copy() for k in range(_SAMPLES)]
+        count = _SAMPLES if format == GIF else 0
+        samples = [self.frame(self.duration * k / (_SAMPLES - 1)).copy() for k in range(count)]
         return write_film(path, Reel(format, rate, rows, columns), frames or self.frames(rate, speed), samples)

@@ -64,8 +64,7 @@ class Ground:
 
 def side(way: Path, offset: float) -> Points:
     """Return the line that runs beside a way."""
-    across = np.column_stack((-np.sin(way.headings), np.cos(way.headings)))
-    points: Points = way.points + offset * across
+    points: Points = way.points + offset * np.column_stack((-np.sin(way.headings), np.cos(way.headings)))
     return points
 
 

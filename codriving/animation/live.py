@@ -100,9 +100,8 @@ class LivePicture:
         cavs = tuple(sorted((vehicle.id for vehicle in world.cavs), key=natural))
         width, height, scale = self._size
         self._picture = Picture(self._road_map, cavs, (self._title, ""), width, height, scale, self._panel)
-        routes = {intent.route for intent in world.intents.values()} or set(self._road_map.routes)
         places = [(v.x, v.y) for v in world.vehicles]
-        for route in sorted(routes):
+        for route in sorted({intent.route for intent in world.intents.values()} or set(self._road_map.routes)):
             x, y = self._road_map.paths[route].position(self._road_map.routes[route].goal)
             places.append((float(x), float(y)))
         self._windows = overview(np.array(places), self._road_map, self._picture.view)

@@ -46,8 +46,7 @@ class Cards:
                 if thought.action:
                     action_glyph(canvas, thought.action, start + 6, y, 12.0)
                     canvas.text(start + 20, y, thought.action.value, _WORD, INK, bold=True)
-                worst = next((m for m in meetings if name in (m.one, m.other)), None)
-                self._words(canvas, y, name, thought, worst)
+                self._words(canvas, y, name, thought, next((m for m in meetings if name in (m.one, m.other)), None))
         if self._more:
             canvas.text(self._area.left, self._middle(len(self._shown)), f"and {self._more} more", _SMALL, FAINT)
 

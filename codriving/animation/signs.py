@@ -24,16 +24,14 @@ SIGNS = {
 
 def action_glyph(canvas: Canvas, action: Action, x: float, y: float, size: float) -> None:
     """Draw the sign of an action."""
-    width = max(size / 5, 1.5)
     for colour, extra in ((PAPER, 2.0), (ACTIONS[action], 0.0)):
         for line in SIGNS[action]:
-            canvas.line(line * size + (x, y), colour, width + extra)
+            canvas.line(line * size + (x, y), colour, max(size / 5, 1.5) + extra)
 
 
 def tick(canvas: Canvas, x: float, y: float, size: float, colour: str) -> None:
     """Draw the sign of success."""
-    points = np.array([(-0.45, 0.0), (-0.1, 0.35), (0.5, -0.4)])
-    canvas.line(points * size + (x, y), colour, size / 5)
+    canvas.line(np.array([(-0.45, 0.0), (-0.1, 0.35), (0.5, -0.4)]) * size + (x, y), colour, size / 5)
 
 
 def target(canvas: Canvas, x: float, y: float, radius: float) -> None:

@@ -41,8 +41,7 @@ _GLASS = np.array([(0.22, 0.30), (0.22, -0.30)])
 
 
 def _outline(window: Window, body: DrawnVehicle, shape: Points) -> Points:
-    grow = max(_SMALLEST / (body.length * window.zoom), 1.0)
-    along, across = (shape * (body.length, body.width) * grow).T
+    along, across = (shape * (body.length, body.width) * max(_SMALLEST / (body.length * window.zoom), 1.0)).T
     cos, sin = math.cos(body.heading), math.sin(body.heading)
     return window.place(np.column_stack((body.x + along * cos - across * sin, body.y + along * sin + across * cos)))
 

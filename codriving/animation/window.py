@@ -105,12 +105,11 @@ def rows(box: Area, area: Area) -> tuple[Window, ...]:
     n = max(range(1, MOST_ROWS + 1), key=lambda k: zoom(k) * (1.0 if k > 1 else 1.3))
     height = min((area.height - GAP * (n - 1)) / n, wide * zoom(n)) if n > 1 else area.height
     step = height + (area.height - n * height) / max(n - 1, 1) if n > 1 else 0.0
-    start = box.top if turned else box.left
     windows = []
     # A point in two rows belongs to the one whose half of the common part it is in.
     shared = (area.width - long / n * zoom(n)) / 2 if n > 1 else 0.0
     for k in range(n):
-        middle = start + (k + 0.5) * long / n
+        middle = (box.top if turned else box.left) + (k + 0.5) * long / n
         x, y = (box.centre[0], middle) if turned else (middle, box.centre[1])
         dim = (shared if k else 0.0, shared if k < n - 1 else 0.0)
         windows.append(Window(Area(area.left, area.top + k * step, area.width, height), x, y, zoom(n), turned, dim))
@@ -151,8 +150,7 @@ class FreeSpace:
 def overlap(a: Area, b: Area) -> float:
     """Return how much two areas have in common [px²]."""
     across = min(a.left + a.width, b.left + b.width) - max(a.left, b.left)
-    down = min(a.top + a.height, b.top + b.height) - max(a.top, b.top)
-    return max(across, 0.0) * max(down, 0.0)
+    return max(across, 0.0) * max(min(a.top + a.height, b.top + b.height) - max(a.top, b.top), 0.0)
 
 
 def beside(own: Area, width: float, height: float) -> list[Area]:

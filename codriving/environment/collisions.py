@@ -45,8 +45,7 @@ def find_block_collisions(
 
 
 def _overlap(one: RoadObject, other: RoadObject) -> bool:
-    boxes = [corners(v.position[0], v.position[1], v.heading, v.LENGTH, v.WIDTH) for v in (one, other)]
-    return overlap(*boxes)
+    return overlap(*[corners(v.position[0], v.position[1], v.heading, v.LENGTH, v.WIDTH) for v in (one, other)])
 
 
 HALVINGS = 20  # Bisections of a simulation step; finds the first touch to a micrometre

@@ -43,9 +43,8 @@ class PlainMotion(_Base):
 
     def _steer(self, lane: AbstractLane, s: float, lateral: float) -> float:
         speed = self.speed if abs(self.speed) > STANDSTILL else math.copysign(STANDSTILL, self.speed + 0.0)
-        ahead = float(lane.heading_at(s + self.speed * self.TAU_PURSUIT))
         sideways = float(np.arcsin(clip(-self.KP_LATERAL * float(lateral) / speed, 1.0)))
-        turn = ahead + clip(sideways, math.pi / 4) - self.heading
+        turn = float(lane.heading_at(s + self.speed * self.TAU_PURSUIT)) + clip(sideways, math.pi / 4) - self.heading
         rate = self.KP_HEADING * (((turn + math.pi) % (2 * math.pi)) - math.pi)
         slip = np.arcsin(clip(self.LENGTH / 2 / speed * rate, 1.0))
         return clip(float(np.arctan(2 * float(np.tan(slip)))), self.MAX_STEERING_ANGLE)

@@ -25,18 +25,17 @@ class Termination:
     def check(self, traffic: Traffic, time: float) -> Outcome | None:
         """Look at the road after a simulation step; return the outcome if the episode is over, else None."""
         collision = self._collide(traffic, time)
-        crashed = () if collision is None else (collision.striker, collision.struck)
         gone = []
         for vehicle in traffic.vehicles:
             if vehicle.s >= vehicle.route_path.route.goal and vehicle.id in self._waiting:
-                if vehicle.id in crashed:
+                if vehicle.id in (() if collision is None else (collision.striker, collision.struck)):
                     continue
                 self.arrivals[vehicle.id] = time
                 self._waiting.discard(vehicle.id)
                 gone.append(vehicle)
             elif vehicle.s >= vehicle.route_path.end and traffic.corrections.remove_at_sink:
                 gone.append(vehicle)
-        lost = tuple(v.id for v in traffic.vehicles if v.id in self._waiting and _is_off_road(v))
+        lost = tuple(v.id for v in traffic.vehicles if v.id in self._waiting and abs(v.offset - v.shift) > v.lane.width)
         if gone:
             traffic.vehicles = [v for v in traffic.vehicles if v not in gone]
         if collision is not None:
@@ -45,9 +44,7 @@ class Termination:
             return self._end(Ending.OFF_ROAD, time, off_road=lost)
         if not self._waiting:
             return self._end(Ending.SUCCESS, time)
-        if time >= self._time_limit - 1e-9:
-            return self._end(Ending.TIMEOUT, time)
-        return None
+        return self._end(Ending.TIMEOUT, time) if time >= self._time_limit - 1e-9 else None
 
     def _collide(self, traffic: Traffic, time: float) -> Collision | None:
         """Tow away human drivers that hit each other or a block; return the first collision of a CAV."""
@@ -69,10 +66,4 @@ class Termination:
     def _end(
         self, ending: Ending, time: float, collision: Collision | None = None, off_road: tuple[str, ...] = ()
     ) -> Outcome:
-        arrivals = dict(sorted(self.arrivals.items()))
-        return Outcome(ending, time, arrivals, collision, tuple(self._bystanders), off_road)
-
-
-def _is_off_road(vehicle: RouteFollower) -> bool:
-    """Whether the centre of a vehicle has left its lane by more than half a lane."""
-    return bool(abs(vehicle.offset - vehicle.shift) > vehicle.lane.width)
+        return Outcome(ending, time, dict(sorted(self.arrivals.items())), collision, tuple(self._bystanders), off_road)

@@ -175,8 +175,7 @@ class ModelChat:
         prices = self.settings.input_cost_per_token, self.settings.output_cost_per_token
         cost = cost_of(self.name, reply.prompt_tokens, reply.completion_tokens, *prices)
         self.spending.add(reply.prompt_tokens, reply.completion_tokens, cost)
-        seconds = round(time.perf_counter() - begun, 3)
-        return replace(reply, form=form, cost=cost, seconds=seconds, attempts=sent)
+        return replace(reply, form=form, cost=cost, seconds=round(time.perf_counter() - begun, 3), attempts=sent)
 
     async def _attempt(self, request: ChatRequest, form: str) -> Reply:
         async with self._limit.slot() as ticket:

@@ -102,8 +102,7 @@ def worded(messages: tuple[Message, ...], form: str, schema: Mapping[str, Any] |
     at = next((index for index, message in enumerate(messages) if message.role == "user"), None)
     if at is None:
         return (*messages, Message("user", wish))
-    told = Message("user", f"{messages[at].content}\n\n{wish}")
-    return (*messages[:at], told, *messages[at + 1 :])
+    return (*messages[:at], Message("user", f"{messages[at].content}\n\n{wish}"), *messages[at + 1 :])
 
 
 class Forms:

@@ -115,11 +115,10 @@ def _reply(response: Any, form: str, key: str | None) -> Reply:  # noqa: ANN401 
         return Reply("", "", form=form, **tokens)
     message = choices[0].message
     beside = getattr(message, "provider_specific_fields", None) or {}
-    refusal = getattr(message, "refusal", None) or beside.get("refusal") or ""
     return Reply(
         text=clean(without_key(_text(getattr(message, "content", None)), key)),
         finish_reason=str(choices[0].finish_reason or ""),
-        refusal=clean(without_key(str(refusal), key)),
+        refusal=clean(without_key(str(getattr(message, "refusal", None) or beside.get("refusal") or ""), key)),
         form=form,
         **tokens,
     )

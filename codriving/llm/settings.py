@@ -54,8 +54,7 @@ class ModelSettings:
         )
         for name, (low, high, unit) in _RANGES.items():
             value = getattr(self, name)
-            in_range = value is None or low <= value <= high
-            _require(in_range, f"{name} must be {low:g} to {high:g}{unit}, got {value}")
+            _require(value is None or low <= value <= high, f"{name} must be {low:g} to {high:g}{unit}, got {value}")
         _require(self.cache in CACHE_MODES, f"cache must be one of {', '.join(CACHE_MODES)}, got {self.cache}")
         _require(self.cache_file.strip(), "cache_file must be the name of a file, got an empty text")
         for name, unit in (("max_cost", " USD"), ("max_tokens_total", "")):

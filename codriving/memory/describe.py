@@ -58,8 +58,7 @@ def _beside(scene: SceneDescription, numbers: dict[str, float]) -> list[str]:
 
 def _nearest(scene: SceneDescription, numbers: dict[str, float]) -> list[str]:
     """The nearest of all vehicles ahead but the leader: all that is seen where no conflicts are."""
-    ahead = (n for n in scene.by_distance() if n.role is not Role.LEADING and scene.offset(n)[0] > 0)
-    nearest = next(ahead, None)
+    nearest = next((n for n in scene.by_distance() if n.role is not Role.LEADING and scene.offset(n)[0] > 0), None)
     if nearest is None:
         return []
     far, right = numbers["near_ahead"], numbers["near_right"] = scene.offset(nearest)
@@ -77,9 +76,8 @@ def _conflict(situation: Situation, numbers: dict[str, float], kinds: dict[str, 
     other = situation.scene.neighbour(c.other)
     kinds["relation"], kinds["severity"] = str(c.relation), str(c.severity)
     kinds["driver"] = DRIVERS[None if other is None else other.kind]
-    numbers.update(
-        mine=c.distances[0], its=c.distances[1], my_ttcp=c.ttcp[0], its_ttcp=c.ttcp[1], later=c.ttcp[0] - c.ttcp[1]
-    )
+    mine, its = c.ttcp
+    numbers.update(mine=c.distances[0], its=c.distances[1], my_ttcp=mine, its_ttcp=its, later=mine - its)
     numbers["dttcp"], numbers["conflicts"] = c.dttcp, len({k.other for k in situation.conflicts})
     if other is not None:
         numbers["its_speed"] = other.speed

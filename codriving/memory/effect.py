@@ -72,8 +72,7 @@ def effect_of(history: DecisionHistory, k: int) -> Effect:
     """Work out what one action led to."""
     now, after = history.steps[k], history.at(k + 1)
     collision = _time_to_collision(history, k)
-    with_it = None if collision is None or history.collision is None else history.collision.other
-    conflict = _most_urgent(now, with_it)
+    conflict = _most_urgent(now, None if collision is None or history.collision is None else history.collision.other)
     later = None if conflict is None or after is None else _same(conflict, after.conflicts)
     change = 0.0 if conflict is None or later is None else own_change(conflict, later, now.ego.speed * history.interval)
     return Effect(
@@ -157,14 +156,13 @@ def _is_responsible(history: DecisionHistory, k: int, conflict: Conflict | None,
     """Whether an action led to the collision that came soon after."""
     assert history.collision is not None
     end = min(len(history.steps), 1 + int(history.collision.time / history.interval))
-    before = history.steps[max(0, end - 1 - round(HORIZON / history.interval)) : end]
     action = history.steps[k].action
-    if any(step.action in SIDEWAYS for step in before):
+    if any(
+        step.action in SIDEWAYS for step in history.steps[max(0, end - 1 - round(HORIZON / history.interval)) : end]
+    ):
         return action in SIDEWAYS
     met = conflict is not None and conflict.other == history.collision.other
-    if action is Action.SLOWER:
-        return met and change < 0
-    return met or history.collision.striker
+    return met and change < 0 if action is Action.SLOWER else met or history.collision.striker
 
 
 def _deceleration(before: float | None, after: float | None, interval: float) -> float:

@@ -115,8 +115,7 @@ class FeatureEmbedder(Embedder):
         for row, description in zip(rows, descriptions, strict=True):
             place = 0
             for number in NUMBERS:
-                value = description.numbers.get(number.name)
-                _put(row[place : place + number.width], number, value)
+                _put(row[place : place + number.width], number, description.numbers.get(number.name))
                 place += number.width
             for name, weight, words in KINDS:
                 word = description.kinds.get(name)

@@ -57,8 +57,7 @@ class Index:
         while True:
             scores, rows = self._flat.search(np.ascontiguousarray(queries, dtype=np.float32), wanted)
             rounded = np.round(scores.astype(np.float64), _DIGITS) + 0.0
-            last = rounded[:, min(k, wanted) - 1]
-            if wanted == len(self.ids) or (rounded[:, -1] < last).all():
+            if wanted == len(self.ids) or (rounded[:, -1] < rounded[:, min(k, wanted) - 1]).all():
                 break
             wanted = min(4 * wanted, len(self.ids))
         return [self._ranked(r, s, k) for r, s in zip(rows, rounded, strict=True)]

@@ -67,9 +67,8 @@ def search(snapshot: Snapshot, text: str, most: int) -> list[tuple[float, Stored
         Similarity and experience, the most similar first, the older first if equal; none that has nothing in common.
     """
     words = WordEmbedder()
-    texts = [
-        f"{k.experience.description.text} {k.experience.action} {k.experience.lesson}" for k in snapshot.experiences
-    ]
+    known = [k.experience for k in snapshot.experiences]
+    texts = [f"{e.description.text} {e.action} {e.lesson}" for e in known]
     if not texts:
         return []
     scores = (words.embed_texts(texts) @ words.embed_texts([text])[0]).astype(float).round(6)

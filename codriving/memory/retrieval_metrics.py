@@ -14,9 +14,7 @@ def same_kind(one: Description, other: Description) -> bool:
     if any(one.kinds.get(name) != other.kinds.get(name) for name in ("relation", "order")):
         return False
     first, second = one.numbers.get("dttcp"), other.numbers.get("dttcp")
-    if first is None or second is None:
-        return first is second
-    return abs(first - second) <= NEAR
+    return first is second if first is None or second is None else abs(first - second) <= NEAR
 
 
 def precision_at(
@@ -27,9 +25,7 @@ def precision_at(
     index = Index(vectors.shape[1])
     index.add(range(len(kept)), vectors)
     hits = index.search(embedder.embed(held_back), max(ks))
-    found = [
-        [same_kind(query, kept[number]) for number, _ in near] for query, near in zip(held_back, hits, strict=True)
-    ]
+    found = [[same_kind(query, kept[row]) for row, _ in near] for query, near in zip(held_back, hits, strict=True)]
     return {k: sum(sum(right[:k]) / k for right in found) / len(found) for k in ks}
 
 

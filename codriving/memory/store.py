@@ -126,9 +126,8 @@ class MemoryStore:
         if self._index is None or version != self._version:
             self._version = version
             self._index, self._kinds = Index(self._dimension), {}
-        last = self._index.ids[-1] if self._index.ids else 0
         query = "SELECT id, vector, action, verdict FROM experiences WHERE id > ? ORDER BY id"
-        rows = connection.execute(query, (last,)).fetchall()
+        rows = connection.execute(query, (self._index.ids[-1] if self._index.ids else 0,)).fetchall()
         self._index.add([row[0] for row in rows], vectors_of([row[1] for row in rows], self._dimension))
         self._kinds.update((row[0], (row[2], row[3])) for row in rows)
 

@@ -32,9 +32,7 @@ def is_open(zone: ConflictZone, place_i: float, place_j: float) -> bool:
     """
     if zone.relation not in OPEN or place_i > zone.exit_i or place_j > zone.exit_j:
         return False
-    if zone.merge_i is None or zone.merge_j is None:
-        return True
-    return place_i < zone.merge_i or place_j < zone.merge_j
+    return zone.merge_i is None or zone.merge_j is None or place_i < zone.merge_i or place_j < zone.merge_j
 
 
 def _conflict(
@@ -77,6 +75,4 @@ def severity(dttcp: float) -> Severity:
         return Severity.SERIOUS
     if dttcp <= 5.0:
         return Severity.GENERAL
-    if dttcp <= 8.0:
-        return Severity.SLIGHT
-    return Severity.NONE
+    return Severity.SLIGHT if dttcp <= 8.0 else Severity.NONE

@@ -39,9 +39,8 @@ class Highway(PlacedScenario):
     def road(self) -> Road:
         """Parallel lanes, and a route along each; none has the right of way."""
         lanes, routes = [], []
-        length = self.finish + BEYOND
         for k in range(self.lanes):
-            shape = Straight((0.0, k * LANE_WIDTH), (length, k * LANE_WIDTH))
+            shape = Straight((0.0, k * LANE_WIDTH), (self.finish + BEYOND, k * LANE_WIDTH))
             lanes.append(Lane(("begin", "end", k), shape, LANE_WIDTH, SPEED_LIMIT, 0, _lines(k, self.lanes)))
             routes.append(Route(f"lane-{k}", (("begin", "end", k),), Turn.STRAIGHT, self.finish, self.finish))
         return Road("highway", tuple(lanes), tuple(routes))

@@ -39,20 +39,17 @@ def _lanes(leg_length: float) -> tuple[Lane, ...]:
 
         inner = f"ir{corner}"
         right, left, out = (f"il{(corner + steps) % 4}" for steps in TURNS.values())
-        approach = Straight(at(half, far), at(half, OUTER))
         turn_right = Arc(
             at(OUTER, OUTER), RIGHT_TURN_RADIUS, angle + float(np.radians(180)), angle + float(np.radians(270))
         )
         offset = LEFT_TURN_RADIUS - half
         turn_left = Arc(at(-offset, offset), LEFT_TURN_RADIUS, angle, angle + float(np.radians(-90)), clockwise=False)
-        across = Straight(at(half, OUTER), at(half, -OUTER))
-        leave = Straight(at(OUTER, half), at(far, half))
         lanes += [
-            lane((f"o{corner}", inner, 0), approach, priority, (dash, cont)),
+            lane((f"o{corner}", inner, 0), Straight(at(half, far), at(half, OUTER)), priority, (dash, cont)),
             lane((inner, right, 0), turn_right, priority, (none, cont)),
             lane((inner, left, 0), turn_left, priority - 1, (none, none)),
-            lane((inner, out, 0), across, priority, (dash, none)),
-            lane((right, f"o{(corner - 1) % 4}", 0), leave, priority, (none, cont)),
+            lane((inner, out, 0), Straight(at(half, OUTER), at(half, -OUTER)), priority, (dash, none)),
+            lane((right, f"o{(corner - 1) % 4}", 0), Straight(at(OUTER, half), at(far, half)), priority, (none, cont)),
         ]
     return tuple(lanes)
 

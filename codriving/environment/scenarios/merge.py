@@ -51,23 +51,19 @@ class Merge(PlacedScenario):
         opens = self.before + self.converge
         ends = opens + self.parallel
         mains, right, goal = range(self.lanes), self.lanes - 1, ends + PAST_MERGE
-        parts = (("a", "b", 0.0, opens), ("b", "c", opens, ends))
-        lanes = [self._main(*part, k) for part in parts for k in mains]
+        lanes = [self._main(*part, k) for part in (("a", "b", 0.0, opens), ("b", "c", opens, ends)) for k in mains]
         lanes += self._ramp(opens, ends)
         lanes += [self._main("c", "d", ends, ends + self.after, k) for k in mains]
         way: tuple[LaneId, ...]
-        routes = []
-        for k in mains:
-            way = (("a", "b", k), ("b", "c", k), ("c", "d", k))
-            routes.append(Route(f"main-{k}", way, Turn.STRAIGHT, opens, goal))
+        ways = [(("a", "b", k), ("b", "c", k), ("c", "d", k)) for k in mains]
+        routes = [Route(f"main-{k}", way, Turn.STRAIGHT, opens, goal) for k, way in zip(mains, ways, strict=True)]
         way = (("j", "k", 0), ("k", "b", 0), ("b", "c", self.lanes), ("b", "c", right), ("c", "d", right))
         routes.append(Route("ramp", way, Turn.STRAIGHT, opens, goal, TAPER))
         return Road("merge", tuple(lanes), tuple(routes), blocks=(Block((ends, self.lanes * LANE_WIDTH)),))
 
     def _main(self, start: str, end: str, x: float, x2: float, k: int) -> Lane:
         left = Line.CONTINUOUS_LINE if k == 0 else Line.NONE
-        open_side = k < self.lanes - 1 or start == "b"
-        lines = (left, Line.STRIPED if open_side else Line.CONTINUOUS_LINE)
+        lines = (left, Line.STRIPED if k < self.lanes - 1 or start == "b" else Line.CONTINUOUS_LINE)
         shape = Straight((x, k * LANE_WIDTH), (x2, k * LANE_WIDTH))
         return Lane((start, end, k), shape, LANE_WIDTH, SPEED_LIMIT, 1, lines)
 
@@ -86,5 +82,4 @@ class Merge(PlacedScenario):
     def draw(self, rng: np.random.Generator, name: str, kind: Kind) -> Start:
         from_ramp = {f"CAV{k + 1}" for k in range(self.cavs - self.cavs // 2, self.cavs)}
         on_ramp = name in from_ramp if kind is Kind.CAV else float(rng.random()) < self.ramp_hdvs
-        route = "ramp" if on_ramp else f"main-{int(rng.integers(self.lanes))}"
-        return self.crowd.start_on(rng, name, kind, route)
+        return self.crowd.start_on(rng, name, kind, "ramp" if on_ramp else f"main-{int(rng.integers(self.lanes))}")

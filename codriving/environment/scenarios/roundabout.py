@@ -81,7 +81,6 @@ class Ring:
 
             begin, arc_begin, entry = f"from{leg}", f"bend{leg}", f"in{leg}"
             leaves, arc_end, end = f"out{leg}", f"straight{leg}", f"to{leg}"
-            next_exit = f"out{(leg + 1) % 4}"
             lane(begin, arc_begin, Straight(at(half, deep + self.leg_length), at(half, deep)), 0, (dash, cont))
             bend_in = Arc(at(far, deep), self.entry_radius, math.pi + quarter, math.pi + self.touch + quarter)
             lane(arc_begin, entry, bend_in, 0, (none, cont))
@@ -89,14 +88,13 @@ class Ring:
             lane(leaves, arc_end, bend_out, 0, (none, cont))
             lane(arc_end, end, Straight(at(-half, deep), at(-half, deep + self.leg_length)), 0, (none, cont))
             touches = self.touch + quarter
-            lane(entry, next_exit, self._arc(touches, math.pi / 2 - self.touch + quarter), 1, (cont, cont))
+            lane(entry, f"out{(leg + 1) % 4}", self._arc(touches, math.pi / 2 - self.touch + quarter), 1, (cont, cont))
             lane(leaves, entry, self._arc(math.pi - self.touch + quarter, touches), 1, (cont, dash))
         return tuple(lanes)
 
     def routes(self, exit_distance: float) -> tuple[Route, ...]:
         """Build the twelve routes that do not turn back."""
         routes = []
-        yield_line = math.ceil(2 * self.clear) / 2
         for leg, name in enumerate(LEGS):
             for turn, steps in TURNS.items():
                 lanes: list[LaneId] = [(f"from{leg}", f"bend{leg}", 0), (f"bend{leg}", f"in{leg}", 0)]
@@ -106,7 +104,7 @@ class Ring:
                     lanes.append((f"in{k % 4}", f"out{(k + 1) % 4}", 0))
                 out = (leg + steps) % 4
                 lanes += [(f"out{out}", f"straight{out}", 0), (f"straight{out}", f"to{out}", 0)]
-                entry = self.leg_length + self.bend - yield_line
+                entry = self.leg_length + self.bend - math.ceil(2 * self.clear) / 2
                 goal = self.leg_length + self.bend + self.on_ring(steps) + exit_distance
                 routes.append(Route(f"{name}-{LEGS[out]}", tuple(lanes), turn, entry, goal))
         return tuple(routes)

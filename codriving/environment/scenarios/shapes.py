@@ -12,8 +12,7 @@ _STRAIGHT = 1e-6  # An end that is no farther to the side than this is straight 
 
 def turned(point: Point, angle: float) -> Point:
     """Turn a point [m] about the origin from x towards y [rad], clockwise on the screen, where y points down."""
-    rotation = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    x, y = rotation @ np.array(point)
+    x, y = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ np.array(point)
     return float(x), float(y)
 
 

@@ -70,8 +70,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
             wanted.append(self.gap_behind(leader) / max(gap + self.LENGTH, 0.01))
         lane_end = self.route_path.lane_end
         if not changing and self.lane_index == self.route_path.ending and lane_end < self.s + self.sight:
-            room = lane_end - self.s - self.LENGTH / 2
-            wanted.append(self._gap_at(self.speed) / max(room + self.LENGTH, 0.01))
+            wanted.append(self._gap_at(self.speed) / max(lane_end - self.s - self.LENGTH / 2 + self.LENGTH, 0.01))
         if self.waits_at is not None:
             wanted.append(self._gap_at(self.speed) / max(self.waits_at - self.s + self.LENGTH / 2, 0.01))
         acceleration = float(self.free_acceleration() - self.COMFORT_ACC_MAX * max(wanted) ** 2)
@@ -84,8 +83,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
         """Return the gap that the driver wants behind a body, by how fast it is coming closer [m]."""
         cos, sin = float(np.cos(self.heading)), float(np.sin(self.heading))
         x = self.speed * cos - leader.speed * float(np.cos(leader.heading))
-        y = self.speed * sin - leader.speed * float(np.sin(leader.heading))
-        return self._gap_at(x * cos + y * sin)
+        return self._gap_at(x * cos + (self.speed * sin - leader.speed * float(np.sin(leader.heading))) * sin)
 
     def _gap_at(self, closing: float) -> float:
         """IDM's desired gap [m] at a closing speed [m/s]."""
@@ -143,8 +141,7 @@ def body_ahead(driver: RouteFollower, others: Sequence[RoadObject], sight: float
     rows = slice(first, last + 2)
     places = np.array([(px, py) for _, px, py in seen])
     dx, dy = route_path.x[rows] - places[:, :1], route_path.y[rows] - places[:, 1:]
-    nearest = (dx**2 + dy**2).argmin(axis=1).tolist()
-    for (other, px, py), k in zip(seen, nearest, strict=True):
+    for (other, px, py), k in zip(seen, (dx**2 + dy**2).argmin(axis=1).tolist(), strict=True):
         if 0 < k == last + 1 - first and last < end:
             continue
         gap = _gap(driver, other, px, py, first + k)

@@ -100,13 +100,12 @@ class Traffic(RegulatedRoad):
             return super().neighbour_vehicles(vehicle, lane_index)  # type: ignore[no-any-return]
         lane = self.network.get_lane(index)
         own = lane.local_coordinates(vehicle.position)[0]
-        stretch = [(lane, 0.0), *self._connections(index, vehicle)]
         ahead: tuple[RoadObject | None, float] = (None, np.inf)
         behind: tuple[RoadObject | None, float] = (None, -np.inf)
         for other in self.vehicles + self.objects:
             if other is vehicle or isinstance(other, Landmark):
                 continue
-            for piece, offset in stretch:
+            for piece, offset in [(lane, 0.0), *self._connections(index, vehicle)]:
                 s, lateral = piece.local_coordinates(other.position)
                 if not piece.on_lane(other.position, s, lateral, margin=1):
                     continue

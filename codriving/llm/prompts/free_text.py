@@ -31,8 +31,7 @@ class Names:
             self._add(name, re.sub(r"[^\w.-]", "_", name, flags=re.ASCII)[:LONGEST_NAME] or "_")
         for k, name in enumerate(name for name in dict.fromkeys(unknown) if name not in self._shown):
             self._add(name, f"V{k + 1}")
-        longest_first = sorted(self._shown, key=len, reverse=True)
-        words = "|".join(re.escape(name) for name in longest_first)
+        words = "|".join(re.escape(name) for name in sorted(self._shown, key=len, reverse=True))
         self._ids = re.compile(rf"(?<!\w)(?:{words})(?!\w)") if words else None
 
     def _add(self, name: str, shown: str) -> None:

@@ -102,11 +102,9 @@ def lane_views(scene: SceneDescription, neighbours: Sequence[TrackedVehicle], na
         for n in (n for n in neighbours if n.lane == lane):
             along, _ = scene.offset(n)
             gap = max(abs(along) - (n.length + scene.ego.length) / 2, 0.0)
-            view = VehicleView(names(n.id), DRIVERS[n.kind], gap, n.speed)
-            (ahead if along > 0 else behind).append(view)
-        name = "left lane" if lane[2] < scene.ego.lane[2] else "right lane"
+            (ahead if along > 0 else behind).append(VehicleView(names(n.id), DRIVERS[n.kind], gap, n.speed))
         nearest = [min(side, key=lambda v: (v.gap, v.id), default=None) for side in (ahead, behind)]
-        lanes.append(LaneView(name, nearest[0], nearest[1]))
+        lanes.append(LaneView("left lane" if lane[2] < scene.ego.lane[2] else "right lane", nearest[0], nearest[1]))
     return lanes
 
 
@@ -132,9 +130,8 @@ def _actions(
     """Put actions together of which a reader would be told the same."""
     views: dict[tuple[object, ...], ActionView] = {}
     for a in assessments:
-        arrivals = tuple(
-            round(min((a.arrivals[k] for k in ks if k < len(a.arrivals)), default=inf), 1) for ks in groups
-        )
+        times = a.arrivals
+        arrivals = tuple(round(min((times[k] for k in ks if k < len(times)), default=inf), 1) for ks in groups)
         progress = None if a.progress is None else round(a.progress)
         key = (a.safe, a.reasons, progress, arrivals)
         before = views[key].names if key in views else ()

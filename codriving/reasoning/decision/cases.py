@@ -31,17 +31,13 @@ def reconsider(situation: Situation, decision: Decision) -> Decision:
     if against >= 0:
         return decision
     verdict = _main_objection(situation.memories, decision.action)
-    others = [
-        a
-        for a in situation.assessments
-        if a.safe and a.action in BY_SPEED and favour(situation.memories, a.action) > against
-    ]
+    safe = [a for a in situation.assessments if a.safe and a.action in BY_SPEED]
+    others = [a for a in safe if favour(situation.memories, a.action) > against]
     if verdict is Verdict.TOO_CAUTIOUS:
         others = [a for a in others if BY_SPEED.index(a.action) > _speed(decision.action)]
     if not others:
         return decision
-    best = max(others, key=lambda a: _preference(situation.memories, a))
-    return _changed(situation, decision, best.action, verdict)
+    return _changed(situation, decision, max(others, key=lambda a: _preference(situation.memories, a)).action, verdict)
 
 
 def favour(memories: Iterable[Memory], action: Action) -> float:
@@ -58,11 +54,10 @@ def _weight(memory: Memory) -> float:
 
 
 def _main_objection(memories: Iterable[Memory], action: Action) -> Verdict:
-    weights = {
-        verdict: sum(_weight(m) for m in memories if (m.action, m.verdict) == (action, verdict))
-        for verdict in (Verdict.INTENSIFIED, Verdict.TOO_CAUTIOUS)
-    }
-    return max(weights, key=lambda verdict: weights[verdict])
+    return max(
+        (Verdict.INTENSIFIED, Verdict.TOO_CAUTIOUS),
+        key=lambda verdict: sum(_weight(m) for m in memories if (m.action, m.verdict) == (action, verdict)),
+    )
 
 
 def _speed(action: Action) -> int:

@@ -52,9 +52,8 @@ def decide_one(situation: Situation) -> Decision:
     if any(a.safe and a.reasons for a in situation.assessments):
         least = situation.allowed[0]
         return Decision(ego, least, f"no action is safe, and {least} is the least dangerous")
-    reached = {
-        a.action: a.progress for a in situation.assessments if a.action in situation.allowed and a.progress is not None
-    }
+    left = [a for a in situation.assessments if a.action in situation.allowed]
+    reached = {a.action: a.progress for a in left if a.progress is not None}
     change = _lane_change(situation, reached)
     if change is not None:
         return change
@@ -64,8 +63,7 @@ def decide_one(situation: Situation) -> Decision:
     ahead = {action: gain for action, gain in reached.items() if action in allowed}
     if not ahead:
         # Standing does not help a vehicle that has to go first; something safe has to be done.
-        stands = situation.scene.ego.speed < STANDS
-        action, how = (allowed[0], "fastest") if stands else (allowed[-1], "slowest")
+        action, how = (allowed[0], "fastest") if situation.scene.ego.speed < STANDS else (allowed[-1], "slowest")
         kept = f"the order cannot be kept with {waits_for or 'others'}"
         return Decision(ego, action, f"{kept}; {action} is the {how} action that is safe")
     best = max(ahead.values())

@@ -92,8 +92,7 @@ class JointPlans(JointPlanner):
             else:
                 stuck.append(name)
                 # Of those that keep clear for longest the one that stops soonest.
-                latest = steps == steps.max()
-                chosen[name] = int(np.argmin(np.where(latest, self.travels[name][:, -1], np.inf)))
+                chosen[name] = int(np.argmin(np.where(steps == steps.max(), self.travels[name][:, -1], np.inf)))
         return Joint(chosen, works, tuple(stuck))
 
     def _too_early(self, name: str, time: float) -> Steps:
@@ -126,8 +125,7 @@ class JointPlans(JointPlanner):
             return None
         key = (first, k, second)
         if key not in self._pairs:
-            n = self.travels[second].shape[1]
-            found: Steps = np.full(len(self.travels[second]), n)
+            found: Steps = np.full(len(self.travels[second]), self.travels[second].shape[1])
             for meeting in meetings:
                 found = np.minimum(found, meeting.steps(self.travels[second], self.travels[first][k]))
             self._pairs[key] = found
@@ -164,8 +162,7 @@ class JointPlans(JointPlanner):
                     time(zone.entry_j - there, theirs) - time(zone.exit_i - place, mine),
                     time(zone.entry_i - place, mine) - time(zone.exit_j - there, theirs),
                 )
-                finite = [gap for gap in gaps if np.isfinite(gap)]
-                least = min(least, max(finite, default=float("inf")))
+                least = min(least, max([gap for gap in gaps if np.isfinite(gap)], default=float("inf")))
         return least
 
 

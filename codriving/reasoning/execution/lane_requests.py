@@ -35,9 +35,8 @@ class LaneRequests:
         """Return the requests of this moment, the earliest first."""
         found = {name: self._wanted(moment, name, agreed, expected, lag) for name in sorted(moment.scenes)}
         wanted = {name: change for name, change in found.items() if change is not None}
-        self._since = {
-            (name, action): self._since.get((name, action), moment.time) for name, (action, _) in wanted.items()
-        }
+        asked = [(name, action) for name, (action, _) in wanted.items()]
+        self._since = {key: self._since.get(key, moment.time) for key in asked}
         requests = [
             Request(name, action, incentive, self._since[name, action], _overlaps(moment.scenes, name, wanted))
             for name, (action, incentive) in wanted.items()

@@ -99,13 +99,12 @@ def _occupied(moment: Moment, name: str) -> str:
 
 def _human_first(moment: Moment, name: str, ordering: Ordering) -> str:
     """Return a human driver who may be in the zone before the vehicle is through."""
-    time = ordering.times.get(name, 0.0)
     reference = moment.scenes[name].place + _distance(moment, name)
     for c in moment.conflicts[name]:
         n = moment.scenes[name].neighbour(c.other)
         if n is not None and n.intent is None and c.distances[0] > 0:
             begin, end = window(moment, c, n, reference)
-            if begin < time and end > 0:
+            if begin < ordering.times.get(name, 0.0) and end > 0:
                 return n.id
     return ""
 

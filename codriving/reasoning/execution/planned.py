@@ -96,14 +96,12 @@ def drive_of(moment: Moment, plans: JointPlans, joint: Joint, ordering: Ordering
     """Write down what a joint plan means for the step."""
     actions, reasons, expected, progress = {}, {}, {}, {}
     for name, k in joint.chosen.items():
-        plan = plans.plan_of(name, k)
-        actions[name] = plan[0]
+        actions[name] = plans.plan_of(name, k)[0]
         reasons[name] = _reason(plans, joint, name, ordering.sequence)
-        travel = plans.travels[name][k]
         gains = progress_by_action(np.where(joint.works[name][: len(PLANS)], plans.gains[name][: len(PLANS)], -np.inf))
         progress[name] = gains
         expected[name] = tuple(
-            Expected(route, place + travel, k == 0, gains if r == 0 else {})
+            Expected(route, place + plans.travels[name][k], k == 0, gains if r == 0 else {})
             for r, (route, place) in enumerate(plans.vehicles[name].routes)
         )
     return Drive(actions, reasons, expected | humans_expected(moment), progress, {"plans_infeasible": len(joint.stuck)})

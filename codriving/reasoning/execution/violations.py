@@ -23,9 +23,7 @@ ROOM = 0.5  # Room that a driver who gives way leaves to the zone [m]
 
 def passes_too_early(zone: ConflictZone, ego: Array, first: Array, lag: int, pad: float) -> Steps:
     """Return when the second vehicle first enters a zone that the one before it has not left for long enough."""
-    n = ego.shape[1]
-    gone = np.concatenate([np.full(lag, first[0]), first])[:n]
-    return first_true(gone <= zone.over_i.highest(ego) + pad)
+    return first_true(np.concatenate([np.full(lag, first[0]), first])[: ego.shape[1]] <= zone.over_i.highest(ego) + pad)
 
 
 def meets(zone: ConflictZone, ego: Array, low: Array, high: Array, lag: int, pad: float) -> Steps:
@@ -56,8 +54,7 @@ class Meeting:
             lag, pad = (self.lag, self.pad) if k < 2 else (0, 0.0)
             found: Steps = np.full(len(travels), n)
             for zone in zones:
-                motion = self.place + travels[:, : self.until]
-                steps = passes_too_early(zone, motion, self.there + first, lag, pad)
+                steps = passes_too_early(zone, self.place + travels[:, : self.until], self.there + first, lag, pad)
                 found = np.minimum(found, np.where(steps < self.until, steps, n))
             if found.any():
                 break

@@ -61,22 +61,18 @@ class RuleCoordinator(Coordinator):
         waiting = dict(instance.vehicles)
         while waiting:
             held = {second for first, second in instance.before if first in waiting}
-            ready = [s for s in waiting.values() if s.id not in held] or list(waiting.values())
             options = []
-            for vehicle in ready:
+            for vehicle in [s for s in waiting.values() if s.id not in held] or list(waiting.values()):
                 time = start_time(vehicle, times, instance.separation)
                 rivals = (k for k in waiting if (k, vehicle.id) in instance.separation and k != vehicle.id)
                 handicap = TURN_YIELDS if vehicle.turning else 0.0
-                if any(self._was_first(k, vehicle.id) for k in rivals):
+                if self.previous is not None and any(self.previous.first_of(k, vehicle.id) == k for k in rivals):
                     handicap += KEEPS_TURN
                 options.append((not vehicle.committed, time + handicap, vehicle.id, time))
             _, _, name, time = min(options)
             times[name] = time
             del waiting[name]
         return times
-
-    def _was_first(self, one: str, other: str) -> bool:
-        return self.previous is not None and self.previous.first_of(one, other) == one
 
 
 def improve(times: Mapping[str, float], instance: Instance, previous: PassingOrder | None) -> dict[str, float]:

@@ -58,13 +58,12 @@ def _approaching(moment: Moment, ego: str) -> ApproachingVehicle:
     go = moment.forecast.reach(speed, True)
     lane = road_map.lane_at(route.id, scene.place)
     # Turning matters where ways cross; on a ring or a ramp no vehicle goes straight on.
-    turning = route.turn is not Turn.STRAIGHT and any(c.relation is Relation.CROSSING for c in conflicts)
     return ApproachingVehicle(
         id=ego,
         reference=reference,
         eta=moment.forecast.time_to(ahead, go.most) if ahead > 0 else ahead / top,
         committed=bool(go.least[-1] >= ahead),
-        turning=turning,
+        turning=route.turn is not Turn.STRAIGHT and any(c.relation is Relation.CROSSING for c in conflicts),
         lane="/".join(map(str, lane)),
         stream="/".join((*map(str, lane), str(route.turn))),
         distance=max(ahead, 0.0),
@@ -157,9 +156,8 @@ def window(moment: Moment, c: Conflict, human: TrackedVehicle, reference: float)
         return inf, inf
     zone, top = moment.road_map.zones(*c.routes)[c.zone], forecast.model.top_speed
     slow, fast = forecast.likely(human.speed)
-    enters = forecast.time_to(c.distances[1], fast)
     leaves = forecast.time_to(zone.entry_i + lag_length(zone, False) - c.places[1], slow)
-    begin = enters - (zone.entry_j + lag_length(zone) - reference) / top - CERTAIN_GAP
+    begin = forecast.time_to(c.distances[1], fast) - (zone.entry_j + lag_length(zone) - reference) / top - CERTAIN_GAP
     return begin, leaves + GAP - (zone.entry_i - reference) / top
 
 

@@ -45,8 +45,7 @@ def expect_all(
     done: dict[tuple[object, ...], dict[str, tuple[Expected, ...]]] = {}
     found = {}
     for ego, order in orders.items():
-        vehicles = moment.vehicles[ego].values()
-        key = (id(order), *((v.id, v.is_cav, v.speed, v.target, v.routes) for v in vehicles))
+        key = (id(order), *((v.id, v.is_cav, v.speed, v.target, v.routes) for v in moment.vehicles[ego].values()))
         if key not in done:
             done[key] = expect(moment, ego, order, lag)
         found[ego] = done[key]
@@ -116,7 +115,6 @@ def keeps_order(
     keeps: Flags = np.ones(len(places), dtype=np.bool_)
     place = float(places[0, 0])
     vehicles = moment.vehicles[ego]
-    headway = min(lag, round(HEADWAY / moment.forecast.sample))
     for other, motions in expected.items():
         if other == name:
             continue
@@ -128,7 +126,7 @@ def keeps_order(
             for zone in moment.road_map.zones(route, motion.route):
                 following = is_behind(zone, place, there)
                 if following or (minds and is_open(zone, place, there)):
-                    after = headway if following else lag
+                    after = min(lag, round(HEADWAY / moment.forecast.sample)) if following else lag
                     keeps &= stays_behind(zone, places, motion.places[: places.shape[1]], after, 0.0)
     return keeps
 

@@ -132,8 +132,7 @@ class Forecast:
         if key not in self._reach:
             if is_cav:
                 # Neither depends on the present target, so that of any state with this speed will do.
-                target = next((goal for v, goal in self._travel if v == speed), speed)
-                travels = self._travels(speed, target)
+                travels = self._travels(speed, next((goal for v, goal in self._travel if v == speed), speed))
                 least, most = travels[self._index[BRAKE]], travels[self._index[GO]]
             else:
                 least = slowest(speed, self.times)

@@ -36,13 +36,11 @@ def gives_way(c: Conflict, human: TrackedVehicle, road_map: RoadMap) -> str:
     if not road_map.road.regulated or room <= 0:
         return ""
     needed = human.speed**2 / (2 * room)
-    brakes = human.acceleration is not None and human.acceleration < -0.5 * needed
-    if needed > (FIRM if brakes else COMFORT):
+    if needed > (FIRM if human.acceleration is not None and human.acceleration < -0.5 * needed else COMFORT):
         return ""
     if c.places[0] > road_map.routes[c.routes[0]].entry:
         return "the CAV is in the junction already, and the human driver can still wait before it"
     mine = road_map.lanes[road_map.lane_at(c.routes[0], c.places[0])].priority
-    theirs = road_map.lanes[road_map.lane_at(c.routes[1], c.places[1])].priority
-    if mine > theirs:
+    if mine > road_map.lanes[road_map.lane_at(c.routes[1], c.places[1])].priority:
         return "the CAV has the right of way, and the human driver can still wait before the junction"
     return ""

@@ -109,8 +109,7 @@ def rollout(
     distances, reached = [np.zeros((*shape, 1))], [v[..., None]]
     for change in _known_changes(plans, -(-steps // model.substeps)):
         index = np.minimum(np.maximum(np.rint((v - law.low) / law.span * law.top), 0), law.top)
-        asked = law.low + law.spacing * np.minimum(np.maximum(index + change, 0), law.top)
-        goal = np.where(change != 0, asked, goal)
+        goal = np.where(change != 0, law.low + law.spacing * np.minimum(np.maximum(index + change, 0), law.top), goal)
         excess = v - goal
         distances.append(s[..., None] + goal[..., None] * law.elapsed + excess[..., None] * law.summed)
         reached.append(goal[..., None] + excess[..., None] * law.left)

@@ -54,17 +54,15 @@ def _cuts_in(there: SafetyInput, n: TrackedVehicle) -> str:
 
 
 def _alongside(there: SafetyInput, n: TrackedVehicle, route: str, place: float) -> bool:
-    return (
-        route == there.scene.intent.route and abs(place - there.scene.place) < (n.length + there.scene.ego.length) / 2
-    )
+    scene = there.scene
+    return route == scene.intent.route and abs(place - scene.place) < (n.length + scene.ego.length) / 2
 
 
 def _meets(there: SafetyInput, n: TrackedVehicle, action: Action, must: bool) -> str:
     """Say that a vehicle two lanes away might change onto the same lane, if it is near and does not have to wait."""
     scene = there.scene
-    far = there.road_map.changes.routes_beside(scene.intent.route, scene.intent.target_lane)
     wanted = scene.intent.target_lane[2] + SIDES[action]
-    for name, lane in far:
+    for name, lane in there.road_map.changes.routes_beside(scene.intent.route, scene.intent.target_lane):
         for route, place in n.routes:
             if lane[2] == wanted and route == name and abs(place - scene.place) < SIDE_GAP:
                 waits = n.intent is not None and (place, n.id) < (scene.place, scene.ego.id)

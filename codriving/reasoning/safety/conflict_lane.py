@@ -34,8 +34,7 @@ def check_conflicts(given: SafetyInput) -> dict[Action, list[str]]:
     # ways merge no vehicle is caught in between.
     for c in (c for c in conflicts if c.relation is Relation.CROSSING and not given.vehicles[c.other].is_cav):
         zone = given.road_map.zones(*c.routes)[c.zone]
-        ends = (given.stops[:, -1] + PAD).tolist()
-        inside = [given.scene.place < zone.entry_i < end < zone.exit_i for end in ends]
+        inside = [given.scene.place < zone.entry_i < end < zone.exit_i for end in (given.stops[:, -1] + PAD).tolist()]
         if not any(inside) or leaves_in_time(given, c, zone):
             continue
         through = gets_through(given, conflicts, passes)
@@ -65,18 +64,16 @@ def changes_before(given: SafetyInput, c: Conflict) -> bool:
 
 def expected_to_pass(given: SafetyInput, c: Conflict) -> Flags:
     """Whether the CAV comes behind the other vehicle if that one moves as expected."""
-    zone = given.road_map.zones(*c.routes)[c.zone]
     for motion in given.expected[c.other]:
         if motion.route == c.routes[1]:
-            return stays_behind(zone, given.goes, motion.places, 0, PAD)
+            return stays_behind(given.road_map.zones(*c.routes)[c.zone], given.goes, motion.places, 0, PAD)
     return np.zeros(len(given.actions), dtype=np.bool_)
 
 
 def leaves_in_time(given: SafetyInput, c: Conflict, zone: ConflictZone) -> bool:
     """Whether the CAV, as it is expected to move, will be out of a zone before a human driver can be there."""
-    own = given.expected[c.ego][0]
     most = c.places[1] + given.forecast.reach(given.vehicles[c.other].speed, False).most
-    return bool(stays_ahead(zone, own.places[None], most, 0, 0.0)[0])
+    return bool(stays_ahead(zone, given.expected[c.ego][0].places[None], most, 0, 0.0)[0])
 
 
 def add(found: dict[Action, list[str]], action: Action, reason: str) -> None:
@@ -96,31 +93,28 @@ def passes_and_stops(given: SafetyInput, c: Conflict) -> tuple[Flags, Flags]:
     zone, other = given.road_map.zones(*c.routes)[c.zone], given.vehicles[c.other]
     reach, place = given.forecast.reach(other.speed, other.is_cav), c.places[1]
     relied_on = _goes_on(given, other)
-    least = place + (reach.steady if relied_on else reach.least)
     # A bound on what the other one can do is a margin in itself; an expectation needs one.
     lag = given.lag if relied_on else round(BOUND_LAG / given.forecast.sample)
     # Both in one go: nearly all of the time goes into calls, not into numbers.
     motions = np.concatenate((given.goes, given.stops))
-    fine = stays_behind(zone, motions, least, lag, PAD)
+    fine = stays_behind(zone, motions, place + (reach.steady if relied_on else reach.least), lag, PAD)
     goes_first = given.order.first_of(c.ego, c.other) == c.ego
     if goes_first and (other.is_cav or gives_way(c, other, given.road_map)):
         fine |= keeps_clear(given, c, motions, place + reach.least)
     goes, stops = fine[: len(given.goes)], fine[len(given.goes) :]
     if (goes_first or not (given.order.binding and other.is_cav)) and c.distances[1] > 0:
-        ahead = round(AHEAD_LAG / given.forecast.sample)
         late = np.flatnonzero(~goes)
         if len(late):
             most, after = place + reach.most, given.goes[late]
             reacting = np.array([reacts(zone, motion, most, given.forecast.sample) for motion in after])
-            goes[late] = stays_ahead(zone, after, reacting, ahead, PAD)
+            goes[late] = stays_ahead(zone, after, reacting, round(AHEAD_LAG / given.forecast.sample), PAD)
     return goes, stops
 
 
 def keeps_clear(given: SafetyInput, c: Conflict, motions: Array, other: Array) -> Flags:
     """Whether the CAV and another vehicle that gives way would not touch, the bodies a little larger than they are."""
     for footprint in (BODY, TRUE):
-        zones = given.road_map.zones(*c.routes, footprint)
-        overlaps = [first_overlap(z, motions, other) for z in zones]
+        overlaps = [first_overlap(z, motions, other) for z in given.road_map.zones(*c.routes, footprint)]
         if not any(steps[0] == 0 for steps in overlaps):
             clear: Flags = np.ones(len(motions), dtype=np.bool_)
             for steps in overlaps:

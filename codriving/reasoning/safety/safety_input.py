@@ -166,9 +166,8 @@ def clear_time(given: SafetyInput, c: Conflict) -> float:
         return 0.0
     zone = given.road_map.zones(*c.routes)[c.zone]
     # Behind a vehicle that merges, the way is free once it is a car length down the common stretch.
-    leaves = zone.merge_j + CAR_LENGTH if zone.merge_j is not None else zone.exit_j
     for motion in given.expected.get(c.other, ()):
         if motion.route == c.routes[1]:
-            gone = motion.places > leaves
+            gone = motion.places > (zone.merge_j + CAR_LENGTH if zone.merge_j is not None else zone.exit_j)
             return float(given.forecast.times[int(np.argmax(gone))]) if gone.any() else float("inf")
     return 0.0

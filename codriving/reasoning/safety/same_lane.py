@@ -21,9 +21,8 @@ def check_ahead(given: SafetyInput) -> dict[Action, list[str]]:
     found: dict[Action, list[str]] = {}
     travelled = given.stops - given.scene.place
     # While it changes lanes, the CAV is on two of them.
-    short = round(CLEARS / given.forecast.sample) + 1
     ways = [
-        (own, place, short if k else given.forecast.steps + 1)
+        (own, place, round(CLEARS / given.forecast.sample) + 1 if k else given.forecast.steps + 1)
         for k, (own, place) in enumerate(given.vehicles[given.scene.ego.id].routes)
     ]
     for n in given.scene.neighbours:

@@ -110,21 +110,15 @@ def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
 
 
 def _neighbour(
-    seen: TrackedVehicle,
-    intent: Intent | None,
-    tracking: Tracking,
-    ego: str,
-    time: float,
-    role: Role,
-    gap: float | None,
+    n: TrackedVehicle, intent: Intent | None, tracking: Tracking, ego: str, time: float, role: Role, gap: float | None
 ) -> TrackedVehicle:
     return replace(
-        seen,
+        n,
         # A vehicle that shares an intent has said that it is a CAV.
-        kind=Kind.CAV if intent is not None else seen.kind,
-        routes=tracking.places(ego, seen, intent),
+        kind=Kind.CAV if intent is not None else n.kind,
+        routes=tracking.places(ego, n, intent),
         intent=intent,
-        standing=tracking.standing(ego, seen, time),
+        standing=tracking.standing(ego, n, time),
         role=role,
         gap=gap,
     )

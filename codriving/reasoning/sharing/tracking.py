@@ -47,8 +47,7 @@ class Tracking:
                 s, _ = self.road_map.project(*told)
                 self._shared[told] = ((intent.route, s), *self._covered(intent.route, s, seen.x, seen.y))
             return self._shared[told]
-        spot = (seen.x, seen.y, seen.heading)
-        key = (spot, self._routes.get((ego, seen.id)))
+        key = ((seen.x, seen.y, seen.heading), self._routes.get((ego, seen.id)))
         if key not in self._narrowed:
             self._narrowed[key] = self._narrow(*key)
         self._routes[ego, seen.id], places = self._narrowed[key]
