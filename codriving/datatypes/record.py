@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Literal
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Literal
 
 from codriving.datatypes.world import Kind
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,11 +19,11 @@ class Track:
     kind: Kind
     route: str
     first_step: int
-    x: NDArray[np.float64]  # Position of the centre (n,) [m]
-    y: NDArray[np.float64]  # Position of the centre (n,) [m]
-    heading: NDArray[np.float64]  # (n,) [rad]
-    speed: NDArray[np.float64]  # (n,) [m/s]
-    acceleration: NDArray[np.float64]  # (n,) [m/s2]
+    x: "NDArray[np.float64]"  # Position of the centre (n,) [m]
+    y: "NDArray[np.float64]"  # Position of the centre (n,) [m]
+    heading: "NDArray[np.float64]"  # (n,) [rad]
+    speed: "NDArray[np.float64]"  # (n,) [m/s]
+    acceleration: "NDArray[np.float64]"  # (n,) [m/s2]
     action: tuple[str, ...]  # Name of the action in force at each row (n,); empty for HDVs
     arrived: float | None  # Time of arrival [s], or None
     length: float = 5.0  # [m]

@@ -23,9 +23,12 @@ def build_lane(lane: Lane) -> AbstractLane:
     """Turn one lane into highway-env's class for its shape."""
     shape, painted = lane.shape, [PAINT[line] for line in lane.lines]
     common = {
-        "width": lane.width, "line_types": painted, "forbidden": lane.forbidden, "speed_limit": lane.speed_limit,
+        "width": lane.width,
+        "line_types": painted,
+        "forbidden": lane.forbidden,
+        "speed_limit": lane.speed_limit,
         "priority": lane.priority,
-    }  # fmt: skip
+    }
     if isinstance(shape, Arc):
         center, turn = np.array(shape.center), shape.clockwise
         return PlainCircularLane(center, shape.radius, shape.start_phase, shape.end_phase, clockwise=turn, **common)

@@ -1,19 +1,27 @@
 """A cell: one row of a table, which is one resolved config on many seeds."""
 
+import json
+import re
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from codriving.config import Point, build
+from codriving.config import LISTED, Point, build
 from codriving.datatypes import Scenario
 from codriving.errors import ConfigError
 from codriving.experiment.contents import contents
 from codriving.experiment.episode import Labels
-from codriving.experiment.naming import folder_name, swept_values
 from codriving.experiment.objects import make_method, memory_of, model_of
-from codriving.experiment.scoring import scorers_of, settings_of_metric
-from codriving.runs import CHOICES, CellEntry, NamedFile, fingerprint, settings_of
+from codriving.experiment.scoring import names_of_scores, scorers_of, settings_of_metric
+from codriving.runs import CHOICES, CellEntry, NamedFile, fingerprint, redact, settings_of
+
+LONGEST = 100  # Characters of a folder's name; Windows allows 260 for a whole path
+
+_LABELS = {"scenario": "scenario", "method": "method"}
+# The label in which a group, or a key of it, may show.
+_LABELS_BELOW = {"cda": "variant", "method": "variant", "llm": "reasoner"}
 
 
 @dataclass(frozen=True)
@@ -91,3 +99,103 @@ def with_metrics(config: Mapping[str, Any], rows: Sequence[Cell]) -> dict[str, A
     metrics = {row.score_name: row.resolved.get("metrics", {}) for row in rows}
     plugins = dict.fromkeys(module for row in rows for module in row.resolved.get("plugins", []))
     return {**config, "metrics": metrics, "plugins": list(plugins)}
+
+
+def folder_name(labels: Labels, swept: Mapping[str, str] | None = None, reasoner: bool = False) -> str:
+    """Name the folder of a cell."""
+    words = [labels.scenario, labels.method, labels.variant, *([labels.reasoner] if reasoner else [])]
+    plain = [re.sub(r"[^A-Za-z0-9._]+", "_", word).lstrip(".") for word in words if word]
+    values = {key: re.sub(r"[^A-Za-z0-9._+-]+", "_", text).strip("_") for key, text in (swept or {}).items()}
+    return "-".join([*plain, *(f"{key}={value or '_'}" for key, value in values.items())]).rstrip(".")
+
+
+def distinct(cells: Sequence[Cell]) -> tuple[Cell, ...]:
+    """Drop cells that are the same config again, and tell the others apart; those that drive alike share a folder."""
+    once: dict[tuple[str, str], Cell] = {}
+    for cell in cells:
+        once.setdefault(_same(cell), cell)
+    shown = shown_apart([(cell.labels, cell.swept) for cell in once.values()])
+    told = [replace(cell, swept=swept) for cell, swept in zip(once.values(), shown, strict=True)]
+    alike: dict[str, list[int]] = {}
+    for index, cell in enumerate(told):
+        alike.setdefault(cell.fingerprint, []).append(index)
+    for group, folder in zip(alike.values(), _folders([told[group[0]] for group in alike.values()]), strict=True):
+        names = names_of_scores([(told[index].metrics, told[index].metric_settings) for index in group])
+        for index, name in zip(group, names, strict=True):
+            told[index] = replace(told[index], folder=folder, score=name)
+    return tuple(told)
+
+
+def _same(cell: Cell) -> tuple[str, str]:
+    """What tells a row from all others: what is driven, and how it is scored."""
+    return cell.fingerprint, json.dumps([cell.metrics, cell.metric_settings])
+
+
+def _folders(cells: Sequence[Cell]) -> list[str]:
+    """Name each, with no more in the name than it takes to tell it from the others."""
+    marks = [cell.fingerprint[:8] for cell in cells]
+    plain, longer = ([folder_name(c.labels, c.driving_swept, reasoner) for c in cells] for reasoner in (False, True))
+    short = [
+        name if len(name) <= LONGEST else f"{name[: LONGEST - len(mark) - 1]}-{mark}"
+        for name, mark in zip(_apart(plain, longer), marks, strict=True)
+    ]
+    return _apart(short, [f"{name}-{mark}" for name, mark in zip(short, marks, strict=True)])
+
+
+def _apart(names: Sequence[str], longer: Sequence[str]) -> list[str]:
+    """Give those a longer name that would be one folder, also where case makes no difference."""
+    taken = Counter(name.casefold() for name in names)
+    return [long if taken[name.casefold()] > 1 else name for name, long in zip(names, longer, strict=True)]
+
+
+def repeated(cells: Sequence[Cell]) -> tuple[str, ...]:
+    """Say which values of a sweep come to the same config as others, whose rows would be looked for in vain."""
+    first: dict[tuple[str, str], Cell] = {}
+    notes: dict[str, None] = {}
+    for cell in cells:
+        known = first.setdefault(_same(cell), cell)
+        ours, theirs = (
+            " ".join(f"{key}={one.swept[key]}" for key in cell.swept if cell.swept[key] != known.swept.get(key))
+            for one in (cell, known)
+        )
+        if ours:
+            name = f"{cell.labels.method} {cell.labels.variant}".strip()
+            notes[f"{name}: {ours} is the same configuration as {theirs} and has no row of its own."] = None
+    return tuple(notes)
+
+
+def swept_values(swept: Mapping[str, str], resolved: Mapping[str, Any]) -> dict[str, str]:
+    """Read off a config what stands in it for the keys that were given several values."""
+    plain = redact(resolved)
+    return {key: typed if key in LISTED else _config_value(plain, key, typed) for key, typed in swept.items()}
+
+
+def _config_value(node: object, key: str, typed: str) -> str:
+    for part in key.split("."):
+        if isinstance(node, Mapping) and part in node:
+            node = node[part]
+        elif isinstance(node, list) and part.isdigit() and int(part) < len(node):
+            node = node[int(part)]
+        else:
+            return typed
+    return node if isinstance(node, str) else json.dumps(node, ensure_ascii=False)
+
+
+def shown_apart(cells: Sequence[tuple[Labels, Mapping[str, str]]]) -> list[dict[str, str]]:
+    """Keep of the swept keys those that need a column of their own."""
+    kept = [key for key in dict.fromkeys(key for _, swept in cells for key in swept) if _needs_column(key, cells)]
+    # A choice of scenario may have the name of another one: two files for one class.
+    heads = {key: f"{key}_choice" if key in _LABELS else key for key in kept}
+    return [{head: swept[key] for key, head in heads.items() if key in swept} for _, swept in cells]
+
+
+def _needs_column(key: str, cells: Sequence[tuple[Labels, Mapping[str, str]]]) -> bool:
+    if len({swept.get(key) for _, swept in cells}) == 1:
+        return False
+    label = _LABELS.get(key) or _LABELS_BELOW.get(key.partition(".")[0])
+    if label is None:
+        return True
+    values = defaultdict(set)
+    for labels, swept in cells:
+        values[getattr(labels, label)].add(swept.get(key))
+    return any(len(several) > 1 for several in values.values())

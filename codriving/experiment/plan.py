@@ -9,9 +9,8 @@ from typing import Any, TypeVar
 
 from codriving.config import ROOT, Point, build, compose_named, validate
 from codriving.errors import ConfigError
-from codriving.experiment.cells import Cell, make_cell
+from codriving.experiment.cells import Cell, distinct, make_cell, repeated
 from codriving.experiment.launchers import Launcher
-from codriving.experiment.naming import distinct, repeated
 from codriving.experiment.objects import modules_to_preload
 from codriving.experiment.remembering import pinned
 from codriving.runs import MASK, redact

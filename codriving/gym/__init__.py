@@ -6,6 +6,7 @@ Importing this room registers every scenario with Gymnasium.
 from codriving.gym.actions import ACTIONS, draw_seed
 from codriving.gym.observation import Observer
 from codriving.gym.parallel import ParallelDriving
+from codriving.gym.registration import register_scenarios
 from codriving.gym.reward import RewardWeights, reward_weights
 from codriving.gym.single import ObserverFactory, SingleDriving
 
@@ -13,3 +14,5 @@ __all__ = [
     "ACTIONS", "Observer", "ObserverFactory", "ParallelDriving", "RewardWeights", "SingleDriving", "draw_seed",
     "reward_weights",
 ]  # fmt: skip
+
+register_scenarios()

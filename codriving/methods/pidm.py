@@ -15,10 +15,20 @@ ONCE: tuple[Plan, ...] = ((Action.SLOWER, Action.IDLE), (Action.IDLE,), (Action.
 
 # Least and largest value of each setting.
 LIMITS = {
-    "acceleration": (0.1, 10.0), "deceleration": (0.1, 10.0), "hardest": (1.0, 15.0), "gap": (0.0, 20.0),
-    "headway": (0.0, 5.0), "projection": (0.0, 20.0), "stop_gap": (0.0, 20.0), "tie": (0.0, 5.0), "firm": (0.5, 10.0),
-    "patience": (0.0, 60.0), "clear": (0.0, 10.0), "window": (0.1, 5.0), "brake_at": (0.0, 10.0),
-}  # fmt: skip
+    "acceleration": (0.1, 10.0),
+    "deceleration": (0.1, 10.0),
+    "hardest": (1.0, 15.0),
+    "gap": (0.0, 20.0),
+    "headway": (0.0, 5.0),
+    "projection": (0.0, 20.0),
+    "stop_gap": (0.0, 20.0),
+    "tie": (0.0, 5.0),
+    "firm": (0.5, 10.0),
+    "patience": (0.0, 60.0),
+    "clear": (0.0, 10.0),
+    "window": (0.1, 5.0),
+    "brake_at": (0.0, 10.0),
+}
 
 
 @dataclass(kw_only=True, eq=False, repr=False)

@@ -28,9 +28,18 @@ WAITED = "model_seconds"
 
 # The columns of every table of a run in which a language model reasons, in their fixed order.
 ASKED = (
-    "model_calls", "prompt_tokens", "completion_tokens", COST, SECONDS, "re_asks", "fallbacks", "shortened",
-    "repaired_orders", "plain_decisions", "kept_orders",
-)  # fmt: skip
+    "model_calls",
+    "prompt_tokens",
+    "completion_tokens",
+    COST,
+    SECONDS,
+    "re_asks",
+    "fallbacks",
+    "shortened",
+    "repaired_orders",
+    "plain_decisions",
+    "kept_orders",
+)
 
 UNPRICED = "unpriced_calls"  # Counter of calls whose price is not known; it has no column, it empties that of the cost
 

@@ -21,9 +21,16 @@ WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render", 
 
 # Keys of ``llm`` likewise: with them a run goes on after a limit has been raised, or is replayed under its name.
 HOW_A_MODEL_IS_ASKED = (
-    "api_key_env", "attempts", "cache", "cache_file", "deadline", "failures_in_a_row", "max_concurrency", "max_cost",
+    "api_key_env",
+    "attempts",
+    "cache",
+    "cache_file",
+    "deadline",
+    "failures_in_a_row",
+    "max_concurrency",
+    "max_cost",
     "max_tokens_total",
-)  # fmt: skip
+)
 
 # Groups whose choice stands for a class; all choices of ``cda`` are one class, so that their values tell them.
 CHOICES = ("scenario", "method", "executor", "llm", "memory")

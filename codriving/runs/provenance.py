@@ -10,9 +10,18 @@ from pathlib import Path
 
 # Packages that can change a result.
 PACKAGES = (
-    "codriving", "faiss-cpu", "gymnasium", "highway-env", "hydra-core", "litellm", "numpy", "omegaconf", "pandas",
-    "pettingzoo", "scipy",
-)  # fmt: skip
+    "codriving",
+    "faiss-cpu",
+    "gymnasium",
+    "highway-env",
+    "hydra-core",
+    "litellm",
+    "numpy",
+    "omegaconf",
+    "pandas",
+    "pettingzoo",
+    "scipy",
+)
 
 
 def versions() -> dict[str, str]:

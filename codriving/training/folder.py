@@ -8,35 +8,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from codriving.config import show
-from codriving.errors import RunFolderError, TrainingError
-from codriving.runs import locked, whole_folder, write_text
-
-if TYPE_CHECKING:
-    from codriving.training.run import Learner
-
-STATE = "state.json"
-
-
-def store(folder: Path, trainer: "Learner", more: dict[str, Any]) -> None:
-    """Write a checkpoint."""
-    with whole_folder(folder) as partial:
-        write_text(partial / STATE, json.dumps({"trainer": trainer.write(partial), "more": more}))
-
-
-def recall(folder: Path, trainer: "Learner") -> dict[str, Any]:
-    """Go on from a checkpoint."""
-    try:
-        state = json.loads((folder / STATE).read_text(encoding="utf-8"))
-        trainer.read(folder, state["trainer"])
-        return dict(state["more"])
-    except (OSError, ValueError, KeyError, TypeError, RuntimeError) as err:
-        raise TrainingError(
-            f"the checkpoint in {folder} cannot be used ({type(err).__name__}: {err}); "
-            "delete the run folder to begin anew"
-        ) from err
+from codriving.errors import RunFolderError
+from codriving.runs import locked, write_text
 
 
 @dataclass(frozen=True, slots=True)

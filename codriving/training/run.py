@@ -1,15 +1,16 @@
 """One training in its folder, from its beginning or from where it was stopped; whatever it is that learns."""
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from codriving.errors import TrainingError
 from codriving.methods import ACTIONS, FAR, NEAR, VERSION, AnyNetwork, Purpose, Trained, load, save
-from codriving.runs import whole_file, write_text
+from codriving.runs import whole_file, whole_folder, write_text
 from codriving.training.curve import COLLISION, DURATION, SUCCESS, curve_csv, curve_png
 from codriving.training.display import Display
-from codriving.training.folder import Stop, TrainingFolder, recall, store
+from codriving.training.folder import Stop, TrainingFolder
 from codriving.training.settings import MadqnSettings, SingleSettings
 from codriving.training.single_trainer import SingleTrainer
 from codriving.training.trainer import Trainer
@@ -18,6 +19,8 @@ from codriving.training.validation import Grade, examine
 AnySettings: TypeAlias = MadqnSettings | SingleSettings
 Learner: TypeAlias = Trainer | SingleTrainer
 
+STATE = "state.json"
+
 EXAM_SEEDS = 1000  # Seeds that each exam has for itself
 
 FINAL_SEEDS = 100_000  # How far the seeds of the last validation lie beyond those of the others
@@ -25,7 +28,7 @@ FINAL_SEEDS = 100_000  # How far the seeds of the last validation lie beyond tho
 
 def train(settings: AnySettings, folder: TrainingFolder, display: Display, stop: Stop) -> Path:
     """Train, validate and choose."""
-    trainer = settings.trainer()
+    trainer = Trainer(settings) if isinstance(settings, MadqnSettings) else SingleTrainer(settings)
     rows: list[dict[str, Any]] = []
     if folder.checkpoint.exists():
         rows = recall(folder.checkpoint, trainer)["rows"]
@@ -105,3 +108,22 @@ def _purpose(settings: AnySettings, folder: TrainingFolder, said: Mapping[str, A
         training={"command": folder.command, "config": folder.fingerprint, "seed": settings.seed, **taught, **said},
         form=settings.form,
     )
+
+
+def store(folder: Path, trainer: Learner, more: dict[str, Any]) -> None:
+    """Write a checkpoint."""
+    with whole_folder(folder) as partial:
+        write_text(partial / STATE, json.dumps({"trainer": trainer.write(partial), "more": more}))
+
+
+def recall(folder: Path, trainer: Learner) -> dict[str, Any]:
+    """Go on from a checkpoint."""
+    try:
+        state = json.loads((folder / STATE).read_text(encoding="utf-8"))
+        trainer.read(folder, state["trainer"])
+        return dict(state["more"])
+    except (OSError, ValueError, KeyError, TypeError, RuntimeError) as err:
+        raise TrainingError(
+            f"the checkpoint in {folder} cannot be used ({type(err).__name__}: {err}); "
+            "delete the run folder to begin anew"
+        ) from err

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from codriving.errors import ConfigError
 from codriving.gym import RewardWeights, reward_weights
@@ -10,10 +9,6 @@ from codriving.methods import FAMILIES, FORMS, PERCEPTRON
 from codriving.training.curriculum import CooperativeTraffic, Linear, SingleTraffic, at_least
 from codriving.training.teacher import Guidance
 from codriving.training.validation import Exam
-
-if TYPE_CHECKING:
-    from codriving.training.single_trainer import SingleTrainer
-    from codriving.training.trainer import Trainer
 
 LEAST_SEED = 10_000  # Seeds below this are for tables alone
 
@@ -86,12 +81,6 @@ class SingleSettings(Settings):
         if not self.exams or not self.traffic:
             raise ConfigError("traffic and exams must hold at least one kind each")
 
-    def trainer(self) -> "SingleTrainer":
-        """Return a training that has not begun."""
-        from codriving.training.single_trainer import SingleTrainer
-
-        return SingleTrainer(self)
-
     @property
     def teacher(self) -> str:
         """Name of the teacher; empty for none."""
@@ -126,9 +115,3 @@ class MadqnSettings(Settings):
                 raise ConfigError(f"exploration.{name} must be 0 to 1, got {getattr(self.exploration, name):g}")
         if not self.exams or not any(kind.weight > 0 and kind.since == 0 for kind in self.traffic):
             raise ConfigError("traffic must hold a kind that is driven from the beginning, and exams at least one")
-
-    def trainer(self) -> "Trainer":
-        """Return a training that has not begun."""
-        from codriving.training.trainer import Trainer
-
-        return Trainer(self)

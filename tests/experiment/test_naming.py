@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 from toy_drive import LABELS
 from toy_plan import toy_cell
 
-from codriving.experiment.cells import Cell
+from codriving.experiment.cells import LONGEST, Cell, distinct, folder_name, repeated
 from codriving.experiment.episode import Labels
-from codriving.experiment.naming import LONGEST, distinct, folder_name, repeated
 
 
 def folders(*cells: Cell) -> list[str]:

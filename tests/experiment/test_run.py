@@ -9,11 +9,9 @@ from toy_plan import toy as toy_objects
 from toy_plan import toy_cell, toy_plan
 
 from codriving.errors import ConfigError
-from codriving.experiment import run
-from codriving.experiment.cells import make_cell
-from codriving.experiment.drive import drive
+from codriving.experiment import drive, run
+from codriving.experiment.cells import folder_name, make_cell
 from codriving.experiment.episode import Labels
-from codriving.experiment.naming import folder_name
 from codriving.experiment.objects import modules_to_preload
 from codriving.experiment.run import ablation_points
 

@@ -1,7 +1,7 @@
 """The swept keys that need a column: those that scenario, method, variant and reasoner do not show."""
 
+from codriving.experiment.cells import shown_apart, swept_values
 from codriving.experiment.episode import Labels
-from codriving.experiment.naming import shown_apart, swept_values
 
 
 def labels(

@@ -16,12 +16,10 @@ from toy_drive import ToyDeliberation, ToyEnvironment, ToyMethod, toy_scorers
 from codriving.config.build import build
 from codriving.datatypes.parts import Method, Model
 from codriving.datatypes.world import WorldState
-from codriving.experiment import run
-from codriving.experiment.cells import Cell
-from codriving.experiment.drive import drive
+from codriving.experiment import drive, run
+from codriving.experiment.cells import Cell, distinct, folder_name
 from codriving.experiment.episode import Labels
 from codriving.experiment.launchers import Launcher
-from codriving.experiment.naming import distinct, folder_name
 from codriving.experiment.objects import model_of
 from codriving.experiment.plan import Plan
 from codriving.experiment.processes import Processes

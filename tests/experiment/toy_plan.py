@@ -10,10 +10,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from toy_drive import LABELS, BuildToy
 
-from codriving.experiment import run
-from codriving.experiment.cells import Cell
-from codriving.experiment.drive import drive
-from codriving.experiment.naming import distinct, folder_name
+from codriving.experiment import drive, run
+from codriving.experiment.cells import Cell, distinct, folder_name
 from codriving.experiment.plan import Plan
 from codriving.experiment.processes import Processes
 

@@ -22,9 +22,17 @@ CONSTANT: tuple[Plan, ...] = tuple((action,) for action in PREFERRED)
 
 # Least and largest value of each setting.
 LIMITS = {
-    "horizon": (0.5, 10.0), "headway": (0.0, 5.0), "merging": (0.0, 5.0), "gap": (0.0, 20.0), "stop_gap": (0.0, 20.0),
-    "after": (0.0, 5.0), "tie": (0.0, 5.0), "firm": (0.5, 10.0), "patience": (0.0, 60.0), "clear": (0.0, 10.0),
-}  # fmt: skip
+    "horizon": (0.5, 10.0),
+    "headway": (0.0, 5.0),
+    "merging": (0.0, 5.0),
+    "gap": (0.0, 20.0),
+    "stop_gap": (0.0, 20.0),
+    "after": (0.0, 5.0),
+    "tie": (0.0, 5.0),
+    "firm": (0.5, 10.0),
+    "patience": (0.0, 60.0),
+    "clear": (0.0, 10.0),
+}
 
 # A gap that grows by less does not grow: two who drive at the same speed are not told apart by rounding [m].
 OPENS = 1e-6

@@ -1,7 +1,7 @@
 """Who goes first: never both by the same way, ties are resolved, and whoever cannot wait any more does not."""
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from seeing import seen
 from worlds import Car, Junction, car
@@ -30,7 +30,7 @@ def _real(e: Encounter, me: Car, you: Car) -> bool:
 ways = st.tuples(st.sampled_from(ROUTES), st.floats(60.0, 118.0), st.floats(0.0, 9.0))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(ways, ways)
 def test_two_never_both_go_first(
     junction: Junction, one: tuple[str, float, float], other: tuple[str, float, float]
