@@ -181,7 +181,8 @@ def test_shipped_weights_in_numpy_and_torch_agree(family: str) -> None:
         hidden = torch.nn.functional.linear(hidden, torch.from_numpy(weight.T.copy()), torch.from_numpy(bias))
         if k < len(network.weights) - 1:
             hidden = torch.relu(hidden)
-    np.testing.assert_allclose(network(observations), hidden.numpy(), atol=1e-5)
+    # Outputs reach 30, and in float32 the order in which a kernel adds 128 products decides the seventh digit.
+    np.testing.assert_allclose(network(observations), hidden.numpy(), rtol=1e-5, atol=2e-5)
 
 
 def test_every_scenario_has_weights_for_its_road_and_pace(configured: Make) -> None:
