@@ -28,7 +28,7 @@ _CALM = 1.6  # How slowly the camera moves: width of the bell by which its way i
 class Camera:
     """Keeps the CAVs of an episode in view.
 
-    On a compact road it stays over the middle and moves in and out alone, so that nobody loses the way.
+    On a compact road it stays over the middle and moves in and out alone, so that the picture stays easy to follow.
     """
 
     def __init__(self, trajectory: Trajectory, road_map: RoadMap, view: Area) -> None:
@@ -49,7 +49,7 @@ def overview(points: NDArray[np.float64], road_map: RoadMap, view: Area) -> tupl
     whole, box = bounds(lanes), bounds(points)
     if max(whole.width, whole.height) < _LONG * min(whole.width, whole.height):
         return (_around(points, road_map, view),)
-    # A row shows the whole width of the road, also lanes that nobody drives on.
+    # A row shows the whole width of the road, also lanes without vehicles.
     along, low, long = (1, box.top, box.height) if whole.height > whole.width else (0, box.left, box.width)
     there = lanes[(lanes[:, along] >= low) & (lanes[:, along] <= low + long)]
     windows = rows(bounds(np.concatenate((points, there))).padded(_ROW_MARGIN), view)
@@ -62,7 +62,7 @@ def _around(points: NDArray[np.float64], road_map: RoadMap, view: Area) -> Windo
     # Rounded, so that what mirrors on the road does so in the pixels.
     places = [tuple(round(v, 3) for v in bounds(p).centre) for p in (np.array(entries, dtype=float), points)]
     shared, own = (Window(view, x, y, fitting(points, x, y, view)) for x, y in places)
-    # Where nobody comes near it, most of the frame would be land.
+    # Where no vehicle comes near it, most of the frame would be land.
     return shared if shared.zoom > _NEAR * own.zoom else own
 
 

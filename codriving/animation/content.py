@@ -20,7 +20,7 @@ class DrawnVehicle:
     y: float  # Position [m]
     heading: float  # Heading [rad]
     speed: float  # Speed [m/s]
-    route: str | None = None  # Id of the planned route; None for a human driver, whose mind nobody reads
+    route: str | None = None  # Id of the planned route; None for a human driver
     length: float = 5.0  # Length [m]
     width: float = 2.0  # Width [m]
 

@@ -178,7 +178,7 @@ class EpisodeFilm:
 
         Args:
             format: ``mp4`` or ``gif``.
-            frames: ``frames(rate, speed)``, if somebody wants to count along.
+            frames: ``frames(rate, speed)``, for a caller that counts along.
 
         Raises:
             FilmError: If ffmpeg cannot be started or gives up.

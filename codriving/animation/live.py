@@ -107,7 +107,7 @@ class LivePicture:
         self._windows = overview(np.array(places), self._road_map, self._picture.view)
 
     def _arrived(self, world: WorldState, outcome: Outcome | None) -> Mapping[str, float | None]:
-        """CAVs leave the road by arriving; a collision ends the episode with everybody in place."""
+        """CAVs leave the road by arriving; a collision ends the episode with all vehicles in place."""
         assert self._picture is not None
         here = {vehicle.id for vehicle in world.cavs}
         times: Mapping[str, float] = outcome.arrivals if outcome else {}

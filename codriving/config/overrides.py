@@ -19,7 +19,7 @@ def prepare(token: str, config_dir: Path | None = None) -> str:
     """Turn an override into one that Hydra composes without judging its key.
 
     Hydra refuses an unknown key unless it has a ``+``, and then accepts any. So every key gets its ``++`` here, and the
-    checks after composing refuse what nobody reads: one rule and one message for both spellings.
+    checks after composing refuse what is not read: one rule and one message for both spellings.
     """
     override = parse(token)
     key = override.key_or_group

@@ -74,7 +74,7 @@ ROOT = {key.name: key for key in KEYS}
 
 
 def unknown(key: str, known: Iterable[str], where: str) -> ConfigError:
-    """Make the error for a key that nobody reads."""
+    """Make the error for a key that is not read."""
     names = sorted(known)
     node, dot, last = key.rpartition(".")
     close = difflib.get_close_matches(last, names, n=1)

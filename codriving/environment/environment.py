@@ -59,7 +59,7 @@ class Environment(Simulator):
         """Let every CAV carry out its decision until the next one is due, or until the episode ends.
 
         Raises:
-            EpisodeError: If no episode is going on, or an action is missing, for nobody, or not available.
+            EpisodeError: If no episode is going on, or an action is missing, of no CAV, or not available.
         """
         self._check(actions)
         for vehicle in self._traffic.vehicles:

@@ -78,7 +78,7 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
 
 
 def _is_complete(config: Mapping[str, Any], cells: int) -> bool:
-    """Whether the run is most likely complete, so that nobody need get ready for it."""
+    """Whether the run is most likely complete, so that nothing need be prepared for it."""
     if config["run"] is None:
         return False
     table = Path(config["output"], config["experiment"], config["run"], "episodes.csv")

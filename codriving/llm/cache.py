@@ -42,7 +42,7 @@ class AnswerCache:
         return None
 
     def keep(self, request: Mapping[str, Any], reply: Mapping[str, Any]) -> dict[str, Any]:
-        """Keep a reply, unless somebody else has kept one to the same request meanwhile."""
+        """Keep a reply, unless another process has kept one to the same request meanwhile."""
         if self.mode == "replay":
             return dict(reply)
         key, text = key_of(request), json.dumps(reply, allow_nan=False)

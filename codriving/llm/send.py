@@ -143,7 +143,7 @@ def client() -> httpx.AsyncClient:
 
 
 class Connections(httpx.AsyncBaseTransport):
-    """A transport for each request under way; one that is free again is used first by whoever comes next.
+    """A transport for each request under way; one that is free again is used first by the next request.
 
     A single transport asks the operating system about every idle connection whenever a request begins and ends. With
     20 episodes side by side that takes longer than all the rest.

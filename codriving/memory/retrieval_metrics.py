@@ -30,5 +30,5 @@ def precision_at(
 
 
 def chance(kept: Sequence[Description], held_back: Sequence[Description]) -> float:
-    """Return the precision of whoever draws blindly: the mean share of situations of the same kind."""
+    """Return the precision of a random draw: the mean share of situations of the same kind."""
     return sum(sum(same_kind(query, d) for d in kept) / len(kept) for query in held_back) / len(held_back)

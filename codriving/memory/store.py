@@ -135,7 +135,7 @@ class MemoryStore:
         """Note one experience: as another sighting of one that is like it, or as a new one."""
         assert self._index is not None
         kind = (str(experience.action), str(experience.verdict))
-        # Above 1 nothing is a duplicate, and nobody need look.
+        # Above 1 nothing is a duplicate, and no search is needed.
         (hits,) = self._index.search(vector[None], NEIGHBOURS) if self.duplicates <= 1 else ([],)
         number = next((n for n, similarity in hits if similarity >= self.duplicates and self._kinds[n] == kind), None)
         new = number is None

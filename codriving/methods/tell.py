@@ -10,7 +10,7 @@ from codriving.methods.learned.weights import load, shipped
 class Tell(Learned):
     """A policy of a single vehicle that attends to others one by one; its teacher is not there any more.
 
-    Nobody is asked while it drives, so that the reasoner is ``none``; the variant says who has taught it.
+    No model is asked while it drives, so the reasoner is ``none``; the variant names the teacher.
     """
 
     name = "tell"

@@ -138,7 +138,7 @@ def zone(road_map: RoadMap, conflict: Conflict, number: int) -> str:
 
 
 def routes(road_map: RoadMap, situations: tuple[Situation, ...]) -> Iterable[str]:
-    """Draw what is known of everybody's way: the route that a CAV shares, each that a human driver may take."""
+    """Draw what is known of each vehicle's way: the route that a CAV shares, each that a human driver may take."""
     for human in {n.id: n for s in situations for n in s.scene.neighbours if n.intent is None}.values():
         for route, place in human.routes:
             end = road_map.routes[route].goal - BEYOND

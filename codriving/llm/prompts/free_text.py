@@ -62,5 +62,5 @@ def names_for(situation: Situation) -> Names:
 
 
 def seen_names(scene: SceneDescription) -> Names:
-    """Return what everybody is called, by distance; ids would tell who is a CAV."""
+    """Return what vehicles are called, by distance; ids would tell which are CAVs."""
     return Names([scene.ego.id], [n.id for n in scene.by_distance()])

@@ -93,7 +93,7 @@ def side_name(scene: SceneDescription, lane: LaneId) -> str:
 
 
 def lane_views(scene: SceneDescription, neighbours: Sequence[TrackedVehicle], names: Names) -> list[LaneView]:
-    """Return the ego lane and those beside it, each with whoever is next ahead and next behind."""
+    """Return the ego lane and those beside it, each with the vehicles next ahead and next behind."""
     own = {n.role: VehicleView(names(n.id), DRIVERS[n.kind], n.gap or 0.0, n.speed) for n in neighbours}
     lanes = [LaneView("ego lane", own.get(Role.LEADING), own.get(Role.REARING))]
     for lane in scene.adjacent_lanes:

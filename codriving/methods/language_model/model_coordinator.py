@@ -28,7 +28,7 @@ class ModelCoordinator(Coordinator):
     """Asks a model who goes first in each pair of CAVs; the rules do the rest.
 
     The rules settle what cannot be negotiated: pairs that are physically fixed, and pairs with human drivers, who
-    answer nobody. From the model's pairs they work out when each CAV passes, as for an order of their own.
+    answer no message. From the model's pairs they work out when each CAV passes, as for an order of their own.
 
     An answer is kept as long as its premise holds, see ``Premise``, and nothing that it says has become impossible.
 
