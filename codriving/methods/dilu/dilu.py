@@ -51,6 +51,10 @@ class DiLu(ModelMethod):
         # What answers without a model is not DiLu.
         self.name = "dilu-rule" if llm.chat() is None else "dilu"
 
+    def corrects(self) -> bool:
+        """Whether a model is asked about mistakes: always if the memory learns, whatever ``memory.reflection`` is."""
+        return self.memory is not None and self.memory.learns
+
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode."""
         super().reset(road_map, model, seed)

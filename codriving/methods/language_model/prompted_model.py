@@ -56,8 +56,11 @@ class ModelMethod(Method):
         """Return the templates with which a model is asked; none where the built-in rules reason."""
         if self.llm.chat() is None:
             return {}
-        reflects = self.memory is not None and self.memory.reflections
-        return template_files(self.llm.prompts, (*self.asked, self.reflects) if reflects else self.asked)
+        return template_files(self.llm.prompts, (*self.asked, self.reflects) if self.corrects() else self.asked)
+
+    def corrects(self) -> bool:
+        """Whether a model is asked about mistakes after an episode."""
+        return self.memory is not None and self.memory.reflections > 0
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode."""

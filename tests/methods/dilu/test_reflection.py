@@ -132,3 +132,11 @@ def test_rule_reflects_without_a_model_and_only_if_there_is_something_to_learn_i
     assert (counts, lines) == ({"experiences": len(book.learnt), "experiences_new": len(book.learnt)}, [])
     assert crashing(junction, ruled(junction, Notebook(learns=False))) == ({}, [])
     assert crashing(junction, ruled(junction)) == ({}, [])
+
+
+def test_the_templates_of_reflection_count_where_a_memory_learns(junction: Junction) -> None:
+    road = junction.road_map.road
+    learning, _ = modelled(junction, always("IDLE"), Notebook())
+    forgetful, _ = modelled(junction, always("IDLE"))
+    assert any("dilu_reflect" in name for name in learning.files(road))
+    assert not any("reflect" in name for name in forgetful.files(road))
