@@ -3,12 +3,12 @@
 import csv
 import sys
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 import codriving
-from codriving.config.choices import TAKING_PART
 from codriving.experiment import compare as command
 from codriving.experiment import run_command
 from codriving.experiment.compare import EXPERIMENT
@@ -61,9 +61,13 @@ BOTH = ("launcher=serial", "scenario.time_limit=4", "run=x")
 @pytest.fixture
 def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A config folder with a method of the paper's, as far as this test goes, and one of a user's."""
-    for table in ("baselines", "load"):
-        monkeypatch.setitem(TAKING_PART, table, ("fcfs_toy", "madqn_toy", "codriving"))
-    monkeypatch.setitem(TAKING_PART, "single-vehicle", ("ppo_toy", "fcfs_toy", "codriving"))
+    first = {"single-vehicle": "ppo_toy"}
+    others = {"single-vehicle": "fcfs_toy"}
+    monkeypatch.setattr(
+        import_module("codriving.experiment.compare"),
+        "taking_part",
+        lambda table: (first.get(table, "fcfs_toy"), others.get(table, "madqn_toy"), "codriving"),
+    )
     folder = tmp_path / "conf" / "method"
     folder.mkdir(parents=True)
     (tmp_path / f"{PACKAGE}.py").write_text(SOURCE)

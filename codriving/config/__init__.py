@@ -7,11 +7,12 @@ from codriving.config.choices import (
     LISTED,
     SWEPT,
     TABLES,
-    TAKING_PART,
     check_config_dir,
     choices,
     default_choice,
     describe,
+    styles,
+    taking_part,
     values,
 )
 from codriving.config.compose import compose, compose_named, show
@@ -23,8 +24,8 @@ from codriving.config.sweep import Point, expand
 from codriving.config.training import compose_training, trainings
 
 __all__ = [
-    "ALL", "EXPERIMENTS", "GROUPS", "LARGEST_SEED", "LISTED", "PLUGINS", "ROOT", "SWEPT", "TABLES", "TAKING_PART",
-    "TARGET", "Point", "asks_for", "build", "check_choice", "check_config_dir", "choices", "compose", "compose_named",
+    "ALL", "EXPERIMENTS", "GROUPS", "LARGEST_SEED", "LISTED", "PLUGINS", "ROOT", "SWEPT", "TABLES", "TARGET", "Point",
+    "asks_for", "build", "check_choice", "check_config_dir", "choices", "compose", "compose_named",
     "compose_training", "conf_dir", "default_choice", "describe", "expand", "experiments_dir", "parse", "show",
-    "targets", "trainings", "validate", "values",
+    "styles", "taking_part", "targets", "trainings", "validate", "values",
 ]  # fmt: skip

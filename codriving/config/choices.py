@@ -1,6 +1,7 @@
 """What can be chosen: the YAML files of each group, read without Hydra so that completion is quick."""
 
 import re
+from functools import cache
 from pathlib import Path
 
 from codriving.config.locate import conf_dir, experiments_root
@@ -16,20 +17,6 @@ SWEPT = tuple(group for group in GROUPS if group not in ("launcher", "memory"))
 
 ALL = "all"  # The word for every choice of a group; no YAML may be called so
 
-# The methods of the paper's comparison, in its order; some may have no YAML yet.
-COMPARED = ("fcfs", "idfst", "mcts", "coop_game", "madqn", "dilu", "codriving")
-
-# The methods by which each CAV is on its own, in the order of the authors' extra comparison, against codriving.
-SINGLE_VEHICLE = ("pidm", "noncoop_game", "ppo", "tell", "dilu", "codriving")
-
-# The methods of each table, in its order: those of the paper, then those for a single vehicle, then codriving.
-TAKING_PART = {
-    "baselines": COMPARED,
-    "single-vehicle": SINGLE_VEHICLE,
-    "all": (*dict.fromkeys((*COMPARED[:-1], *SINGLE_VEHICLE)),),
-    "load": COMPARED,
-}
-
 # What `codriving compare` makes.
 TABLES = {
     "baselines": "The methods of the paper's comparison, each against codriving.",
@@ -39,9 +26,9 @@ TABLES = {
 }
 
 # Choices that come before the others: in the paper's order, or from the least to the most; the rest goes by name.
+# Methods say their place themselves.
 FIRST = {
     "scenario": ("intersection", "roundabout", "highway", "merge"),
-    "method": TAKING_PART["all"],
     "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
     "llm": ("offline",),
     "memory": ("off", "frozen", "online"),
@@ -49,6 +36,7 @@ FIRST = {
 }
 
 _LINE = re.compile(r"^(\w+):[^\S\n]*([^#\n]*)", re.MULTILINE)
+_STYLE = re.compile(r'^_style_: "(\S+) (\S+) (\S+)"', re.MULTILINE)
 _PARENT = re.compile(r"\[(_\w+), _self_\]")
 _DEFAULT = re.compile(r"^\s*-\s*(\w+):\s*\"?(\w+)", re.MULTILINE)
 
@@ -69,7 +57,25 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
         raise ConfigError(f"unknown group {group}; groups: {', '.join(LISTED)}")
     roots = [experiments_root() if group == EXPERIMENTS else conf_dir(), *([config_dir] if config_dir else [])]
     found = {file.stem: file for root in roots for file in sorted((root / group).glob("[!_]*.yaml"))}
-    return {name: found[name] for name in (*FIRST.get(group, ()), *sorted(found)) if name in found}
+    first = taking_part("all") if group == "method" else FIRST.get(group, ())
+    return {name: found[name] for name in (*first, *sorted(found)) if name in found}
+
+
+@cache
+def taking_part(table: str) -> tuple[str, ...]:
+    """Return the methods of a table of ``codriving compare``, in its order: each says its place in its YAML."""
+    if table == "all":
+        return (*dict.fromkeys((*taking_part("baselines")[:-1], *taking_part("single-vehicle"))),)
+    place = re.compile(rf"^_tables_: .*\b{'baselines' if table == 'load' else table}: (\d+)", re.MULTILINE)
+    texts = {file.stem: file.read_text(encoding="utf-8") for file in (conf_dir() / "method").glob("*.yaml")}
+    places = {name: int(said[1]) for name, text in texts.items() if (said := place.search(text))}
+    return tuple(sorted(places, key=places.__getitem__))
+
+
+def styles() -> dict[str, tuple[str, str, str]]:
+    """Return the colour, marker and stroke of the methods whose YAML says them."""
+    texts = {name: file.read_text(encoding="utf-8") for name, file in choices("method").items()}
+    return {name: (said[1], said[2], said[3]) for name, text in texts.items() if (said := _STYLE.search(text))}
 
 
 def describe(file: Path) -> str:

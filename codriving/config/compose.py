@@ -13,6 +13,7 @@ from codriving.config.schema import GROUPS, LARGEST_SEED, check_root, texts
 from codriving.errors import ConfigError
 
 _ENVIRONMENT = re.compile(r"\$\{\s*oc\.env\b")
+SHOWN = ("_tables_", "_style_")  # What a method's YAML says for tables and figures; it is no part of a run
 _VARIABLE = re.compile(r"[A-Z_][A-Z0-9_]*")
 _PASSWORD = re.compile(r"\w+://[^/]*@")
 
@@ -69,6 +70,8 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
         resolved: Any = OmegaConf.to_container(config, resolve=True)
     except (HydraException, OmegaConfBaseException, YAMLError) as err:
         raise ConfigError(_one_line(err)) from err
+    for key in SHOWN if isinstance(resolved["method"], dict) else ():
+        resolved["method"].pop(key, None)
     plain = gathered({str(key): value for key, value in resolved.items()})
     check_root(plain)
     _check_together(plain, choices)

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from codriving.config import TABLES, TAKING_PART, Point, check_choice, choices, expand, experiments_dir, parse
+from codriving.config import TABLES, Point, check_choice, choices, expand, experiments_dir, parse, styles, taking_part
 from codriving.errors import ConfigError
 from codriving.experiment.cells import Cell
 from codriving.experiment.drive import Driven, Outputs, drive
@@ -105,7 +105,7 @@ def _methods(table: str, added: Sequence[str], config_dir: Path | None) -> list[
     known = choices("method", config_dir)
     for name in own:
         check_choice("method", name, config_dir)
-    return list(dict.fromkeys([*(name for name in TAKING_PART[table] if name in known), *own]))
+    return list(dict.fromkeys([*(name for name in taking_part(table) if name in known), *own]))
 
 
 def setting(resolved: Mapping[str, Any]) -> str:
@@ -120,7 +120,7 @@ def make_comparison(table: str, driven: Driven) -> Outputs:
     blocks: dict[str, list[CellResults]] = {}
     for cell, results in _results(driven):
         blocks.setdefault(setting(cell.resolved), []).append(results)
-    rows = [row for block in blocks.values() for row in comparison_rows(block, TAKING_PART[table], paper)]
+    rows = [row for block in blocks.values() for row in comparison_rows(block, taking_part(table), paper)]
     swept = tuple(dict.fromkeys(key for block in blocks.values() for results in block for key in results.swept))
     whole = comparison_table(rows, swept)
     kept, printed = (print_comparison(rows, metrics, swept, screen) for screen in (False, True))
@@ -134,13 +134,14 @@ def make_loads(driven: Driven) -> Outputs:
     """Make the table and the figure of loads."""
     cells = [(int(cell.resolved["scenario"]["cavs"]), results) for cell, results in _results(driven, without=CAVS)]
     loads = list(dict.fromkeys(cavs for cavs, _ in cells))
-    rows = load_rows(cells, TAKING_PART[LOAD])
+    rows = load_rows(cells, taking_part(LOAD))
     swept = tuple(dict.fromkeys(key for _, results in cells for key in results.swept))
     table = load_table(rows, loads, swept)
     kept, printed = (print_loads(rows, loads, driven.metrics, swept, screen) for screen in (False, True))
     files = {"load.csv": table.csv().encode(), "load.md": markdown_text(kept).encode()}
-    figures = {f"figures/{name}": content for name, content in load_figure(rows, loads, driven.metrics).items()}
-    return Outputs({**files, **figures}, (printed,), (table,))
+    figures = load_figure(rows, loads, driven.metrics, styles())
+    files |= {f"figures/{name}": content for name, content in figures.items()}
+    return Outputs(files, (printed,), (table,))
 
 
 def _results(driven: Driven, without: str = "") -> Iterator[tuple[Cell, CellResults]]:

@@ -54,4 +54,4 @@ def modules_to_preload(configs: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
     """
     used = {target.rpartition(".")[0] for config in configs for target in targets(config)}
     ours = sorted(module for module in used if module.startswith("codriving."))
-    return ("codriving.experiment.processes", __name__, *ours)
+    return (__name__, *ours)

@@ -128,7 +128,7 @@ def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(list(preload))
+    context.set_forkserver_preload([__name__, *preload])
     # The tracker unblocks SIGINT when it starts, so it has to be there before.
     multiprocessing.resource_tracker.ensure_running()
     # A mask outlives fork and exec: with it, Ctrl-C reaches neither the server, even in its imports, nor a worker.

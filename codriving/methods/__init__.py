@@ -28,11 +28,14 @@ from codriving.methods.learned.network import (
     greedy,
 )
 from codriving.methods.learned.weights import Purpose, Trained, load, save
+from codriving.methods.madqn import Madqn
+from codriving.methods.ppo import Ppo
 from codriving.methods.single_vehicle.method import Driver, SingleVehicle
+from codriving.methods.tell import Tell
 
 __all__ = [
     "ACTIONS", "ATTENTION", "EGO", "FAMILIES", "FAR", "FORMS", "HEADS", "NEAR", "PERCEPTRON", "SLOT", "SLOTS",
-    "VERSION", "WIDTH", "AnyNetwork", "Attention", "CheckedDecider", "Driver", "Features", "FloatArray", "Network",
-    "Observation", "Purpose", "SingleVehicle", "Trained", "allowed", "feature_count", "greedy", "load", "prompted",
-    "save",
+    "VERSION", "WIDTH", "AnyNetwork", "Attention", "CheckedDecider", "Driver", "Features", "FloatArray", "Madqn",
+    "Network", "Observation", "Ppo", "Purpose", "SingleVehicle", "Tell", "Trained", "allowed", "feature_count",
+    "greedy", "load", "prompted", "save",
 ]  # fmt: skip

@@ -15,10 +15,10 @@ from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.results import CellResults, named_numbers
 from codriving.reports.summary import BY_KEY, FALLBACK_NOTE, FALLBACKS, MEASURED, NOTE, number_notes, paper_row
 from codriving.reports.wording import (
-    STANDS_IN,
     metrics_text,
     milliseconds,
     percent,
+    place_of,
     reasoner_text,
     stand_in_notes,
     title,
@@ -29,9 +29,6 @@ REFERENCE = "codriving"  # The method that all others are compared with
 
 # Whether a method could be driven; the last for one that goes by a language model, where rules stood in for it.
 DRIVEN, MISSING, QUOTED_ALONE = "driven", "not there yet", "only in the paper"
-
-# Methods that go by a language model; with rules in its place they are not set beside the paper's numbers.
-GUIDED = ("dilu", "tell")
 
 # The swept key that two methods of one name are told apart by; it belongs to a row, all others to a block.
 METHOD_CHOICE = "method_choice"
@@ -145,17 +142,19 @@ def comparison_rows(block: Sequence[CellResults], methods: Sequence[str], paper:
 
     rows: list[Compared] = []
     for method in methods:
-        found = [driven(cell) for cell in block if takes_place_of(cell.first.method) == method]
+        found = [driven(cell) for cell in block if takes_place_of(cell) == method]
         quoted = paper.row(scenario, method, "")
         rows += found or [Compared(scenario, method, MISSING, quoted=quoted, swept=setting)]
-        if found and quoted and method in GUIDED and not any(row.quoted for row in found):
+        # With rules in the place of its language model, a method is not set beside the paper's numbers.
+        guided = quoted is not None and quoted.reasoner == "model" and method != REFERENCE
+        if found and guided and not any(row.quoted for row in found):
             rows.append(Compared(scenario, method, QUOTED_ALONE, quoted=quoted, swept=setting))
-    return rows + [driven(cell) for cell in block if takes_place_of(cell.first.method) not in methods]
+    return rows + [driven(cell) for cell in block if takes_place_of(cell) not in methods]
 
 
-def takes_place_of(name: str) -> str:
-    """Return the method whose place in a table something takes, by what it calls itself."""
-    return STANDS_IN.get(name, name)
+def takes_place_of(cell: CellResults | None, name: str = "") -> str:
+    """Return the method whose place in a table a cell takes; the name where there is none."""
+    return place_of(cell.first.method, cell.first.reasoner) if cell else name
 
 
 def print_comparison(
@@ -185,7 +184,7 @@ def notes_of(rows: Iterable[tuple[str, str, CellResults | None]], screen: bool) 
         *([FALLBACK_NOTE] if any(cell and cell.asked for *_, cell in rows) else []),
         *([ALGORITHM] if any(cell and cell.first.reasoner == "none" for *_, cell in rows) else []),
         *([f"{MISSING.capitalize()}: {missing}; to come in a later release."] if missing else []),
-        *stand_in_notes(method for method, *_ in rows),
+        *stand_in_notes((cell.first.method, cell.first.reasoner) for *_, cell in rows if cell),
         *([f"{QUOTED_ALONE.capitalize()}: {alone}; {theirs}"] if alone else []),
         *([CPU_NOTE] if screen else []),
     ]
@@ -277,9 +276,9 @@ def load_rows(cells: Sequence[tuple[int, CellResults]], methods: Sequence[str]) 
 def _in_order(rows: Sequence[LoadRow], methods: Sequence[str]) -> list[LoadRow]:
     ordered: list[LoadRow] = []
     for method in methods:
-        found = [row for row in rows if takes_place_of(row.method) == method]
+        found = [row for row in rows if takes_place_of(row.cell, row.method) == method]
         ordered += found or [LoadRow(rows[0].scenario, method, setting_of(rows[0].swept))]
-    return [*ordered, *(row for row in rows if takes_place_of(row.method) not in methods)]
+    return [*ordered, *(row for row in rows if takes_place_of(row.cell, row.method) not in methods)]
 
 
 def load_table(rows: Sequence[LoadRow], loads: Sequence[int], swept: Sequence[str] = ()) -> Table:

@@ -34,17 +34,7 @@ _SETTINGS = {
 # Colour, marker and stroke, in the palette of Okabe and Ito (2008); colour is never the only cue.
 Style: TypeAlias = tuple[str, str, str]
 
-METHODS: Mapping[str, Style] = {
-    "fcfs": ("#0072b2", "o", "-"),
-    "idfst": ("#e69f00", "s", "--"),
-    "mcts": ("#009e73", "^", "-."),
-    "coop_game": ("#d55e00", "D", ":"),
-    "madqn": ("#56b4e9", "v", "--"),
-    "dilu": ("#cc79a7", "P", "-."),
-    "codriving": ("#000000", "*", "-"),
-}
-
-# For methods of the user's, in turn.
+# For methods that have none of their own, in turn.
 OTHERS: Sequence[Style] = (("#7a7a7a", "X", "-"), ("#7a1f5c", "<", "--"), ("#5c4a00", ">", "-."), ("#3b5b92", "h", ":"))
 
 # For the settings that are learnt in.
@@ -73,8 +63,13 @@ def _plain_settings() -> Iterator[None]:
 
 
 @_plain_settings()
-def load_figure(rows: Sequence[LoadRow], loads: Sequence[int], metrics: str) -> Mapping[str, bytes]:
+def load_figure(
+    rows: Sequence[LoadRow], loads: Sequence[int], metrics: str, methods: Mapping[str, Style]
+) -> Mapping[str, bytes]:
     """Draw success and velocity against the number of CAVs, a column of panels for each scenario.
+
+    Args:
+        methods: Styles of methods by name.
 
     Returns:
         The content of ``load.png`` and ``load.svg``.
@@ -87,7 +82,7 @@ def load_figure(rows: Sequence[LoadRow], loads: Sequence[int], metrics: str) -> 
         setting = [f"{key}={value}" for key, value in setting_of(row.swept).items()]
         panels.setdefault(", ".join([row.scenario, *setting]), []).append(row)
     names = list(dict.fromkeys(row.name for row in rows))
-    styles = _styles(rows)
+    styles = _styles(rows, methods)
     step = min((b - a for a, b in pairwise(loads)), default=1)
     figure = Figure(figsize=(max(6.4, 4.4 * len(panels)), 6.6), layout="constrained")
     axes = figure.subplots(2, len(panels), sharex=True, sharey="row", squeeze=False)
@@ -180,11 +175,11 @@ def _level(row: LearningRow) -> str:
     return " ".join([row.cell.name, *(f"{key}={value}" for key, value in row.cell.swept.items() if "." in key)])
 
 
-def _styles(rows: Sequence[LoadRow]) -> dict[str, Style]:
+def _styles(rows: Sequence[LoadRow], methods: Mapping[str, Style]) -> dict[str, Style]:
     styles: dict[str, Style] = {}
     others = cycle(OTHERS)
     for row in rows:
-        usual = METHODS.get(row.method)
+        usual = methods.get(row.method)
         if row.name not in styles:
             styles[row.name] = next(others) if usual is None or usual in styles.values() else usual
     return styles

@@ -20,6 +20,7 @@ class PaperRow:
     scenario: str  # Name of the scenario; the paper compares methods at the intersection alone
     method: str
     label: str
+    reasoner: str  # ``model`` for a method that goes by a language model, else ``none``
     numbers: dict[str, float]
     episodes: int | None = SEEDS  # How many seeds it drove; None where that is not told
 
@@ -96,6 +97,6 @@ def _read(path: Path) -> list[dict[str, str]]:
 
 
 def _row(texts: dict[str, str]) -> PaperRow:
-    words = ("scenario", "method", "label")
+    words = ("scenario", "method", "label", "reasoner")
     numbers = {name: float(text) for name, text in texts.items() if name not in words and text}
-    return PaperRow(texts["scenario"], texts["method"], texts["label"], numbers)
+    return PaperRow(texts["scenario"], texts["method"], texts["label"], texts.get("reasoner", "none"), numbers)

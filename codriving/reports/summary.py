@@ -141,7 +141,7 @@ def print_summary(
     claimed: list[Column[Any]] = [Column("claim", lambda _: None, CLAIM, words=True)] if ablation else []
     rows = tuple({**row, "claim": claim} for row, claim in zip(made.rows, claims, strict=True))
     scenarios, reasoners = ([row[key] for row in rows] for key in ("scenario", "reasoner"))
-    models = stand_in_notes(row["method"] for row in rows)
+    models = stand_in_notes((row["method"], row["reasoner"]) for row in rows)
     said = (NOTE, *number_notes(cells), *models, *_model_notes(cells, screen), *notes)
     heading, shown = title("", scenarios, reasoners, metrics), Table((*made.columns, *claimed), rows)
     return printed(heading, shown, scenarios, said, _beside(cells, paper), screen)

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 
 from codriving.reports.columns import Value
 
-# What a method calls itself if built-in rules stand in for its language model, and what it would be with one.
-STANDS_IN = {"dilu-rule": "dilu"}
+# What a method adds to its name if built-in rules stand in for its language model.
+WITH_RULES = "-rule"
 
 
 def percent(value: Value) -> str:
@@ -64,9 +64,20 @@ def metrics_text(metrics: str) -> str:
     return "" if metrics == "standard" else f" - metrics: {metrics}"
 
 
-def stand_in_notes(methods: Iterable[Value]) -> list[str]:
-    """Say of every method whose language model rules stand in for that it is not that method."""
-    names = dict.fromkeys(name for name in map(str, methods) if name in STANDS_IN)
+def place_of(method: str, reasoner: str) -> str:
+    """Return the method that something is in a table: where rules reason, its name without the mark of a stand-in."""
+    return method.removesuffix(WITH_RULES) if reasoner == "rules" else method
+
+
+def stand_in_notes(rows: Iterable[tuple[Value, Value]]) -> list[str]:
+    """Say of every method whose language model rules stand in for that it is not that method.
+
+    Args:
+        rows: Method and reasoner of each row.
+    """
+    named = {str(method): place_of(str(method), str(reasoner)) for method, reasoner in rows}
     return [
-        f"{n}: built-in rules in the place of {STANDS_IN[n]}'s language model; it is not that method." for n in names
+        f"{n}: built-in rules in the place of {place}'s language model; it is not that method."
+        for n, place in named.items()
+        if place != n
     ]

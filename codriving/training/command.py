@@ -13,9 +13,6 @@ from codriving.training.settings import MadqnSettings, Settings, SingleSettings
 
 INTERRUPTED = 130  # Exit code of a process that the user stopped (128 + SIGINT)
 
-# What can be trained; each has a YAML in conf/train for every family, called after both.
-LEARNERS = ("madqn", "ppo", "tell")
-
 OWN = ("run", "output")  # Settings of the folder, which do not change what is trained
 
 
@@ -68,13 +65,16 @@ def run_training(
 
 def named(learner: str, family: str, config_dir: Path | None = None) -> str:
     """Return the name of the config of a training."""
-    if learner not in LEARNERS:
-        raise ConfigError(f"unknown learner {learner!r}; learners: {', '.join(LEARNERS)}")
+    known = trainings(config_dir)
+    ends = tuple(f"_{each}" for each in FAMILIES)
+    learners = sorted({each.rpartition("_")[0] for each in known if each.endswith(ends)})
+    if learner not in learners:
+        raise ConfigError(f"unknown learner {learner!r}; learners: {', '.join(learners)}")
     if family not in FAMILIES:
         raise ConfigError(f"unknown family {family!r}; families: {', '.join(FAMILIES)}")
     name = f"{learner}_{family}"
-    if name not in trainings(config_dir):
-        raise ConfigError(f"there is no training {name}; trainings: {', '.join(trainings(config_dir))}")
+    if name not in known:
+        raise ConfigError(f"there is no training {name}; trainings: {', '.join(known)}")
     return name
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from codriving.errors import ConfigError
 from codriving.gym import RewardWeights, reward_weights
-from codriving.methods import FAMILIES, FORMS, PERCEPTRON
+from codriving.methods import FAMILIES, FORMS, PERCEPTRON, Madqn, Ppo, Tell
 from codriving.training.curriculum import CooperativeTraffic, Linear, SingleTraffic, at_least
 from codriving.training.teacher import Guidance
 from codriving.training.validation import Exam
@@ -70,7 +70,7 @@ class SingleSettings(Settings):
     shared = False  # A vehicle on its own is told nothing by others
 
     def __post_init__(self) -> None:
-        self._one_of("learner", ("ppo", "tell"))
+        self._one_of("learner", (Ppo.name, Tell.name))
         self._one_of("form", FORMS)
         super().__post_init__()
         at_least(self, rollout=2, batch=2, epochs=1)
@@ -100,7 +100,7 @@ class MadqnSettings(Settings):
     faster: float
     traffic: tuple[CooperativeTraffic, ...]
 
-    learner, form, teacher = "madqn", PERCEPTRON, ""
+    learner, form, teacher = Madqn.name, PERCEPTRON, ""
     shared = True  # CAVs share states and intents
 
     def __post_init__(self) -> None:

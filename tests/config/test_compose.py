@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from codriving.config.choices import choices
+from codriving.config.choices import choices, styles, taking_part
 from codriving.config.compose import compose, show
 from codriving.errors import ConfigError
 
@@ -26,6 +26,12 @@ def test_defaults_are_plain_and_resolved() -> None:
     assert type(resolved["method"]["cda"]) is dict
     assert "hydra" not in resolved
     assert "experiments" not in resolved
+
+
+def test_what_a_method_says_for_tables_and_figures_is_no_part_of_a_run() -> None:
+    assert taking_part("single-vehicle")[-2:] == ("dilu", "codriving")
+    assert styles()["dilu"] == ("#cc79a7", "P", "-.")
+    assert [key for key in compose(["method=dilu"])["method"] if key.startswith("_")] == ["_target_"]
 
 
 def test_overrides_of_groups_keys_and_lists() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from codriving.config.choices import TABLES, TAKING_PART
+from codriving.config.choices import TABLES, taking_part
 from codriving.experiment.compare import comparison
 from codriving.reports.comparison import CPU, comparison_table
 from codriving.reports.pairs import AGAINST, PAIRED
@@ -16,11 +16,11 @@ COMMANDS = [shlex.split(line, comments=True)[2:] for line in re.findall(r"^ {4}(
 
 
 @pytest.mark.parametrize(
-    "name", [*TAKING_PART["all"], *(column.key for column in PAIRED if column.csv), "status", "paper_success_rate"]
+    "name", [*taking_part("all"), *(column.key for column in PAIRED if column.csv), "status", "paper_success_rate"]
 )
 def test_method_or_column_is_documented(name: str) -> None:
     assert f"`{name}`" in PAGE
-    assert name in (*TAKING_PART["all"], *comparison_table([]).keys)
+    assert name in (*taking_part("all"), *comparison_table([]).keys)
 
 
 @pytest.mark.parametrize("head", [CPU, AGAINST, "McNemar p"])

@@ -32,9 +32,6 @@ MAY_IMPORT = {
 }
 """What each room may import besides itself, ``datatypes`` and ``errors``, for types and by names in texts included."""
 
-STILL_NAMED = {"experiment"}
-"""Rooms with files that still name what they may not import in a text; none are added."""
-
 DOORS = {
     "highway_env": "environment",
     "gymnasium": "gym",
@@ -55,7 +52,7 @@ def used() -> dict[str, dict[str, str]]:
     """What each room imports of others, each with a file that does."""
     found: dict[str, dict[str, str]] = {room: {} for room in MAY_IMPORT}
     for file in files():
-        for target in targets(file, texts=file.room not in STILL_NAMED):
+        for target in targets(file):
             other = modules()[target].room
             if other != file.room and other not in EVERYWHERE:
                 found.setdefault(file.room, {})[other] = str(file)

@@ -6,8 +6,8 @@ from source import files
 
 from codriving.config.choices import choices
 
-STILL_NAME = {"config", "llm", "reports", "training"}
-"""Rooms that still name one; none are added."""
+STILL_NAME = {"llm"}
+"""Templates are called after the method that asks; none are added."""
 
 
 def test_methods_are_named_by_themselves_alone() -> None:

@@ -4,9 +4,10 @@ from collections.abc import Callable
 
 import pytest
 
+from codriving.config.choices import styles
 from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.comparison import LoadRow, load_rows, load_table, print_loads
-from codriving.reports.figures import METHODS, load_figure
+from codriving.reports.figures import load_figure
 from codriving.reports.results import CellResults
 from tests.reports.making import column_of
 
@@ -88,23 +89,23 @@ def test_rules_in_the_place_of_a_language_model_take_the_methods_place(make: Mak
 def test_the_figure_repeats_to_the_byte_whatever_its_user_has_set(rows: list[LoadRow]) -> None:
     import matplotlib
 
-    first = load_figure(rows, LOADS, "standard")
+    first = load_figure(rows, LOADS, "standard", styles())
     with matplotlib.rc_context({"font.size": 20.0, "lines.linewidth": 9.0}):
-        assert load_figure(rows, LOADS, "standard") == first
+        assert load_figure(rows, LOADS, "standard", styles()) == first
         assert matplotlib.rcParams["font.size"] == 20.0
     assert first["load.png"].startswith(b"\x89PNG")
     assert b"tEXt" not in first["load.png"]
     assert b"<svg" in first["load.svg"]
     assert b"dc:date" not in first["load.svg"]
     # One line a method and panel, and each method once in the legend.
-    assert first["load.svg"].count(METHODS["fcfs"][0].encode()) > len(LOADS)
+    assert first["load.svg"].count(b"#0072b2") > len(LOADS)
 
 
 def test_a_figure_of_failures_and_of_one_load_can_be_drawn(make: Make) -> None:
     failed = load_rows([(4, CellResults([make(0, Ending.ERROR)]))], ())
-    assert set(load_figure(failed, (4,), "standard")) == {"load.png", "load.svg"}
+    assert set(load_figure(failed, (4,), "standard", {})) == {"load.png", "load.svg"}
 
 
 def test_every_method_looks_different_without_colour() -> None:
-    looks = {(marker, stroke) for _, marker, stroke in METHODS.values()}
-    assert len(looks) == len({colour for colour, _, _ in METHODS.values()}) == len(METHODS)
+    looks = {(marker, stroke) for _, marker, stroke in styles().values()}
+    assert len(looks) == len({colour for colour, _, _ in styles().values()}) == len(styles())

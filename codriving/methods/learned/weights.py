@@ -4,7 +4,6 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, Self
 
@@ -106,7 +105,7 @@ class Trained:
 
 def shipped(method: str, family: str) -> Path:
     """Return the file of the weights that come with the package."""
-    return Path(str(files("codriving.methods.learned"))) / "weights" / f"{method}_{family}.safetensors"
+    return Path(__file__).parent / "weights" / f"{method}_{family}.safetensors"
 
 
 def sidecar(file: Path) -> Path:
