@@ -64,7 +64,7 @@ def _options(
 app.command(epilog="Example: codriving run scenario=intersection episodes=50 seed=0 workers=2 run=first")(run)
 app.command(epilog="Example: codriving ablate scenario=intersection episodes=20")(ablate)
 app.command(epilog="Example: codriving compare baselines scenario=intersection episodes=20")(compare)
-app.command(epilog="Example: codriving learn scenario=intersection interactions=0,5,20 episodes=50 run=first")(learn)
+app.command(epilog="Example: codriving learn scenario=intersection interactions=0,5,20 episodes=50 run=curve")(learn)
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
 app.add_typer(memory, name="memory")

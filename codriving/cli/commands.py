@@ -1,5 +1,8 @@
 """The commands: what each takes from the command line, handed on to the room that does it."""
 
+import shutil
+import sys
+import textwrap
 from pathlib import Path
 from typing import Annotated
 
@@ -109,7 +112,8 @@ def train(
 ) -> None:
     """Train a learner on the environment; the same command goes on where it was stopped.
 
-    Needs PyTorch: pip install 'codriving[train]'. Config, curve, checkpoint and weights are kept in outputs/train/NAME.
+    Needs PyTorch: in a clone of the repository, make torch or pip install -e '.[train]'. Config, curve, checkpoint and
+    weights are kept in outputs/train/NAME.
     """
     from codriving.training import run_training
 
@@ -135,8 +139,15 @@ def list_choices(
         several = singular in SWEPT and len(found) > 1
         if group in (plural, singular):
             for name, file in found.items():
-                print(f"{name:<20} {describe(file)}".rstrip())
+                print(_entry(name, describe(file)))
             if several:
-                print(f"{ALL:<20} Every one of these, in this order: one row of the table each.")
+                print(_entry(ALL, "Every one of these, in this order: one row of the table each."))
         elif group is None:
-            print(f"{plural:<20} {', '.join([*found, *([f'or {ALL}'] if several else [])]) or '-'}")
+            print(_entry(plural, ", ".join([*found, *([f"or {ALL}"] if several else [])]) or "-"))
+
+
+def _entry(name: str, text: str) -> str:
+    """A name and what it is, within the width of a terminal; on one line in a pipe."""
+    line = f"{name:<20} {text}".rstrip()
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else len(line)
+    return "\n".join(textwrap.wrap(line, max(width, 40), subsequent_indent=" " * 21, break_on_hyphens=False))

@@ -16,6 +16,7 @@ from codriving.config import (
     ROOT,
     SWEPT,
     TABLES,
+    TRAININGS,
     choices,
     conf_dir,
     default_choice,
@@ -28,12 +29,14 @@ from codriving.errors import ConfigError
 PLURALS = {
     "scenarios": "scenario",
     "methods": "method",
+    "executors": "executor",
     "cdas": "cda",
     "llms": "llm",
     "memories": "memory",
     "metrics": "metrics",
     "launchers": "launcher",
     "experiments": EXPERIMENTS,
+    "trainings": TRAININGS,
 }
 
 

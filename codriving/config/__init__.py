@@ -7,6 +7,7 @@ from codriving.config.choices import (
     LISTED,
     SWEPT,
     TABLES,
+    TRAININGS,
     check_config_dir,
     choices,
     default_choice,
@@ -24,8 +25,8 @@ from codriving.config.sweep import Point, expand
 from codriving.config.training import compose_training, trainings
 
 __all__ = [
-    "ALL", "EXPERIMENTS", "GROUPS", "LARGEST_SEED", "LISTED", "PLUGINS", "ROOT", "SWEPT", "TABLES", "TARGET", "Point",
-    "asks_for", "build", "check_choice", "check_config_dir", "choices", "compose", "compose_named",
-    "compose_training", "conf_dir", "default_choice", "describe", "expand", "experiments_dir", "parse", "show",
-    "styles", "taking_part", "targets", "trainings", "validate", "values",
+    "ALL", "EXPERIMENTS", "GROUPS", "LARGEST_SEED", "LISTED", "PLUGINS", "ROOT", "SWEPT", "TABLES", "TARGET",
+    "TRAININGS", "Point", "asks_for", "build", "check_choice", "check_config_dir", "choices", "compose",
+    "compose_named", "compose_training", "conf_dir", "default_choice", "describe", "expand", "experiments_dir",
+    "parse", "show", "styles", "taking_part", "targets", "trainings", "validate", "values",
 ]  # fmt: skip

@@ -12,6 +12,8 @@ EXPERIMENTS = "experiments"  # The group of deltas that reproduce one table or f
 
 LISTED = (*GROUPS, EXPERIMENTS)  # Every group that has choices
 
+TRAININGS = "train"  # The folder of the configs of trainings; no group of a run, which has no training
+
 # Groups of which one command can take every choice; a snapshot has to be named, so not every memory can be taken.
 SWEPT = tuple(group for group in GROUPS if group not in ("launcher", "memory"))
 
@@ -53,8 +55,8 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
     Raises:
         ConfigError: If there is no such group.
     """
-    if group not in LISTED:
-        raise ConfigError(f"unknown group {group}; groups: {', '.join(LISTED)}")
+    if group not in (known := (*LISTED, TRAININGS)):
+        raise ConfigError(f"unknown group {group}; groups: {', '.join(known)}")
     roots = [experiments_root() if group == EXPERIMENTS else conf_dir(), *([config_dir] if config_dir else [])]
     found = {file.stem: file for root in roots for file in sorted((root / group).glob("[!_]*.yaml"))}
     first = taking_part("all") if group == "method" else FIRST.get(group, ())

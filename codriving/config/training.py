@@ -4,13 +4,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from codriving.config.choices import TRAININGS, choices
 from codriving.config.compose import compose
-from codriving.config.locate import conf_dir
 from codriving.config.overrides import parse, shown
 from codriving.config.schema import unknown
 from codriving.errors import ConfigError
-
-TRAININGS = "train"  # The folder of these configs; it is no group, since a run has no training
 
 
 def trainings(config_dir: Path | None = None) -> dict[str, Path]:
@@ -19,8 +17,7 @@ def trainings(config_dir: Path | None = None) -> dict[str, Path]:
     Returns:
         The YAML file of each, by name.
     """
-    folders = [root / TRAININGS for root in (conf_dir(), config_dir) if root is not None]
-    return {file.stem: file for folder in folders for file in sorted(folder.glob("*.yaml"))}
+    return choices(TRAININGS, config_dir)
 
 
 def compose_training(

@@ -78,11 +78,14 @@ class AgentEpisode:
         """Return what is to be said of a CAV besides."""
         assert self.world is not None
         outcome = self.environment.outcome
+        involved = () if outcome is None else outcome.failed
         return {
             "action_mask": action_mask(self.world.available.get(name, ())),
             "refused": self._refused[name],
             "arrived": name not in self.world.available,
             "outcome": "" if outcome is None else str(outcome.ending),
+            "crashed": name in involved,
+            "involved": involved,
             "seed": self.seed,
         }
 

@@ -64,6 +64,8 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
             "arrived": np.array([info["arrived"] for info in infos]),
             "refused": sum(info["refused"] for info in infos),
             "outcome": infos[0]["outcome"],
+            "crashed": np.array([info["crashed"] for info in infos]),
+            "involved": infos[0]["involved"],
             "seed": infos[0]["seed"],
         }
 

@@ -20,10 +20,13 @@ SEVERE_PET = 1.5  # Below this a PET counts as severe in the paper [s]
 
 NOTE = "Rates are over completed episodes, intervals are Wilson 95 %; PET and velocity are over successful episodes."
 
-# Share of the questions that the model gave no usable answer to, so that rules answered.
+# Share of the questions that the model gave no usable answer to.
 FALLBACK_RATE = "fallback_rate"
 
-FALLBACK_NOTE = "Fallbacks: share of questions to which the model gave no usable answer, so that rules answered."
+FALLBACK_NOTE = (
+    "Fallbacks: share of questions without a usable answer; an order is then made by the rules, a decision is the "
+    "slowest safe action."
+)
 STEP_NOTE = "Step: wall-clock time of one decision step, all CAVs and all questions together; see timing.csv."
 
 CLAIM = "the paper says"  # Head of the column of the paper's statements

@@ -37,8 +37,8 @@ def run_training(
     assert isinstance(settings, MadqnSettings | SingleSettings)
     if importlib.util.find_spec("torch") is None:
         raise TrainingError(
-            "training needs PyTorch, which is not installed: pip install 'codriving[train]', or make train in a "
-            "checkout; driving with the trained weights that are shipped needs none"
+            "training needs PyTorch, which is not installed: in a clone of the repository, make torch or pip install "
+            "-e '.[train]'; driving with the trained weights that are shipped needs none"
         )
     from codriving.training.display import Display
     from codriving.training.folder import Stop, open_folder

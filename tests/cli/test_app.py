@@ -1,11 +1,16 @@
 """Help, lists, versions and exit codes of the command line, in this process."""
 
+from types import SimpleNamespace
+
 import pytest
 from typer.testing import CliRunner, Result
 
 from codriving import __version__
+from codriving.cli import commands
 from codriving.cli.app import app
+from codriving.cli.completion import PLURALS
 from codriving.config.choices import choices
+from codriving.config.locate import conf_dir
 
 
 def call(*args: str) -> Result:
@@ -49,12 +54,31 @@ def test_every_help_shows_an_example(command: tuple[str, ...]) -> None:
         ("cdas", "prescriptive"),
         ("metrics", "authors"),
         ("experiments", "ablation"),
+        ("executor", "layered"),
+        ("launchers", "threads"),
+        ("memories", "frozen"),
+        ("train", "ppo_lanes"),
     ],
 )
 def test_list_names_and_describes_choices(group: str, name: str) -> None:
     lines = call("list", group).stdout.splitlines()
     found = next(line for line in lines if line.split()[0] == name)
     assert len(found.split()) > 3
+
+
+def test_every_group_of_configs_can_be_listed() -> None:
+    folders = {path.name for path in conf_dir().iterdir() if path.is_dir()}
+    assert folders <= set(PLURALS.values())
+    assert all(call("list", group).exit_code == 0 for group in (*PLURALS, *folders))
+
+
+def test_a_list_on_a_terminal_keeps_within_its_width(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr(commands, "sys", SimpleNamespace(stdout=SimpleNamespace(isatty=lambda: True)))
+    for group in ([], ["methods"], ["trainings"]):
+        lines = call("list", *group).stdout.splitlines()
+        assert max(map(len, lines)) <= 80
+        assert any(line.startswith(" " * 21) for line in lines)
 
 
 def test_list_names_the_word_for_every_choice_where_there_is_one() -> None:
@@ -73,12 +97,14 @@ def test_list_without_a_group_shows_all_groups() -> None:
     assert [line.split()[0] for line in result.stdout.splitlines()] == [
         "scenarios",
         "methods",
+        "executors",
         "cdas",
         "llms",
         "memories",
         "metrics",
         "launchers",
         "experiments",
+        "trainings",
     ]
 
 

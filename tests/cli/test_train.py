@@ -46,7 +46,8 @@ def test_without_torch_it_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch
     result = call("madqn", f"output={tmp_path}")
     assert result.exit_code == 2
     assert result.stderr.count("\n") == 1
-    assert "pip install 'codriving[train]'" in result.stderr
+    assert "pip install -e '.[train]'" in result.stderr
+    assert "make torch" in result.stderr
     assert list(tmp_path.iterdir()) == []
 
 

@@ -8,11 +8,10 @@ import yaml
 from remembered import experience, filled
 
 from codriving.config.build import build, validate
-from codriving.config.choices import EXPERIMENTS, LISTED, choices, describe
+from codriving.config.choices import EXPERIMENTS, LISTED, TRAININGS, choices, describe
 from codriving.config.compose import compose
 from codriving.config.locate import conf_dir, experiments_dir
 from codriving.config.schema import GROUPS, OPTIONAL
-from codriving.config.training import TRAININGS
 from codriving.datatypes.parts import CaseMemory, Model, RuleModel
 
 HANDED = {"llm", "memory"}

@@ -18,3 +18,22 @@ def test_named_files_are_there() -> None:
         named += [(PACKAGE, path) for path in re.findall(rf"`((?:{ROOMS})/[a-z0-9_/]+\.py)`", text)]
         missing += [f"{page.name}: {path}" for root, path in named if not (root / path).exists()]
     assert not missing
+
+
+def test_each_name_of_a_run_belongs_to_one_page() -> None:
+    """The pages can be followed one after the other: no command meets a run folder of another config."""
+    pages: dict[tuple[str, str], set[str]] = {}
+    for page in PAGES:
+        for command, name in re.findall(r"^    codriving (\w+).*? run=(\w+)", page.read_text(encoding="utf-8"), re.M):
+            pages.setdefault((command, name), set()).add(page.name)
+    # The README shows the commands of two pages.
+    shown = {("run", "first"): "getting-started.md", ("memory", "learnt"): "memory.md"}
+    assert {key: names - {"README.md"} for key, names in pages.items() if key in shown} == {
+        key: {name} for key, name in shown.items()
+    }
+    assert not {key: names for key, names in pages.items() if key not in shown and len(names) > 1}
+
+
+def test_nothing_is_said_to_be_on_a_package_index() -> None:
+    told = [page.name for page in PAGES if re.search(r"pip install ['\"]?codriving", page.read_text(encoding="utf-8"))]
+    assert not told

@@ -54,8 +54,8 @@ def test_commands_run_as_they_stand_there(folder: Path) -> None:
     assert re.search(r"^codriving full +1 ", run, flags=re.MULTILINE)
     assert len(re.findall(r"^(?:intersection|t_junction) +codriving full +[46] ", swept, flags=re.MULTILINE)) == 4
     assert len(re.findall(r"^codriving ", ablated, flags=re.MULTILINE)) == 7
-    assert film.startswith("Wrote outputs/run/first/")
-    assert len(list((folder / "outputs" / "run" / "first").rglob("replay.gif"))) == 1
+    assert film.startswith("Wrote outputs/run/t_junction/")
+    assert len(list((folder / "outputs" / "run" / "t_junction").rglob("replay.gif"))) == 1
 
 
 def test_python_runs_as_it_stands_there(folder: Path) -> None:

@@ -50,6 +50,8 @@ def test_a_collision_terminates_everybody_and_blames_who_took_part(make: Make) -
     crashed = {outcome.collision.striker, outcome.collision.struck} & set(rewards)
     assert crashed
     assert crashed == {agent for agent, reward in rewards.items() if reward < -40}
+    assert crashed == {agent for agent, info in infos.items() if info["crashed"]}
+    assert {info["involved"] for info in infos.values()} == {(outcome.collision.striker, outcome.collision.struck)}
     assert env.agents == []
 
 
@@ -60,6 +62,7 @@ def test_the_time_limit_truncates_everybody(make: Make) -> None:
     assert not any(terminated.values())
     assert all(seen[0].any() for seen in observations.values()), "a learner values the state that was cut off"
     assert {info["outcome"] for info in infos.values()} == {"timeout"}
+    assert not any(info["crashed"] or info["involved"] for info in infos.values())
     assert env.agents == []
 
 

@@ -51,6 +51,7 @@ def test_observation_and_action_are_those_of_all_cavs(joint: JointDriving) -> No
     assert info["action_mask"].tolist() == [[1, 1, 1, 0, 0]] * 4
     assert info["arrived"].tolist() == [False] * 4
     assert (info["outcome"], info["seed"]) == ("", 4)
+    assert (info["crashed"].tolist(), info["involved"]) == ([False] * 4, ())
 
 
 def test_masks_serve_to_sample(joint: JointDriving) -> None:
