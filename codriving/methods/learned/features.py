@@ -6,9 +6,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes import DrivingModel, Turn, VehicleState, WorldState
+from codriving.datatypes import DrivingModel, TrackedVehicle, Turn, VehicleState, WorldState
 from codriving.geometry import RoadMap
-from codriving.methods.learned.known import Knowledge, Other
+from codriving.methods.learned.known import Knowledge
 from codriving.methods.learned.layout import FAR, JUNCTION, LANES
 from codriving.methods.learned.slots import Beside, Slot, conflict_slots, filled, leader_ahead, leader_slot
 from codriving.reasoning import OPEN
@@ -49,7 +49,7 @@ class Features:
         others = self._knowledge.others(world)
         return {cav.id: self._observation(cav, world, others[cav.id]) for cav in world.cavs}
 
-    def _observation(self, ego: VehicleState, world: WorldState, others: tuple[Other, ...]) -> Observation:
+    def _observation(self, ego: VehicleState, world: WorldState, others: tuple[TrackedVehicle, ...]) -> Observation:
         intent, top = world.intents[ego.id], self._top
         if self._beside is None:
             self._road_map.project_all(intent.route, [(ego.x, ego.y), *((other.x, other.y) for other in others)])

@@ -1,31 +1,13 @@
 """The others as a learned driver knows them: what is shared, or only what its own sensors and the map tell."""
 
-from dataclasses import dataclass
+from dataclasses import replace
 from math import hypot
 
 from codriving.datatypes import Kind, TrackedVehicle, VehicleState, WorldState
 from codriving.geometry import RoadMap
 from codriving.reasoning import Places, Tracking
 
-FORESIGHT = 1.0  # A human driver is expected to go on accelerating or braking for this long [s]
-
 SHARED = ""  # In whose name the CAVs watch together when they share what they see
-
-
-@dataclass(frozen=True, slots=True)
-class Other:
-    """Another vehicle, as far as it is known."""
-
-    id: str
-    is_cav: bool
-    x: float  # Position [m]
-    y: float  # Position [m]
-    speed: float  # Speed [m/s]
-    heading: float  # Heading [rad]
-    target: float  # Speed that it is bound for [m/s]; 0 where nothing is known of it
-    length: float  # Length [m]
-    places: Places  # Each route that it may be on, with its arc length there [m]
-    priority: int | None = None  # Rank of its lane by the rules of the road; None where these do not count
 
 
 class Knowledge:
@@ -35,7 +17,7 @@ class Knowledge:
         self._road_map, self._range, self._shared, self._routes = road_map, detection_range, shared, routes
         self._tracking = Tracking(road_map)
 
-    def others(self, world: WorldState) -> dict[str, tuple[Other, ...]]:
+    def others(self, world: WorldState) -> dict[str, tuple[TrackedVehicle, ...]]:
         """Return whom each CAV knows of, itself left out."""
         self._tracking.begin_step()
         cavs, vehicles = world.cavs, world.vehicles
@@ -58,7 +40,7 @@ class Knowledge:
     def _near(self, cav: VehicleState, v: VehicleState) -> bool:
         return hypot(v.x - cav.x, v.y - cav.y) <= self._range
 
-    def _partner(self, v: VehicleState, world: WorldState) -> Other:
+    def _partner(self, v: VehicleState, world: WorldState) -> TrackedVehicle:
         """A CAV that has told its route and its target speed."""
         intent = world.intents[v.id]
         places: Places = ()
@@ -66,19 +48,17 @@ class Knowledge:
             s, _ = self._road_map.project(intent.route, v.x, v.y)
             lane = self._road_map.lane_at(intent.route, s)
             places = ((intent.route, s), *self._road_map.changes.covered(intent.route, lane, v.x, v.y))
-        return Other(v.id, True, v.x, v.y, v.speed, v.heading, intent.target_speed, v.length, places, self.priority(v))
+        return replace(_detected(v), kind=v.kind, lane=v.lane, routes=places, intent=intent)
 
-    def _human(self, v: VehicleState) -> Other:
+    def _human(self, v: VehicleState) -> TrackedVehicle:
         """A human driver whom all CAVs watch together."""
-        target = max(v.speed + FORESIGHT * v.acceleration, 0.0)
-        places = self._watched(SHARED, v)
-        return Other(v.id, False, v.x, v.y, v.speed, v.heading, target, v.length, places, self.priority(v))
+        return replace(self._stranger(SHARED, v), kind=v.kind, acceleration=v.acceleration, lane=v.lane)
 
-    def _stranger(self, ego: str, v: VehicleState) -> Other:
-        return Other(v.id, False, v.x, v.y, v.speed, v.heading, 0.0, v.length, self._watched(ego, v))
+    def _stranger(self, watcher: str, v: VehicleState) -> TrackedVehicle:
+        seen = _detected(v)
+        return replace(seen, routes=self._tracking.places(watcher, seen, None)) if self._routes else seen
 
-    def _watched(self, watcher: str, v: VehicleState) -> Places:
-        if not self._routes:
-            return ()
-        seen = TrackedVehicle(v.id, None, v.x, v.y, v.speed, v.heading, None, None, v.length)
-        return self._tracking.places(watcher, seen, None)
+
+def _detected(v: VehicleState) -> TrackedVehicle:
+    """What sensors tell of a vehicle."""
+    return TrackedVehicle(v.id, None, v.x, v.y, v.speed, v.heading, None, None, v.length)

@@ -5,18 +5,19 @@ from math import cos, hypot
 
 import numpy as np
 
-from codriving.datatypes import Action, Intent, LaneId, Relation, Straight, VehicleState
+from codriving.datatypes import Action, Intent, LaneId, Relation, Straight, TrackedVehicle, VehicleState
 from codriving.geometry import TRUE, Path, RoadMap, lane_path
-from codriving.methods.learned.known import Other
 from codriving.methods.learned.layout import FAR, NEAR, SIDE, SLOT, SLOTS
 from codriving.reasoning import ALIGNED, SAME_LANE, is_open, ttcp
+
+FORESIGHT = 1.0  # A human driver is expected to go on accelerating or braking for this long [s]
 
 LEANS = 0.6  # A body that comes this near to a lane counts as being on it [m]; drivers who change lanes are seen early
 
 # A gap beside is free if it is longer than this [m], and this much longer for each m/s of closing speed [s].
 STANDSTILL, HEADWAY = 3.0, 0.5
 
-Ahead = tuple[float, Other] | None
+Ahead = tuple[float, TrackedVehicle] | None
 
 
 class Beside:
@@ -27,14 +28,19 @@ class Beside:
         self._paths: dict[LaneId, Path] = {}
 
     def look(
-        self, ego: VehicleState, intent: Intent, place: float, others: Sequence[Other], available: Collection[Action]
+        self,
+        ego: VehicleState,
+        intent: Intent,
+        place: float,
+        others: Sequence[TrackedVehicle],
+        available: Collection[Action],
     ) -> tuple[Ahead, list[float]]:
         """Return who is next ahead with the gap [m], and the numbers of ``SIDES`` and ``LANE_CHANGE``."""
         lane = intent.target_lane
         (own, offset), *places = self._along(lane, [(ego.x, ego.y), *((o.x, o.y) for o in others)])
         width = self._road_map.lanes[lane].width
         reach = width / 2 + TRUE.width / 2 + LEANS
-        found: dict[tuple[int, bool], tuple[float, Other]] = {}
+        found: dict[tuple[int, bool], tuple[float, TrackedVehicle]] = {}
         for other, (s, side) in zip(others, places, strict=True):
             ahead = s > own
             gap = abs(s - own) - (other.length + ego.length) / 2
@@ -71,7 +77,7 @@ class Beside:
             self._paths[lane] = lane_path(self._road_map.lanes[lane])
         return self._paths[lane].project_all(*np.array(places).T)
 
-    def _side(self, ego: VehicleState, found: tuple[float, Other] | None) -> list[float]:
+    def _side(self, ego: VehicleState, found: tuple[float, TrackedVehicle] | None) -> list[float]:
         if found is None:
             return [0.0] * len(SIDE)
         gap, other = found
@@ -87,7 +93,7 @@ class Beside:
         return [float(target[2] - ending[2]), (ends - place) / (FAR * self._top)]
 
 
-def _free(ego: VehicleState, found: dict[tuple[int, bool], tuple[float, Other]], side: int) -> bool:
+def _free(ego: VehicleState, found: dict[tuple[int, bool], tuple[float, TrackedVehicle]], side: int) -> bool:
     """Whether there is room on the lane beside, ahead and behind."""
     for ahead in (True, False):
         if (side, ahead) in found:
@@ -106,13 +112,17 @@ GOES_FIRST, EQUAL, GIVES_WAY = 1.0, 0.6, 0.2
 Slot = tuple[float, tuple[float, ...]]  # Urgency, the smaller the more urgent, and the numbers
 
 
-def leader_ahead(ego: VehicleState, route: str, place: float, others: Iterable[Other], road_map: RoadMap) -> Ahead:
+def leader_ahead(
+    ego: VehicleState, route: str, place: float, others: Iterable[TrackedVehicle], road_map: RoadMap
+) -> Ahead:
     """Return who drives next ahead on the own route, and the gap from bumper to bumper [m]."""
     path = road_map.paths[route]
     nearest: Ahead = None
     for other in others:
         s, side = road_map.project(route, other.x, other.y)
-        if s <= place or abs(side) > SAME_LANE or cos(other.heading - path.place(s)[2]) <= ALIGNED:
+        if other.heading is None or s <= place or abs(side) > SAME_LANE:
+            continue
+        if cos(other.heading - path.place(s)[2]) <= ALIGNED:
             continue
         gap = s - place - (other.length + ego.length) / 2
         if nearest is None or gap < nearest[0]:
@@ -120,10 +130,18 @@ def leader_ahead(ego: VehicleState, route: str, place: float, others: Iterable[O
     return nearest
 
 
-def leader_slot(gap: float, other: Other, top: float) -> Slot:
+def leader_slot(gap: float, other: TrackedVehicle, top: float) -> Slot:
     """Return a leader as a slot."""
     x = gap / (NEAR * top)
-    return gap / LEADER_URGENCY, (1.0, float(other.is_cav), 1.0, 0.0, x, x, 0.0, other.speed / top, other.target / top)
+    speeds = other.speed / top, target_of(other) / top
+    return gap / LEADER_URGENCY, (1.0, float(other.is_cav), 1.0, 0.0, x, x, 0.0, *speeds)
+
+
+def target_of(other: TrackedVehicle) -> float:
+    """Return the speed that a vehicle is bound for [m/s]; 0 where nothing is known of it."""
+    if other.intent is not None:
+        return other.intent.target_speed
+    return 0.0 if other.acceleration is None else max(other.speed + FORESIGHT * other.acceleration, 0.0)
 
 
 def precedence(own: int | None, other: int | None) -> float:
@@ -137,7 +155,7 @@ def conflict_slots(
     ego: VehicleState,
     route: str,
     place: float,
-    others: Iterable[Other],
+    others: Iterable[TrackedVehicle],
     road_map: RoadMap,
     top: float,
     priority: int | None = None,
@@ -149,7 +167,7 @@ def conflict_slots(
     near, far = NEAR * top, FAR * top
     for other in others:
         best: Slot | None = None
-        for theirs, at in other.places:
+        for theirs, at in other.routes:
             if theirs == route:
                 continue
             for zone in road_map.zones(route, theirs):
@@ -161,8 +179,8 @@ def conflict_slots(
                 if best is None or urgency < best[0]:
                     crossing = float(zone.relation is Relation.CROSSING)
                     ways = (own / near, away / near, (zone.exit_j - at) / near)
-                    rank = precedence(priority, other.priority)
-                    speeds = other.speed / top, other.target / top
+                    rank = precedence(priority, other.lane and road_map.lanes[other.lane].priority)
+                    speeds = other.speed / top, target_of(other) / top
                     best = urgency, (rank, float(other.is_cav), 0.0, crossing, *ways, *speeds)
         if best is not None:
             yield best
