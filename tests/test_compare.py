@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 import codriving
-from codriving.experiment import compare as command
-from codriving.experiment import run_command
+from codriving.experiment import comparison_command, run_command
 from codriving.experiment.compare import EXPERIMENT
 
 PACKAGE = "toy_methods"
@@ -80,7 +79,7 @@ def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def compare(own: Path, table: str, *tokens: str) -> Path:
-    assert run_command(command(table), [*BOTH, f"output={own.parent}", *tokens], own) == 0
+    assert run_command(comparison_command(table), [*BOTH, f"output={own.parent}", *tokens], own) == 0
     return own.parent / EXPERIMENT[table] / "x"
 
 

@@ -46,10 +46,9 @@ def compare(
     baselines: each method against codriving. single-vehicle: those by which each CAV is on its own. all: both.
     load: baselines with 4, 6, 8 and 12 CAVs. method=NAME adds a method of your own.
     """
-    from codriving.experiment import compare as comparison
-    from codriving.experiment import run_command
+    from codriving.experiment import comparison_command, run_command
 
-    raise typer.Exit(run_command(comparison(table), overrides or [], config_dir, cfg))
+    raise typer.Exit(run_command(comparison_command(table), overrides or [], config_dir, cfg))
 
 
 def learn(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConfig = False) -> None:
@@ -92,10 +91,9 @@ def replay(
     config_dir: ConfigDir = None,
 ) -> None:
     """Show a stored episode: road, vehicles, conflicts, what every CAV decides and why."""
-    from codriving.experiment import ReplayOptions
-    from codriving.experiment import replay as show
+    from codriving.experiment import ReplayOptions, run_replay
 
-    print(show(run, ReplayOptions(cell, episode, format, out, speed, fps, scale, frame, config_dir)))
+    print(run_replay(run, ReplayOptions(cell, episode, format, out, speed, fps, scale, frame, config_dir)))
 
 
 def train(

@@ -1,14 +1,36 @@
 """Overrides to cells, cells to records, records to the tables that are printed and kept."""
 
-from codriving.experiment.check import run_check
-from codriving.experiment.compare import Comparison, compare, compare_frames
-from codriving.experiment.learn import run_learn
-from codriving.experiment.memory_build import BUILD
-from codriving.experiment.memory_pages import merge_page, search_page, show_page
-from codriving.experiment.replay import ReplayOptions, replay
-from codriving.experiment.run import ABLATE, RUN, Results, run_command, run_frames
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from codriving.experiment.check import run_check
+    from codriving.experiment.compare import Comparison, compare_frames, comparison_command
+    from codriving.experiment.learn import run_learn
+    from codriving.experiment.memory_build import BUILD
+    from codriving.experiment.memory_pages import merge_page, search_page, show_page
+    from codriving.experiment.replay import ReplayOptions, run_replay
+    from codriving.experiment.run import ABLATE, RUN, Results, run_command, run_frames
 
 __all__ = [
-    "ABLATE", "BUILD", "RUN", "Comparison", "ReplayOptions", "Results", "compare", "compare_frames", "merge_page",
-    "replay", "run_check", "run_command", "run_frames", "run_learn", "search_page", "show_page",
+    "ABLATE", "BUILD", "RUN", "Comparison", "ReplayOptions", "Results", "compare_frames", "comparison_command",
+    "merge_page", "run_check", "run_command", "run_frames", "run_learn", "run_replay", "search_page", "show_page",
 ]  # fmt: skip
+
+_FILES = {
+    "check": ("run_check",),
+    "compare": ("Comparison", "compare_frames", "comparison_command"),
+    "learn": ("run_learn",),
+    "memory_build": ("BUILD",),
+    "memory_pages": ("merge_page", "search_page", "show_page"),
+    "replay": ("ReplayOptions", "run_replay"),
+    "run": ("ABLATE", "RUN", "Results", "run_command", "run_frames"),
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import a command with the first use of its name: one command does not wait for what another one needs."""
+    for file, names in _FILES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{file}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

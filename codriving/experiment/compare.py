@@ -53,7 +53,7 @@ class Comparison:
     folder: Path
 
 
-def compare(table: str | None) -> Command:
+def comparison_command(table: str | None) -> Command:
     """Return the command of a table of ``codriving compare``."""
     if table is None or table not in TABLES:
         given = "compare needs the name of a table" if table is None else f"unknown table {table!r}"
@@ -73,7 +73,7 @@ def compare_frames(table: str, *overrides: str, config_dir: Path | None = None) 
         UserError: If the table, the config or the run folder cannot be used.
         KeyboardInterrupt: If the user stops it; finished episodes are kept.
     """
-    command = compare(table)
+    command = comparison_command(table)
     finished = drive(make_plan(command.points(overrides, config_dir), config_dir), command.make_outputs)
     (own,) = finished.outputs.tables
     return Comparison(own.frame(), finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)

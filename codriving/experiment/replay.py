@@ -38,7 +38,7 @@ class ReplayOptions:
     config_dir: Path | None = None
 
 
-def replay(run: Path, options: ReplayOptions) -> str:
+def run_replay(run: Path, options: ReplayOptions) -> str:
     """Write a film or a picture of a stored episode.
 
     Raises:

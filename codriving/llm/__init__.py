@@ -1,6 +1,7 @@
 """Questions to a language model and its answers: prompts, requests, retries, limits, costs and parsing."""
 
-from codriving.llm.embeddings import EmbeddingModel
+from typing import TYPE_CHECKING
+
 from codriving.llm.ledger import Ledger
 from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for, one_line, seen_names
 from codriving.llm.prompts.render import Prompts, load_prompts, template_files
@@ -19,6 +20,9 @@ from codriving.llm.prompts.views import MeaningView, SeenView, WayView
 from codriving.llm.question import Answer, Chat, Question
 from codriving.llm.sqlite_file import connect_sqlite, create_sqlite
 
+if TYPE_CHECKING:
+    from codriving.llm.embeddings import EmbeddingModel
+
 __all__ = [
     "LONGEST_MEMORY", "Answer", "Chat", "CorrectionReply", "DecisionReply", "EmbeddingModel", "Ledger", "LessonReply",
     "MeaningView", "Names", "OrderReply", "Prompts", "Question", "SeenView", "WayView", "connect_sqlite",
@@ -26,3 +30,12 @@ __all__ = [
     "load_prompts", "names_for", "negotiation_view", "one_line", "order_reply", "reflection_view", "seen_names",
     "side_name", "template_files",
 ]  # fmt: skip
+
+
+def __getattr__(name: str) -> object:
+    """Import asyncio and what sends requests, which takes a tenth of a second, only where a provider embeds texts."""
+    if name != "EmbeddingModel":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from codriving.llm.embeddings import EmbeddingModel
+
+    return EmbeddingModel

@@ -1,37 +1,41 @@
 """Methods: every row of a table is a pipeline with other objects in its slots."""
 
-from codriving.methods.language_model.model_decider import CheckedDecider
-from codriving.methods.language_model.prompted_model import prompted
-from codriving.methods.learned.features import Features, Observation
-from codriving.methods.learned.layout import (
-    ACTIONS,
-    EGO,
-    FAMILIES,
-    FAR,
-    NEAR,
-    SLOT,
-    SLOTS,
-    VERSION,
-    allowed,
-    feature_count,
-)
-from codriving.methods.learned.network import (
-    ATTENTION,
-    FORMS,
-    HEADS,
-    PERCEPTRON,
-    WIDTH,
-    AnyNetwork,
-    Attention,
-    FloatArray,
-    Network,
-    greedy,
-)
-from codriving.methods.learned.weights import Purpose, Trained, load, save
-from codriving.methods.madqn import Madqn
-from codriving.methods.ppo import Ppo
-from codriving.methods.single_vehicle.method import Driver, SingleVehicle
-from codriving.methods.tell import Tell
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from codriving.methods.language_model.model_decider import CheckedDecider
+    from codriving.methods.language_model.prompted_model import prompted
+    from codriving.methods.learned.features import Features, Observation
+    from codriving.methods.learned.layout import (
+        ACTIONS,
+        EGO,
+        FAMILIES,
+        FAR,
+        NEAR,
+        SLOT,
+        SLOTS,
+        VERSION,
+        allowed,
+        feature_count,
+    )
+    from codriving.methods.learned.network import (
+        ATTENTION,
+        FORMS,
+        HEADS,
+        PERCEPTRON,
+        WIDTH,
+        AnyNetwork,
+        Attention,
+        FloatArray,
+        Network,
+        greedy,
+    )
+    from codriving.methods.learned.weights import Purpose, Trained, load, save
+    from codriving.methods.madqn import Madqn
+    from codriving.methods.ppo import Ppo
+    from codriving.methods.single_vehicle.method import Driver, SingleVehicle
+    from codriving.methods.tell import Tell
 
 __all__ = [
     "ACTIONS", "ATTENTION", "EGO", "FAMILIES", "FAR", "FORMS", "HEADS", "NEAR", "PERCEPTRON", "SLOT", "SLOTS",
@@ -39,3 +43,29 @@ __all__ = [
     "Network", "Observation", "Ppo", "Purpose", "SingleVehicle", "Tell", "Trained", "allowed", "feature_count",
     "greedy", "load", "prompted", "save",
 ]  # fmt: skip
+
+_FILES = {
+    "language_model.model_decider": ("CheckedDecider",),
+    "language_model.prompted_model": ("prompted",),
+    "learned.features": ("Features", "Observation"),
+    "learned.layout": (
+        "ACTIONS", "EGO", "FAMILIES", "FAR", "NEAR", "SLOT", "SLOTS", "VERSION", "allowed", "feature_count",
+    ),
+    "learned.network": (
+        "ATTENTION", "FORMS", "HEADS", "PERCEPTRON", "WIDTH", "AnyNetwork", "Attention", "FloatArray", "Network",
+        "greedy",
+    ),
+    "learned.weights": ("Purpose", "Trained", "load", "save"),
+    "madqn": ("Madqn",),
+    "ppo": ("Ppo",),
+    "single_vehicle.method": ("Driver", "SingleVehicle"),
+    "tell": ("Tell",),
+}  # fmt: skip
+
+
+def __getattr__(name: str) -> object:
+    """Import a file with the first use of its name: a method does not wait for what the networks of others need."""
+    for file, names in _FILES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{file}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -13,7 +13,7 @@ from codriving.datatypes.world import Kind
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.environment.scenarios.roundabout import Roundabout
 from codriving.errors import ConfigError
-from codriving.experiment.compare import EXPERIMENT, compare, comparison, setting
+from codriving.experiment.compare import EXPERIMENT, comparison, comparison_command, setting
 from codriving.experiment.run import resume_command
 from codriving.reports.paper import read_paper
 
@@ -120,7 +120,7 @@ def test_the_experiment_is_the_users_if_named() -> None:
 )
 def test_what_cannot_be_compared_is_refused(table: str | None, tokens: list[str], said: str) -> None:
     with pytest.raises(ConfigError, match=said):
-        compare(table).points(tokens, None)
+        comparison_command(table).points(tokens, None)
 
 
 def test_cells_that_differ_in_the_method_alone_have_one_setting() -> None:
