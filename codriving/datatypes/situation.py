@@ -224,12 +224,12 @@ def _entry(situation: Situation, decision: Decision, order: dict[str, Any]) -> d
 
 def _plain(value: Any) -> Any:  # noqa: ANN401 - any JSON value
     """Turn dataclasses into dicts, round floats to a millionth, and turn what is no finite number into None."""
-    if isinstance(value, float):
+    kind = type(value)  # A line has a thousand values: the frequent kinds come first
+    if kind is float or isinstance(value, float):
         return round(value, 6) if isfinite(value) else None
-    kind = type(value)
     if kind is str or kind is int or kind is bool or value is None:
         return value
-    if isinstance(value, (tuple, list)):
+    if kind is tuple or kind is list or isinstance(value, (tuple, list)):
         return [_plain(v) for v in value]
     record = _record(cast("Hashable", kind))
     if record is not None:

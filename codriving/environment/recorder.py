@@ -52,7 +52,8 @@ def acceleration(vehicle: RouteFollower) -> float:
 
 def state_of(vehicle: RouteFollower) -> VehicleState:
     """Copy the physical state of one vehicle."""
-    x, y, heading, speed = (float(v) for v in (*vehicle.position, vehicle.heading, vehicle.speed))
+    x, y = vehicle.position.tolist()
+    heading, speed = float(vehicle.heading), float(vehicle.speed)
     lane, size = plain(vehicle.lane_index), (vehicle.LENGTH, vehicle.WIDTH)
     return VehicleState(vehicle.id, vehicle.kind, x, y, heading, speed, acceleration(vehicle), lane, *size)
 

@@ -97,9 +97,11 @@ def improve(times: Mapping[str, float], instance: Instance, previous: PassingOrd
 
 def cost(planned: Mapping[str, float], instance: Instance, previous: PassingOrder | None) -> float:
     """Return the time that all vehicles lose in a schedule, with a surcharge for each agreed pair turned round [s]."""
-    place = {name: k for k, name in enumerate(planned)}
-    agreed = () if previous is None else previous.precedences
-    turned = sum(p.first in place and p.second in place and place[p.first] > place[p.second] for p in agreed)
+    turned = 0
+    if previous is not None:
+        place = {name: k for k, name in enumerate(planned)}
+        for p in previous.precedences:
+            turned += p.first in place and p.second in place and place[p.first] > place[p.second]
     return sum(t - max(instance.vehicles[name].eta, 0.0) for name, t in planned.items()) + SWAP * turned
 
 

@@ -112,13 +112,8 @@ def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
 def _neighbour(
     n: TrackedVehicle, intent: Intent | None, tracking: Tracking, ego: str, time: float, role: Role, gap: float | None
 ) -> TrackedVehicle:
-    return replace(
-        n,
-        # A vehicle that shares an intent has said that it is a CAV.
-        kind=Kind.CAV if intent is not None else n.kind,
-        routes=tracking.places(ego, n, intent),
-        intent=intent,
-        standing=tracking.standing(ego, n, time),
-        role=role,
-        gap=gap,
-    )
+    # A vehicle that shares an intent has said that it is a CAV.
+    kind = Kind.CAV if intent is not None else n.kind
+    routes, standing = tracking.places(ego, n, intent), tracking.standing(ego, n, time)
+    motion = (n.x, n.y, n.speed, n.heading, n.acceleration, n.lane, n.length)
+    return TrackedVehicle(n.id, kind, *motion, routes, intent, standing, role, gap)
