@@ -14,7 +14,7 @@ from codriving.llm.cache import AnswerCache
 from codriving.llm.faults import CallError, FaultKind, unavailable, unusable
 from codriving.llm.loop import loop
 from codriving.llm.parsing import judge, one_line
-from codriving.llm.question import Answer, Call, Message, Question
+from codriving.llm.question import Answer, Call, Chat, Message, Question
 from codriving.llm.request import KNOWN, TOO_LONG, UNREADABLE, ChatRequest, Forms, Reply, schema_of, worded
 from codriving.llm.send import Sender
 from codriving.llm.settings import ModelSettings, read_key
@@ -68,7 +68,7 @@ _FINISH_REASONS = {FaultKind.TOO_LONG: TOO_LONG, FaultKind.FILTERED: "content_fi
 _FOR_GOOD = (FaultKind.KEY, FaultKind.QUOTA, FaultKind.MODEL, FaultKind.UNREACHABLE)
 
 
-class ModelChat:
+class ModelChat(Chat):
     """A language model behind one client for the whole process; any thread may call it."""
 
     def __init__(
@@ -91,7 +91,6 @@ class ModelChat:
         self._under_way: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
-        """Ask several questions at once and wait for all answers."""
         if not questions:
             return []
         self.spending.check()

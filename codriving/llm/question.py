@@ -1,8 +1,9 @@
 """What a language model is asked, and what comes back."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -61,11 +62,12 @@ class Answer:
         return len(self.calls) - self.shortened > 1
 
 
-class Chat(Protocol):
+class Chat(ABC):
     """A language model that answers questions."""
 
     name: str
 
+    @abstractmethod
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
         """Ask several questions at once and wait for all answers.
 
@@ -73,4 +75,3 @@ class Chat(Protocol):
             ModelUnavailableError: If the server cannot be reached, refuses or is too slow, retries included.
             SpendingLimitError: If the tokens or the money that may be spent are used up.
         """
-        ...

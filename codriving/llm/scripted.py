@@ -7,14 +7,14 @@ from dataclasses import replace
 from pydantic import BaseModel
 
 from codriving.llm.client import converse
-from codriving.llm.question import Answer, Message, Question
+from codriving.llm.question import Answer, Chat, Message, Question
 from codriving.llm.request import Reply
 
 # Gives the answer to a question as an object or in a model's words; an exception is raised.
 Script = Callable[[Question], "BaseModel | str | Exception"]
 
 
-class ScriptedChat:
+class ScriptedChat(Chat):
     """Answers as its script says, and reads what the script says as if a model had said it."""
 
     def __init__(self, script: Script, name: str = "scripted") -> None:
@@ -29,7 +29,6 @@ class ScriptedChat:
         return len(self.questions)
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
-        """Answer by the script."""
         self.rounds += bool(questions)
         return [asyncio.run(converse(question, self._reply)) for question in questions]
 
