@@ -10,7 +10,17 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 from codriving.config.schema import check_root, texts, unknown
 from codriving.config.target import find_class
-from codriving.datatypes import CaseMemory, Method, Metric, Model, Scenario, Simulator
+from codriving.datatypes import (
+    CaseMemory,
+    Cooperation,
+    EpisodeLauncher,
+    Method,
+    Metric,
+    Model,
+    OrderExecutor,
+    Scenario,
+    Simulator,
+)
 from codriving.errors import ConfigError
 
 T = TypeVar("T")
@@ -225,9 +235,9 @@ def _part(value: object, wanted: object, phrase: str) -> object:
         raise MismatchError(phrase.format(err)) from err
 
 
-EXPECTED: dict[str, type] = {"scenario": Scenario, "executor": object, "cda": object, "llm": Model}
-EXPECTED |= {"memory": CaseMemory, "metrics": Metric, "launcher": object, "environment": Simulator}
-"""What each node has to be; those of a room further up are checked again where a method or a run takes them."""
+EXPECTED: dict[str, type] = {"scenario": Scenario, "executor": OrderExecutor, "cda": Cooperation, "llm": Model}
+EXPECTED |= {"memory": CaseMemory, "metrics": Metric, "launcher": EpisodeLauncher, "environment": Simulator}
+"""What each node has to be, known before its class is called: a file chooses no other code than a part of its kind."""
 
 
 def validate(resolved: Mapping[str, Any]) -> None:

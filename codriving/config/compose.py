@@ -9,10 +9,10 @@ from codriving.config.choices import check_config_dir
 from codriving.config.locate import conf_dir, experiments_root
 from codriving.config.overrides import prepare
 from codriving.config.plugins import find_beside, gathered
+from codriving.config.references import check_references, no_resolvers
 from codriving.config.schema import GROUPS, LARGEST_SEED, check_root, texts
 from codriving.errors import ConfigError
 
-_ENVIRONMENT = re.compile(r"\$\{\s*oc\.env\b")
 SHOWN = ("_tables_", "_style_")  # What a method's YAML says for tables and figures; it is no part of a run
 _VARIABLE = re.compile(r"[A-Z_][A-Z0-9_]*")
 _PASSWORD = re.compile(r"\w+://[^/]*@")
@@ -60,14 +60,15 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
     search_path = "hydra.searchpath=[" + ",".join(f"'file://{folder}'" for folder in folders) + "]"
     tokens = [search_path, *(prepare(token, config_dir) for token in overrides)]
     try:
-        with hydra.initialize_config_dir(str(conf_dir()), version_base="1.3"):
+        with hydra.initialize_config_dir(str(conf_dir()), version_base="1.3"), no_resolvers():
             config = hydra.compose("config", overrides=tokens, return_hydra_config=True)
         chosen = config.hydra.runtime.choices
         choices = {group: str(chosen[group]) for group in GROUPS if chosen.get(group) is not None}
         with open_dict(config):
             del config["hydra"]
-        _refuse_environment(OmegaConf.to_container(config, resolve=False))
-        resolved: Any = OmegaConf.to_container(config, resolve=True)
+        check_references(OmegaConf.to_container(config, resolve=False))
+        with no_resolvers():
+            resolved: Any = OmegaConf.to_container(config, resolve=True)
     except (HydraException, OmegaConfBaseException, YAMLError) as err:
         raise ConfigError(_one_line(err)) from err
     for key in SHOWN if isinstance(resolved["method"], dict) else ():
@@ -108,16 +109,6 @@ def _check_secrets(resolved: Mapping[str, Any]) -> None:
             raise ConfigError(
                 f"{key} must be an address without user and password, for it is written to the run folder; what was "
                 "given is not shown"
-            )
-
-
-def _refuse_environment(raw: object) -> None:
-    """Keep environment variables out: what is resolved is written to the run folder, and they may be secrets."""
-    for key, text in texts(raw):
-        if _ENVIRONMENT.search(text):
-            raise ConfigError(
-                f"{key} reads an environment variable, which would be written to the run folder; "
-                f"a secret is given by the name of its variable, anything else by its value ({key}=$NAME)"
             )
 
 

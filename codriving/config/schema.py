@@ -2,6 +2,7 @@
 
 import difflib
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -104,6 +105,11 @@ def check_root(resolved: Mapping[str, Any]) -> None:
     for name, key in ROOT.items():
         if not key.allows(resolved[name]):
             raise ConfigError(f"{name} must be {key.rule}, got {resolved[name]!r}")
+    if alien := [name for name in resolved["plugins"] if name.partition(".")[0] in sys.stdlib_module_names]:
+        raise ConfigError(
+            f"plugins must name packages of yours, and {alien[0]} is one of Python's standard library; give it another "
+            "name if it is yours, and leave it out otherwise"
+        )
     for name in NODES:
         node = resolved[name]
         if isinstance(node, Mapping) and "_target_" not in node:

@@ -7,6 +7,7 @@ from typing import Any
 from codriving.config.choices import TRAININGS, choices
 from codriving.config.compose import compose
 from codriving.config.overrides import parse, shown
+from codriving.config.references import check_references
 from codriving.config.schema import unknown
 from codriving.errors import ConfigError
 
@@ -42,7 +43,9 @@ def compose_training(
     if name not in known:
         raise ConfigError(f"there is no training {name!r}; trainings: {', '.join(known)}")
     try:
-        config: dict[str, Any] = OmegaConf.to_container(OmegaConf.load(known[name]), resolve=True)  # type: ignore[assignment]
+        loaded = OmegaConf.load(known[name])
+        check_references(OmegaConf.to_container(loaded, resolve=False), known[name])
+        config: dict[str, Any] = OmegaConf.to_container(loaded, resolve=True)  # type: ignore[assignment]
     except (OmegaConfBaseException, YAMLError) as err:
         raise ConfigError(f"cannot read {known[name]} ({' '.join(str(err).split())})") from err
     small = config.pop("smoke", {})

@@ -11,7 +11,20 @@ from codriving.datatypes.order import (
     Relation,
     Severity,
 )
-from codriving.datatypes.parts import Account, CaseMemory, Chat, Method, Metric, Model, RuleModel, Scenario, Simulator
+from codriving.datatypes.parts import (
+    Account,
+    CaseMemory,
+    Chat,
+    Cooperation,
+    EpisodeLauncher,
+    Method,
+    Metric,
+    Model,
+    OrderExecutor,
+    RuleModel,
+    Scenario,
+    Simulator,
+)
 from codriving.datatypes.record import (
     Collision,
     Ending,
@@ -55,10 +68,11 @@ from codriving.datatypes.world import Action, DrivingModel, Intent, Kind, Scene,
 
 __all__ = [
     "Account", "Action", "ActionAssessment", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat", "Collision",
-    "Conflict", "Decision", "Deliberation", "Description", "DrivingModel", "Effect", "Ending", "EpisodeRecord",
-    "Experience", "Instance", "Intent", "Interaction", "Kind", "Lane", "LaneChange", "LaneId", "LaneShape", "Line",
-    "Memory", "Method", "Metric", "Model", "NamedNumber", "Outcome", "Pair", "Participant", "PassingOrder", "Pet",
-    "Point", "Precedence", "ReasonedDeliberation", "Relation", "Road", "Role", "Route", "RuleModel", "Scenario",
-    "Scene", "SceneDescription", "Score", "Severity", "Simulator", "Sine", "Situation", "Start", "Straight", "Track",
-    "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleState", "Verdict", "WorldState", "beside",
+    "Conflict", "Cooperation", "Decision", "Deliberation", "Description", "DrivingModel", "Effect", "Ending",
+    "EpisodeLauncher", "EpisodeRecord", "Experience", "Instance", "Intent", "Interaction", "Kind", "Lane", "LaneChange",
+    "LaneId", "LaneShape", "Line", "Memory", "Method", "Metric", "Model", "NamedNumber", "OrderExecutor", "Outcome",
+    "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence", "ReasonedDeliberation", "Relation", "Road",
+    "Role", "Route", "RuleModel", "Scenario", "Scene", "SceneDescription", "Score", "Severity", "Simulator", "Sine",
+    "Situation", "Start", "Straight", "Track", "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleState",
+    "Verdict", "WorldState", "beside",
 ]  # fmt: skip

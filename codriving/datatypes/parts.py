@@ -176,6 +176,20 @@ class Method(ABC):
         return {}, []
 
 
+class Cooperation:
+    """How far CAVs cooperate: base of what a choice of ``cda`` may be; it has no hooks."""
+
+    __slots__ = ()
+
+
+class OrderExecutor:
+    """What turns orders into actions: base of what a choice of ``executor`` may be; reasoning adds its hooks."""
+
+
+class EpisodeLauncher:
+    """Where episodes are driven: base of what a choice of ``launcher`` may be; a batch adds its hooks."""
+
+
 class Metric(ABC):
     """Scores one driven episode."""
 

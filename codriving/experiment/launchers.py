@@ -4,10 +4,11 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Generator, Sequence
 
+from codriving.datatypes import EpisodeLauncher
 from codriving.experiment.worker import Job, Report, Unit, Worker
 
 
-class Launcher(ABC):
+class Launcher(EpisodeLauncher, ABC):
     """Drives units somewhere; results are saved by the job, so they do not depend on where."""
 
     def prepare(self, workers: int | str, units: int, preload: Sequence[str]) -> None:

@@ -19,6 +19,7 @@ from codriving.runs import (
     read_manifest,
     read_record,
     read_trajectory,
+    within,
 )
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode
     """Find an episode."""
     run, manifest = find_run(run)
     entry = _cell(run, manifest, cell)
-    episodes = run / EPISODES / entry.folder
+    episodes = within(run, run / EPISODES / entry.folder)
     seeds = sorted(int(path.name) for path in episodes.glob("*") if path.is_dir() and path.name.isdigit())
     if not seeds:
         raise RunFolderError(
@@ -65,7 +66,7 @@ def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode
         raise RunFolderError(f"{entry.folder} in {run} has no episode with seed {seed}; seeds: {_ranges(seeds)}")
     driven = [s for s in seeds if (episodes / str(s) / TRAJECTORY).exists()]
     chosen = [*driven, *seeds][0] if seed is None else seed
-    return StoredEpisode(entry, chosen, episodes / str(chosen))
+    return StoredEpisode(entry, chosen, within(run, episodes / str(chosen)))
 
 
 def read_film(folder: Path, road: Road, scale: float = 1.0) -> "EpisodeFilm":
@@ -81,7 +82,10 @@ def read_film(folder: Path, road: Road, scale: float = 1.0) -> "EpisodeFilm":
 
 def road_of(cell: CellEntry, config_dir: Path | None = None) -> Road:
     """Build the road of a cell: the class is that of the scenario's YAML, only the values are from the manifest."""
-    values = nested({key: value for key, value in cell.settings.items() if key.startswith("scenario.")})
+    try:
+        values = nested({key: value for key, value in cell.settings.items() if key.startswith("scenario.")})
+    except (ValueError, RecursionError) as error:
+        raise RunFolderError(f"the manifest is damaged: settings of {cell.folder}: {error}; drive it again") from error
     if not values:
         raise RunFolderError(f"the manifest does not say what scenario {cell.folder} was; drive it again")
     name = cell.choices.get("scenario", cell.scenario)
@@ -91,14 +95,24 @@ def road_of(cell: CellEntry, config_dir: Path | None = None) -> Road:
             "its YAML with --config-dir"
         )
     config = compose([f"scenario={name}"], config_dir)
-    return build(_filled(config["scenario"], values["scenario"]), Scenario, "scenario", config["plugins"]).road
+    try:
+        node = _filled(config["scenario"], values["scenario"])
+        return build(node, Scenario, "scenario", config["plugins"]).road
+    except RecursionError as error:
+        raise RunFolderError(
+            f"the manifest is damaged: settings of {cell.folder} are too deep; drive it again"
+        ) from error
 
 
 def _filled(node: object, values: object) -> Any:  # noqa: ANN401 - any plain value
-    """A node of a YAML with the values of a manifest; it keeps its classes."""
-    if not isinstance(node, Mapping) or not isinstance(values, Mapping):
-        return values
-    return {**node, **{key: _filled(node.get(key), value) for key, value in values.items() if key != TARGET}}
+    """A node of a YAML with the values of a manifest, of which none is taken for a class."""
+    if isinstance(values, Mapping):
+        own = node if isinstance(node, Mapping) else {}
+        return {**own, **{key: _filled(own.get(key), value) for key, value in values.items() if key != TARGET}}
+    if isinstance(values, list):
+        nodes = node if isinstance(node, list) and len(node) == len(values) else [None] * len(values)
+        return [_filled(*pair) for pair in zip(nodes, values, strict=True)]
+    return values
 
 
 def _cell(run: Path, manifest: Manifest, name: str | None) -> CellEntry:

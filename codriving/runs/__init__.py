@@ -30,7 +30,7 @@ from codriving.runs.json_files import encode
 from codriving.runs.manifest import FORMAT, MANIFEST, Manifest, read_manifest
 from codriving.runs.provenance import commit, machine, versions
 from codriving.runs.redaction import MASK, flat, nested, redact, secrets_of, variables_in
-from codriving.runs.run_folder import RunFolder, locked, new_run_path, unwritable
+from codriving.runs.run_folder import RunFolder, locked, new_run_path, unwritable, within
 from codriving.runs.trajectory_file import TRAJECTORY, read_trajectory
 
 __all__ = [
@@ -39,5 +39,5 @@ __all__ = [
     "encode", "episode_folder", "files_of", "fingerprint", "flat", "locked", "machine", "nested", "new_run_path",
     "read_decisions", "read_manifest", "read_record", "read_timing", "read_trajectory", "redact", "secrets_of",
     "settings_of", "snapshot_of", "timing_of", "unwritable", "variables_in", "versions", "whole_file", "whole_folder",
-    "write_episode", "write_text",
+    "within", "write_episode", "write_text",
 ]  # fmt: skip

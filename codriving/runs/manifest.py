@@ -4,6 +4,7 @@ It names no class and no plug-in, so that reading a folder never chooses code.
 """
 
 import json
+import re
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,9 @@ from codriving.runs.json_files import decode
 from codriving.runs.redaction import nested
 
 MANIFEST = "manifest.json"
+# No separator of any system, no drive, no stream, nothing hidden, and no end that Windows drops.
+_FOLDER = re.compile(r'[^./\\:*?"<>|][^/\\:*?"<>|]{0,254}(?<![. ])')
+
 FORMAT = 3  # Layout of the run folder; raised when an older reader could no longer read a newer folder
 
 
@@ -52,14 +56,17 @@ def read_manifest(folder: Path) -> Manifest | None:
                 f"{folder} was written by a later version (layout {layout}, not {FORMAT}); update first"
             )
         manifest = decode(Manifest, json.dumps(_of_release_0_1(plain) if layout in (1, 2) else plain))
-        for name in (*manifest.rows, *(cell.folder for cell in manifest.cells)):
-            if name in ("", ".", "..") or set(name) & set("/\\:\0"):
-                raise ValueError(f"{name!r} is no name of a folder")
+        folders = [cell.folder for cell in manifest.cells]
+        for name in folders:
+            if not name.isprintable() or not _FOLDER.fullmatch(name):
+                raise ValueError(f"{name!a} is no name of a folder")
+        if len(folders) != len({name.casefold() for name in folders}) or not set(manifest.rows) <= set(folders):
+            raise ValueError("its rows are not its cells")
     except FileNotFoundError:
         return None
     except OSError as error:
         raise RunFolderError(f"cannot read {path}: {error.strerror}; check its permissions") from error
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise RunFolderError(
             f"{path} is damaged ({error}), so that it does not tell what config the run is of; start a new one with "
             "another run=<name>: the episodes in the old folder stay readable"

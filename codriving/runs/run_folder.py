@@ -67,6 +67,8 @@ class RunFolder:
         manifest = asked if there is None else continued(self.path, there, asked)
         if there is not None and there.behaviour != BEHAVIOUR and not self._complete(manifest):
             raise other_behaviour(self.path, there)
+        for place in (*self.path.iterdir(), *self.path.glob(f"{EPISODES}/*")):
+            within(self.path, place)
         self.clean()
         if manifest == there:
             return manifest
@@ -121,6 +123,7 @@ class RunFolder:
         folder = self.episode(cell.folder, seed)
         if not folder.exists():
             return None
+        within(self.path, folder)
         record = read_record(folder)
         expected = (cell.scenario, cell.method, cell.variant, cell.reasoner, seed)
         found = (record.scenario, record.method, record.variant, record.reasoner, record.seed)
@@ -142,6 +145,20 @@ class RunFolder:
 
     def __exit__(self, *_: object) -> None:
         self._lock.close()
+
+
+def within(run: Path, path: Path) -> Path:
+    """Give back a path of a run folder, unless a symbolic link in it leads elsewhere.
+
+    Raises:
+        RunFolderError: If what is written there would end up outside the run folder.
+    """
+    if not path.resolve().is_relative_to(run.resolve()):
+        raise RunFolderError(
+            f"{path} is a symbolic link out of the run folder {run}, in which nothing is read or written through one; "
+            "put a copy in its place"
+        )
+    return path
 
 
 def unwritable(path: Path, error: OSError) -> RunFolderError:

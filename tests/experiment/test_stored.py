@@ -1,14 +1,16 @@
 """Stored episodes are found by what people call them; what is not there is answered with what is."""
 
+import contextlib
+import json
 import shutil
 from pathlib import Path
 
 import pytest
 
 from codriving.environment.scenarios.intersection import Intersection
-from codriving.errors import RunFolderError
+from codriving.errors import ConfigError, RunFolderError
 from codriving.experiment.run import run_experiment
-from codriving.experiment.stored import find_episode, find_run, read_film, road_of
+from codriving.experiment.stored import _filled, find_episode, find_run, read_film, road_of
 from codriving.runs.episode_folder import DECISIONS, RECORD
 from codriving.runs.manifest import MANIFEST
 from codriving.runs.trajectory_file import TRAJECTORY
@@ -121,3 +123,73 @@ def test_a_manifest_without_settings_says_what_is_missing(single: Path) -> None:
     manifest.write_text(manifest.read_text().replace('"scenario.', '"scene.'))
     with pytest.raises(RunFolderError, match="does not say what scenario"):
         road_of(find_episode(single, None, 0).cell)
+
+
+def _settings(single: Path, **values: object) -> Path:
+    """The run with other settings in its manifest, as a stranger may have written them."""
+    path = single / MANIFEST
+    plain = json.loads(path.read_text())
+    plain["cells"][0]["settings"] |= {key: json.dumps(value) for key, value in values.items()}
+    path.write_text(json.dumps(plain))
+    return single
+
+
+CODE = {"_target_": "subprocess.Popen", "args": ["touch", "made"]}
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"scenario._target_": "subprocess.Popen", "scenario.args": ["touch", "made"]},
+        {"plugins": ["subprocess"], "scenario._target_": "subprocess.Popen"},
+        {"scenario.road._target_": "subprocess.Popen", "scenario.road.args": ["touch", "made"]},
+        {"scenario.start": CODE},
+        {"scenario.start": [CODE, CODE]},
+        {"scenario.leg_length._target_": "codriving.memory.store.MemoryStore", "scenario.leg_length.path": "made"},
+        {"scenario.leg_length": "${oc.env:HOME}"},
+        {"scenario" + ".deep" * 3000: 1},
+    ],
+)
+def test_a_folder_of_a_stranger_chooses_no_code(
+    single: Path, values: dict[str, object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    episode = find_episode(_settings(single, **values), None, 0)
+    with contextlib.suppress(ConfigError, RunFolderError):
+        assert road_of(episode.cell).name == Intersection.name
+    assert not (tmp_path / "made").exists()
+
+
+def test_classes_of_a_yaml_stay_where_a_manifest_has_values_for_them() -> None:
+    node = {"_target_": "a.A", "part": {"_target_": "a.B", "x": 1}, "parts": [{"_target_": "a.C", "y": 1}], "z": 1}
+    values = {"_target_": "evil.A", "part": {"_target_": "evil.B", "x": 2}, "parts": [{"y": 2}], "z": {"_target_": "e"}}
+    assert _filled(node, values) == {
+        "_target_": "a.A",
+        "part": {"_target_": "a.B", "x": 2},
+        "parts": [{"_target_": "a.C", "y": 2}],
+        "z": {},
+    }
+
+
+def test_nothing_is_read_or_written_through_a_link_out_of_the_folder(single: Path, tmp_path: Path) -> None:
+    episode = find_episode(single, None, 0).folder
+    episode.rename(tmp_path / "elsewhere")
+    episode.symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(RunFolderError, match=r"episodes/.*/0 is a symbolic link out of the run folder .*; put a copy"):
+        find_episode(single, None, 0)
+    tokens = [f"output={tmp_path}", "run=one", "episodes=3", "launcher=serial", "scenario.time_limit=1"]
+    with pytest.raises(RunFolderError, match="is a symbolic link out of the run folder"):
+        run_experiment([*tokens, "render=true"])
+    assert not (tmp_path / "elsewhere" / "replay.mp4").exists()
+
+
+@pytest.mark.parametrize("name", ["figures", "memory", "configs"])
+def test_no_folder_of_a_run_leads_out_of_it(single: Path, name: str, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    if (single / name).exists():
+        shutil.rmtree(single / name)
+    (single / name).symlink_to(tmp_path / "elsewhere")
+    tokens = [f"output={tmp_path}", "run=one", "episodes=4", "launcher=serial", "scenario.time_limit=1"]
+    with pytest.raises(RunFolderError, match=f"{name} is a symbolic link out of the run folder"):
+        run_experiment(tokens)
+    assert list((tmp_path / "elsewhere").iterdir()) == []

@@ -149,6 +149,15 @@ def test_template_can_be_replaced_alone(name: str, tmp_path: Path) -> None:
         ("{{ lanes[0].leeding }}", "leeding"),
         ("{{ speed|furlongs }}", "furlongs"),
         ("{{ 1 / 0 }}", "division"),
+        ("{{ lipsum.__globals__['os'].environ }}", "unsafe"),
+        ("{{ ego.__class__.__mro__[1].__subclasses__() }}", "unsafe"),
+        ("{{ cycler.__init__.__globals__.os.popen('id').read() }}", "unsafe"),
+        ("{{ '{0.__class__}'.format(ego) }}", "unsafe"),
+        ("{% for a in [1] %}{{ loop.__init__.__globals__ }}{% endfor %}", "unsafe"),
+        ("{% if actions.clear() %}{% endif %}", "unsafe"),
+        ("{% include '/etc/passwd' %}", "loader"),
+        ("{{ " + "(" * 3000 + "1" + ")" * 3000 + " }}", "recursion"),
+        ("{% for i in range(10 ** 9) %}{% endfor %}", "Range too big"),
     ],
 )
 def test_broken_template_is_refused(text: str, said: str, tmp_path: Path) -> None:

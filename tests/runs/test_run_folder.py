@@ -11,6 +11,7 @@ from codriving.datatypes.record import EpisodeRecord
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import PARTIAL
 from codriving.runs.episode_folder import read_timing, timing_of, write_episode
+from codriving.runs.json_files import encode
 from codriving.runs.manifest import read_manifest
 from codriving.runs.run_folder import RunFolder, new_run_path
 
@@ -123,3 +124,49 @@ def test_the_manifest_tells_nothing_of_the_environment(tmp_path: Path, monkeypat
     with RunFolder(tmp_path, manifest(), CONFIGS):
         pass
     assert not any(b"canary-5f1e" in content for content in files(tmp_path).values())
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "\x1b[2J",
+        "evil.",
+        "evil ",
+        "a" * 300,
+        "\u202egnp.exe",
+        "",
+        ".",
+        "..",
+        "../../evil",
+        "/tmp/evil",
+        "a/b",
+        "..\\..\\evil",
+        "C:evil",
+        "a\0b",
+        ".lock",
+        ".partial-x",
+        "a\nb",
+    ],
+)
+def test_a_name_in_a_manifest_is_that_of_a_folder_and_nothing_else(tmp_path: Path, name: str) -> None:
+    (tmp_path / "manifest.json").write_text(encode(manifest(dataclasses.replace(cell(), folder=name))))
+    with pytest.raises(RunFolderError, match=r"manifest\.json is damaged \(.* is no name of a folder\)") as caught:
+        read_manifest(tmp_path)
+    assert str(caught.value).isprintable()
+
+
+def test_names_that_runs_have_made_are_read(tmp_path: Path) -> None:
+    for name in ("intersection-codriving-full-scenario.cavs=8", "merge-fcfs", "a-llm.model=openai_gpt-4o+x", "übung-a"):
+        (tmp_path / "manifest.json").write_text(encode(manifest(dataclasses.replace(cell(), folder=name))))
+        found = read_manifest(tmp_path)
+        assert found is not None
+        assert found.rows == (name,)
+
+
+def test_rows_of_a_manifest_are_among_its_cells(tmp_path: Path) -> None:
+    (tmp_path / "manifest.json").write_text(encode(dataclasses.replace(manifest(), rows=("another",))))
+    with pytest.raises(RunFolderError, match="rows are not its cells"):
+        read_manifest(tmp_path)
+    (tmp_path / "manifest.json").write_text("[" * 100_000)
+    with pytest.raises(RunFolderError, match=r"manifest\.json is damaged"):
+        read_manifest(tmp_path)

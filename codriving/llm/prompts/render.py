@@ -37,9 +37,13 @@ class Prompts:
     """
 
     def __init__(self, folder: str | None = None) -> None:
-        from jinja2 import Environment, StrictUndefined
+        from jinja2 import StrictUndefined
+        from jinja2.sandbox import ImmutableSandboxedEnvironment
 
-        environment = Environment(undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, autoescape=False)
+        # Templates are passed on from one person to the next: they may write text, and reach nothing else.
+        environment = ImmutableSandboxedEnvironment(
+            undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, autoescape=False
+        )
         environment.filters.update(_FILTERS)
         self._templates: dict[str, Template] = {}
         for name, path in _paths(folder).items():
@@ -64,12 +68,11 @@ class Prompts:
         )
 
     def _render(self, name: str, values: Mapping[str, Any], problem: str, cure: str) -> str:
-        from jinja2 import TemplateError
-
         try:
             return self._templates[name].render(values)
-        except (TemplateError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
-            raise ConfigError(f"{problem}: {error}{cure}") from error
+        except Exception as error:
+            # Whatever a template of the user's raises is the template's fault.
+            raise ConfigError(f"{problem}: {error or type(error).__name__}{cure}") from error
 
 
 @lru_cache(maxsize=8)
@@ -109,7 +112,7 @@ def _compiled(environment: "Environment", path: Path, values: Mapping[str, Any])
     try:
         source = path.read_text(encoding="utf-8")
         unknown = sorted(find_undeclared_variables(environment.parse(source)) - values.keys())
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, UnicodeDecodeError, RecursionError) as error:
         raise ConfigError(f"{path}: the template cannot be read: {error}") from error
     except TemplateSyntaxError as error:
         raise ConfigError(f"{path}, line {error.lineno}: {error.message}") from error

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from codriving.datatypes import Action
+from codriving.datatypes import Action, OrderExecutor
 from codriving.errors import require_range
 from codriving.reasoning.execution.joint_planner import Joint, JointPlans
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
@@ -28,7 +28,7 @@ class Drive:
     counts: Mapping[str, int] = field(default_factory=dict)
 
 
-class Executor(ABC):
+class Executor(OrderExecutor, ABC):
     """Turns passing orders into actions, step after step of one episode."""
 
     name: str = ""
@@ -36,7 +36,7 @@ class Executor(ABC):
     margin: float  # The same for motions, and for the gap test of lane changes [s]
     library: tuple[Plan, ...] = ()  # Plans that it uses besides those that all methods predict
 
-    def reset(self) -> None:  # noqa: B027
+    def reset(self) -> None:
         """Begin an episode; nothing is remembered from the one before."""
 
     @abstractmethod

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Literal
 
-from codriving.datatypes import DrivingModel, Intent, TrackedVehicle, VehicleState, WorldState
+from codriving.datatypes import Cooperation, DrivingModel, Intent, TrackedVehicle, VehicleState, WorldState
 from codriving.errors import ConfigError
 from codriving.geometry import TRUE
 
@@ -90,7 +90,7 @@ OwnOrder = Literal["own_view", "same_rule", "independent"]
 
 
 @dataclass(frozen=True, slots=True)
-class CdaLevel:
+class CdaLevel(Cooperation):
     """Toggles of the reasoning module.
 
     Raises:
