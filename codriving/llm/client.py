@@ -65,7 +65,7 @@ _GREETING = (Message("system", "You check that a connection works."), Message("u
 _FINISH_REASONS = {FaultKind.TOO_LONG: TOO_LONG, FaultKind.FILTERED: "content_filter", FaultKind.UNREADABLE: UNREADABLE}
 
 # Failures that no later episode would escape, if nothing has worked yet.
-_FOR_GOOD = (FaultKind.KEY, FaultKind.QUOTA, FaultKind.MODEL, FaultKind.UNREACHABLE)
+_FOR_GOOD = (FaultKind.KEY, FaultKind.MODEL, FaultKind.UNREACHABLE, FaultKind.REDIRECT)
 
 
 class ModelChat(Chat):
@@ -135,7 +135,7 @@ class ModelChat(Chat):
             return await self._fetch(request), False
         except CallError as fault:
             failed = fault
-        if failed.kind in _FOR_GOOD and not self._worked:
+        if failed.kind is FaultKind.QUOTA or (failed.kind in _FOR_GOOD and not self._worked):
             raise unusable(failed, self.settings)
         raise unavailable(failed, self.settings)
 

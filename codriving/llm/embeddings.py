@@ -7,12 +7,17 @@ from typing import Any
 
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError
 from codriving.llm.attempts import Retries, Sleep
+from codriving.llm.connections import LARGEST, at_most
 from codriving.llm.faults import CallError, FaultKind, fault_of
 from codriving.llm.loop import loop
 from codriving.llm.send import NO_KEY, load_litellm, provider_of
 from codriving.llm.settings import check_address, read_key
 
 ATTEMPTS = 5  # How often a request is sent at most
+
+_LARGEST_VECTOR = 200_000  # Of 8,192 numbers, generously written [bytes]
+
+_LARGEST = 64_000_000  # Of all that are asked for at once [bytes]
 
 
 class EmbeddingModel:
@@ -72,17 +77,18 @@ class EmbeddingModel:
     async def _send(self, texts: list[str], key: str | None) -> Any:  # noqa: ANN401
         litellm = await load_litellm()
         try:
-            return await litellm.aembedding(
-                model=self.model,
-                custom_llm_provider=provider_of(self.model, self.api_base),
-                input=texts,
-                api_base=self.api_base,
-                api_key=key or NO_KEY,
-                timeout=self.deadline,
-                max_retries=0,
-                num_retries=0,
-                encoding_format="float",
-            )
+            with at_most(min(LARGEST + _LARGEST_VECTOR * len(texts), _LARGEST)):
+                return await litellm.aembedding(
+                    model=self.model,
+                    custom_llm_provider=provider_of(self.model, self.api_base),
+                    input=texts,
+                    api_base=self.api_base,
+                    api_key=key or NO_KEY,
+                    timeout=self.deadline,
+                    max_retries=0,
+                    num_retries=0,
+                    encoding_format="float",
+                )
         except Exception as error:
             fault = fault_of(error, key)
         # Outside the handler: the library's exception, which may quote the key, is not dragged along as context.

@@ -1,11 +1,14 @@
 """What a call failed with, told from what went over the wire, and the one line that says what to set."""
 
+import json
+import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from enum import Enum
+from typing import Any
 from urllib.parse import quote
 
 import httpx
@@ -37,15 +40,6 @@ def redacted(text: str, key: str | None) -> str:
     return _SECRET.sub(HIDDEN, _HEADER.sub(rf"\1\2{HIDDEN}", text))
 
 
-_TOO_LONG = re.compile(
-    r"(?i)context[ _-]?(length|window|size)|maximum context|too many tokens|prompt is too long|"
-    r"\b(input|prompt|messages)\b.{0,40}(too long|too large|exceeds?\b.{0,40}\btokens?|longer than)"
-)
-_FORM = re.compile(
-    r"(?i)response_?format|response_?schema|json_schema|json_object|json mode|schema|grammar|guided|structured output"
-)
-_FILTERED = re.compile(r"(?i)content[ _-]?(policy|filter)|safety system|content management policy")
-_NO_MONEY = re.compile(r"(?i)insufficient_quota|exceeded your current quota|billing")
 _UNREADABLE = re.compile(r"(?i)empty or invalid response|returned 'choices'|unable to (get|parse) json")
 _NO_PROVIDER = re.compile(r"(?i)LLM Provider NOT provided")
 _PREFIX = re.compile(r"^(?:(?:litellm\.)?\w*(?:Error|Exception|Timeout)(?: -|:)\s*)+")
@@ -67,6 +61,8 @@ class FaultKind(Enum):
     TOO_LONG = "finds the question too long"
     FILTERED = "refuses the question"
     UNREADABLE = "sent something that is no chat completion"
+    OVERSIZE = "sent more than an answer can be"
+    REDIRECT = "redirects"
     REFUSED = "refuses the request"
 
     @property
@@ -99,21 +95,23 @@ def fault_of(error: BaseException, key: str | None) -> CallError:
     chain = list(_chain(error))
     detail = _words(str(error), key)
     for link in chain:
+        if isinstance(link, CallError):
+            return CallError(link.kind, _words(link.detail, key), link.retry_after)
         if isinstance(link, httpx.HTTPStatusError):
-            kind = _by_status(link.response.status_code, str(error))
-            return CallError(kind, f"{link.response.status_code}: {detail}", _retry_after(link.response.headers))
+            status, headers = link.response.status_code, link.response.headers
+            return CallError(_kind(status, str(error)), f"{status}: {detail}", _wait(headers, [], str(error)))
         if isinstance(link, httpx.ConnectError | httpx.ConnectTimeout | httpx.UnsupportedProtocol | httpx.InvalidURL):
             return CallError(FaultKind.UNREACHABLE, _words(str(link), key))
         if isinstance(link, httpx.TimeoutException | TimeoutError):
             return CallError(FaultKind.TIMEOUT)
         if isinstance(link, httpx.TransportError):
             return CallError(FaultKind.DROPPED, _words(str(link), key))
-    if any(isinstance(link, ValueError) for link in chain) or _UNREADABLE.search(str(error)):
+    if any(isinstance(link, ValueError | RecursionError) for link in chain) or _UNREADABLE.search(str(error)):
         return CallError(FaultKind.UNREADABLE, detail)
     if _NO_PROVIDER.search(str(error)):
         return CallError(FaultKind.MODEL, "LiteLLM knows no provider of that name")
     status = getattr(error, "status_code", None)
-    return CallError(_by_status(status if isinstance(status, int) else 400, str(error)), detail)
+    return CallError(_kind(status if isinstance(status, int) else 400, str(error)), detail)
 
 
 def _chain(error: BaseException | None) -> Iterator[BaseException]:
@@ -124,37 +122,139 @@ def _chain(error: BaseException | None) -> Iterator[BaseException]:
         error = error.__cause__ or error.__context__
 
 
-_KINDS = {FaultKind.KEY: (401, 403), FaultKind.QUOTA: (402,), FaultKind.MODEL: (404,), FaultKind.TIMEOUT: (408,)}
-_BY_STATUS = {status: kind for kind, numbers in _KINDS.items() for status in numbers} | {413: FaultKind.TOO_LONG}
-
-
-def _by_status(status: int, text: str) -> FaultKind:
-    if status in _BY_STATUS:
-        return _BY_STATUS[status]
-    if status == 429:
-        return FaultKind.QUOTA if _NO_MONEY.search(text) else FaultKind.RATE
-    if status < 400:
-        return FaultKind.UNREADABLE
-    if status in (400, 422) and _TOO_LONG.search(text):
-        return FaultKind.TOO_LONG
-    if status in (400, 422, 501) and _FORM.search(text):
-        return FaultKind.FORM
-    if status >= 500 or status in (409, 425):
-        return FaultKind.SERVER
-    return FaultKind.FILTERED if _FILTERED.search(text) else FaultKind.REFUSED
-
-
 def _words(text: str, key: str | None) -> str:
     """Shorten a text for a message; keys go first, so that none is cut in half and overlooked."""
     return one_line(_PREFIX.sub("", redacted(text, key)), _LONGEST)
 
 
-def _retry_after(headers: httpx.Headers) -> float | None:
+_KINDS = {
+    FaultKind.KEY: (401, 403),
+    FaultKind.QUOTA: (402,),
+    FaultKind.MODEL: (404,),
+    FaultKind.TIMEOUT: (408, 504, 524),
+    FaultKind.TOO_LONG: (413,),
+}
+_BY_STATUS = {status: kind for kind, numbers in _KINDS.items() for status in numbers}
+
+_CODES = {
+    FaultKind.QUOTA: "insufficient_quota|insufficient_(credits?|balance|funds)|billing_(hard_limit_reached|not_active)",
+    FaultKind.TOO_LONG: "context_length_exceeded|string_above_max_length|exceed_context_size_error",
+    FaultKind.FILTERED: "content_filter|content_policy_violation|responsible_ai_policy_violation",
+    FaultKind.MODEL: "model_not_found|unknown_model|not_found_error",
+}
+
+# Looked at last, where neither status nor code nor a named wait decides.
+_TOO_LONG = re.compile(
+    r"(?i)context[ _-]?(length|window|size)|maximum context|too many tokens|prompt is too long|"
+    r"\b(input|prompt|messages)\b.{0,40}(too long|too large|exceeds?\b.{0,40}\btokens?|longer than)"
+)
+_FORM = re.compile(
+    r"(?i)response_?format|response_?schema|json_schema|json_object|json mode|schema|grammar|guided|structured output"
+)
+_FILTERED = re.compile(r"(?i)content[ _-]?(policy|filter)|safety system|content management policy")
+_NO_MONEY = re.compile(r"(?i)insufficient_quota|exceeded your current quota|billing|credit balance")
+
+
+def fault_of_response(status: int, headers: Mapping[str, str], text: str) -> CallError:
+    """Tell what a response of status 400 or more means."""
+    told = list(_told(_json(text)))
+    codes = {value for name, value in told if name in ("code", "type", "status", "reason")}
+    wait = _wait(headers, told, text)
+    message = next((value for name, value in told if name in ("message", "detail", "msg", "error")), "") or text
+    return CallError(_kind(status, text, codes, wait), f"{status}: {message}", wait)
+
+
+def _kind(status: int, text: str, codes: set[str] = frozenset(), wait: float | None = None) -> FaultKind:  # type: ignore[assignment]
+    """Tell one refusal from another."""
+    if status < 400:
+        return FaultKind.UNREADABLE
+    by_code = [kind for kind, names in _CODES.items() if any(re.fullmatch(names, code.lower()) for code in codes)]
+    if status < 500 and by_code and not (status in (401, 413) or (status == 429 and by_code[0] is not FaultKind.QUOTA)):
+        return by_code[0]
+    if status in _BY_STATUS:
+        return _BY_STATUS[status]
+    if status == 429:
+        said = wait is None and "rate_limit_exceeded" not in codes and _NO_MONEY.search(text)
+        return FaultKind.QUOTA if said else FaultKind.RATE
+    if status in (400, 422) and _TOO_LONG.search(text):
+        return FaultKind.TOO_LONG
+    if status in (400, 422, 501) and _FORM.search(text):
+        return FaultKind.FORM
+    if status in (409, 425) or (status >= 500 and status != 501):
+        return FaultKind.SERVER
+    return FaultKind.FILTERED if _FILTERED.search(text) else FaultKind.REFUSED
+
+
+def refusal_within(body: bytes) -> CallError | None:
+    """Tell a refusal that a gateway sends with status 200."""
+    if b'"error"' not in body[:4000]:
+        return None
+    told = _json(body.decode("utf-8", "replace"))
+    error = told.get("error") if isinstance(told, dict) else None
+    if not error or "choices" in told:
+        return None
+    code = error.get("code") if isinstance(error, dict) else None
+    with suppress(TypeError, ValueError):
+        if 400 <= int(code or 0) < 600:
+            return fault_of_response(int(code or 0), {}, json.dumps(told))
+    return fault_of_response(400, {}, json.dumps(told))
+
+
+def _json(text: str) -> Any:  # noqa: ANN401 - any JSON
+    with suppress(ValueError, RecursionError):
+        return json.loads(text)
+    return None
+
+
+def _told(node: Any, depth: int = 0) -> Iterator[tuple[str, str]]:  # noqa: ANN401 - any JSON
+    """Names and values of what an error body says, the outermost first."""
+    if isinstance(node, list):
+        node = {str(k): item for k, item in enumerate(node[:20])}
+    if not isinstance(node, Mapping) or depth > 5:
+        return
+    for name, value in node.items():
+        if isinstance(value, str | int | float) and not isinstance(value, bool):
+            yield str(name).lower(), str(value)
+    for value in node.values():
+        yield from _told(value, depth + 1)
+
+
+_UNITS = {"ms|msecs?|milliseconds?": 0.001, "s|secs?|seconds?": 1.0, "m|mins?|minutes?": 60.0, "h|hours?": 3600.0}
+_LENGTH = rf"(?i:(\d+(?:\.\d+)?)\s*({'|'.join(_UNITS)})(?![a-z]))"
+_NAMED = re.compile(
+    rf"(?i)\b(?:try again|retry|retrying|wait|reset|resets|available)\b[^.\d]{{0,40}}?((?:{_LENGTH}\s*)+)"
+)
+_FIELDS = {"retrydelay": 1.0, "retry_delay": 1.0, "retry_after": 1.0, "retry_after_seconds": 1.0, "retry-after": 1.0}
+_FIELDS |= {"retryafter": 1.0, "retry_after_ms": 0.001, "retryafterms": 0.001}
+
+
+def _wait(headers: Mapping[str, str], told: list[tuple[str, str]], text: str) -> float | None:
+    """How long the server asks to wait [s]: in a header (RFC 9110, 10.2.3, or in milliseconds), a field or words."""
+    found = _seconds(headers.get("retry-after-ms", ""), 0.001)
+    found = _retry_after(headers) if found is None else found
+    for name, value in told:
+        if found is None and name in _FIELDS:
+            found = _seconds(value, _FIELDS[name])
+    if found is None and (named := _NAMED.search(text[:20_000])):
+        found = _seconds(named[1], 1.0)
+    return found
+
+
+def _seconds(text: str, unit: float) -> float | None:
+    """Read a number of a unit, or lengths with units of their own such as ``6m0s``."""
+    with suppress(ValueError):
+        return None if math.isnan(number := float(text)) else max(0.0, number * unit)
+    lengths = re.findall(_LENGTH, text)
+    sizes = [size for _, name in lengths for names, size in _UNITS.items() if re.fullmatch(names, name.lower())]
+    return sum(float(number) * size for (number, _), size in zip(lengths, sizes, strict=True)) if lengths else None
+
+
+def _retry_after(headers: Mapping[str, str]) -> float | None:
     """Read how long to wait, given in seconds or as a date (RFC 9110, 10.2.3)."""
     given = headers.get("retry-after", "").strip()
-    with suppress(ValueError):
-        return max(0.0, float(given))
-    with suppress(ValueError):
+    if (seconds := _seconds(given, 1.0)) is not None:
+        return seconds
+    with suppress(ValueError, TypeError, OverflowError):
         when = parsedate_to_datetime(given)
         return max(0.0, (when.replace(tzinfo=when.tzinfo or UTC) - datetime.now(UTC)).total_seconds())
     return None
@@ -174,6 +274,8 @@ def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
         FaultKind.MODEL: "set llm.model to one that it has, or check llm.api_base",
         FaultKind.UNREACHABLE: "start the server, or set llm.api_base to its address",
         FaultKind.QUOTA: f"buy some, or set {key} to another key",
+        FaultKind.REDIRECT: "set llm.api_base to that address if it may have the prompts and the key",
+        FaultKind.OVERSIZE: "check llm.api_base and llm.max_tokens",
         FaultKind.UNREADABLE: "set llm.api_base to the address of its API, which often ends in /v1",
         FaultKind.TIMEOUT: "raise llm.deadline, or check llm.api_base",
         FaultKind.RATE: "try later, or raise llm.attempts",

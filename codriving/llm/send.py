@@ -3,14 +3,12 @@
 import asyncio
 import logging
 import os
-from collections.abc import AsyncIterator, Callable
 from dataclasses import asdict
+from importlib import import_module
 from types import ModuleType
 from typing import Any, cast
-from urllib.request import getproxies
 
-import httpx
-
+from codriving.llm.connections import client
 from codriving.llm.faults import fault_of, without_key
 from codriving.llm.loop import loop
 from codriving.llm.parsing import clean
@@ -68,6 +66,7 @@ async def load_litellm() -> ModuleType:
 async def _import() -> ModuleType:
     """Import LiteLLM, make it keep quiet, and give it one way of sending for all providers."""
     os.environ.setdefault("LITELLM_LOCAL_MODEL_COST_MAP", "True")
+    os.environ.setdefault("LITELLM_MODE", "PRODUCTION")  # Otherwise it reads a .env from some folder above
     import litellm
     import openai
 
@@ -81,6 +80,10 @@ async def _import() -> ModuleType:
     litellm.disable_aiohttp_transport = True
     session = client()
     litellm.aclient_session = session
+    # Providers that have no library of their own are reached through clients that LiteLLM makes for itself.
+    handlers = import_module("litellm.llms.custom_httpx.http_handler")
+    handlers.AsyncHTTPHandler.create_client = _client_of_litellm
+    litellm.module_level_aclient.client = session
     loop().at_close(session.aclose)
     # Nothing is sent: LiteLLM makes the reply up. It does so only if that is not empty.
     await litellm.acompletion(
@@ -92,6 +95,10 @@ async def _import() -> ModuleType:
     )
     openai.AsyncOpenAI(api_key=NO_KEY, http_client=session).chat.completions  # noqa: B018 - imports it
     return litellm
+
+
+def _client_of_litellm(handler: object, timeout: Any, event_hooks: Any, *_: object, **__: object) -> Any:  # noqa: ANN401
+    return client(timeout=timeout, event_hooks=event_hooks)
 
 
 def provider_of(model: str, api_base: str | None) -> str | None:
@@ -129,64 +136,3 @@ def _text(content: object) -> str:
     if isinstance(content, list):
         return "".join(str(part.get("text") or "") for part in content if isinstance(part, dict))
     return content if isinstance(content, str) else ""
-
-
-def client() -> httpx.AsyncClient:
-    """Return a client for any number of requests at once; it has to be closed."""
-    if getproxies():
-        # Which proxy leads where is worked out by the client itself, and only for transports of its own.
-        limits = httpx.Limits(max_connections=None, max_keepalive_connections=100)
-        return httpx.AsyncClient(limits=limits, follow_redirects=True)
-    certificates = httpx.create_ssl_context()
-    transport = Connections(lambda: httpx.AsyncHTTPTransport(verify=certificates))
-    return httpx.AsyncClient(transport=transport, follow_redirects=True)
-
-
-class Connections(httpx.AsyncBaseTransport):
-    """A transport for each request under way; one that is free again is used first by the next request.
-
-    A single transport asks the operating system about every idle connection whenever a request begins and ends. With
-    20 episodes side by side that takes longer than all the rest.
-    """
-
-    def __init__(self, make: Callable[[], httpx.AsyncBaseTransport]) -> None:
-        self._make = make
-        self._every: list[httpx.AsyncBaseTransport] = []
-        self._free: list[httpx.AsyncBaseTransport] = []
-
-    async def handle_async_request(self, request: httpx.Request) -> httpx.Response:
-        """Send a request; its transport is free again when the response is closed."""
-        if not self._free:
-            self._every.append(self._make())
-        transport = self._free.pop() if self._free else self._every[-1]
-        try:
-            response = await transport.handle_async_request(request)
-        except BaseException:
-            self._free.append(transport)
-            raise
-        assert isinstance(response.stream, httpx.AsyncByteStream)
-        response.stream = _Closing(response.stream, lambda: self._free.append(transport))
-        return response
-
-    async def aclose(self) -> None:
-        """Close all connections."""
-        for transport in self._every:
-            await transport.aclose()
-
-
-class _Closing(httpx.AsyncByteStream):
-    """A stream that says, once, that it is closed."""
-
-    def __init__(self, stream: httpx.AsyncByteStream, closed: Callable[[], None]) -> None:
-        self._stream, self._closed = stream, closed
-
-    async def __aiter__(self) -> AsyncIterator[bytes]:
-        async for part in self._stream:
-            yield part
-
-    async def aclose(self) -> None:
-        closed, self._closed = self._closed, lambda: None
-        try:
-            await self._stream.aclose()
-        finally:
-            closed()

@@ -45,6 +45,8 @@ class Fault:
         read: Changes the answer before it takes its form.
         write: Changes the text of the answer.
         wrap: Changes the body of the response.
+        pack: Changes the bytes of the body.
+        endless: What is sent over and over after the body, in chunks, until the client goes; empty sends nothing.
     """
 
     latency: float = 0.0
@@ -60,6 +62,8 @@ class Fault:
     read: Callable[[Reading], Reading] = same
     write: Callable[[str], str | None] = as_it_is
     wrap: Callable[[dict[str, Any]], dict[str, Any]] = untouched
+    pack: Callable[[bytes], bytes] = bytes
+    endless: bytes = b""
 
 
 def too_many(retry_after: str = "0") -> Fault:
@@ -71,6 +75,16 @@ def too_many(retry_after: str = "0") -> Fault:
     return Fault(
         status=429, headers={"Retry-After": retry_after}, error="Rate limit reached", code="rate_limit_exceeded"
     )
+
+
+def moved(status: int, to: str) -> Fault:
+    """A redirect.
+
+    Args:
+        status: 301, 302, 303, 307 or 308.
+        to: Where to.
+    """
+    return Fault(status=status, headers={"Location": to}, page="moved")
 
 
 def too_long(limit: int, length: int) -> Fault:

@@ -75,7 +75,8 @@ class Loopback:
         port: Port to serve at; 0 takes a free one.
 
     Attributes:
-        embedding_plan: Status of the next answers to requests for vectors; 200 once it is used up.
+        embedding_plan: Status of the next answers to requests for vectors, or what goes wrong; 200 once it is used up.
+        elsewhere: What goes wrong with the next requests for anything else.
         embedded: The texts of each such request that was answered.
         requests: The requests for an answer, in order of arrival; others are in ``others``.
         in_flight: How many are being answered now.
@@ -99,7 +100,8 @@ class Loopback:
         self.requests: list[Request] = []
         self.others: list[Request] = []
         self.in_flight = self.high_water = self.connections = 0
-        self.embedding_plan: list[int] = []
+        self.embedding_plan: list[int | Fault] = []
+        self.elsewhere: list[Fault] = []
         self.embedded: list[list[str]] = []
         self._begun = 0
         self._ready, self._ended = threading.Event(), asyncio.Event()
@@ -179,7 +181,8 @@ class Loopback:
             if not path.endswith("/chat/completions"):
                 request = Request(len(self.others), method, path, headers, text, _body(text))
                 self.others.append(request)
-                await _send(writer, *self._elsewhere(request))
+                fault = self._embedding_fault(request)
+                await _send(writer, *self._elsewhere(request, fault.status), fault)
                 continue
             request = Request(len(self.requests), method, path, headers, text, _body(text))
             self.requests.append(request)
@@ -246,12 +249,20 @@ class Loopback:
         }
         return fault.status, "application/json", json.dumps(fault.wrap(completion))
 
-    def _elsewhere(self, request: Request) -> tuple[int, str, str]:
+    def _embedding_fault(self, request: Request) -> Fault:
+        if not request.path.endswith("/embeddings"):
+            return self.elsewhere.pop(0) if self.elsewhere else FAULTS["ok"]
+        sent = request.headers.get("authorization", "")
+        refused = self.key is not None and sent != f"Bearer {self.key}"
+        planned = self.embedding_plan.pop(0) if self.embedding_plan else 401 if refused else 200
+        return planned if isinstance(planned, Fault) else Fault(status=planned)
+
+    def _elsewhere(self, request: Request, status: int) -> tuple[int, str, str]:
         """The list of models, and vectors of texts; anything else does not exist."""
+        if 300 <= status < 400:
+            return status, "text/plain", ""
         if request.path.endswith("/embeddings"):
             sent = request.headers.get("authorization", "")
-            status = 401 if self.key is not None and sent != f"Bearer {self.key}" else 200
-            status = self.embedding_plan.pop(0) if self.embedding_plan else status
             if status != 200:
                 return status, "application/json", json.dumps({"error": {"message": f"refused {sent}"}})
             texts = request.body.get("input", [])
@@ -295,13 +306,21 @@ def _body(text: str) -> dict[str, Any]:
 
 async def _send(writer: asyncio.StreamWriter, status: int, kind: str, text: str, fault: Fault = FAULTS["ok"]) -> bool:
     """Send a response; whether the connection goes on."""
-    payload = text.encode()
-    lines = {"Content-Type": kind, "Content-Length": str(len(payload)), **fault.headers}
+    payload = fault.pack(text.encode())
+    length = {"Transfer-Encoding": "chunked"} if fault.endless else {"Content-Length": str(len(payload))}
+    lines = {"Content-Type": kind, **length, **fault.headers}
     head = "".join(f"{name}: {value}\r\n" for name, value in lines.items())
     whole = f"HTTP/1.1 {status} {HTTPStatus(status).phrase}\r\n{head}\r\n".encode() + payload
     if fault.drops == "within":
         writer.write(whole[: len(whole) - len(payload) // 2])
         await writer.drain()
+        return False
+    if fault.endless:
+        writer.write(whole[: len(whole) - len(payload)])
+        chunk = f"{len(fault.endless):x}\r\n".encode() + fault.endless + b"\r\n"
+        while not writer.is_closing():
+            writer.write(chunk)
+            await writer.drain()
         return False
     if fault.trickle:
         for k in range(len(whole)):

@@ -6,8 +6,8 @@ from collections.abc import AsyncIterator
 import httpx
 import pytest
 
-from codriving.llm import send
-from codriving.llm.send import Connections
+from codriving.llm import connections
+from codriving.llm.connections import Connections
 
 
 class Parts(httpx.AsyncByteStream):
@@ -83,13 +83,13 @@ def test_free_again_after_a_failure_and_after_giving_up() -> None:
 
 
 def test_a_proxy_is_left_to_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(send, "getproxies", lambda: {"https": "http://127.0.0.1:9"})
-    asyncio.run(send.client().aclose())
+    monkeypatch.setattr(connections, "getproxies", lambda: {"https": "http://127.0.0.1:9"})
+    asyncio.run(connections.client().aclose())
     made: list[object] = []
-    monkeypatch.setattr(send, "Connections", made.append)
-    asyncio.run(send.client().aclose())
+    monkeypatch.setattr(connections, "Connections", made.append)
+    asyncio.run(connections.client().aclose())
     assert made == []
-    monkeypatch.setattr(send, "getproxies", dict)
-    monkeypatch.setattr(send, "Connections", lambda make: made.append(make) or httpx.AsyncHTTPTransport())
-    asyncio.run(send.client().aclose())
+    monkeypatch.setattr(connections, "getproxies", dict)
+    monkeypatch.setattr(connections, "Connections", lambda make: made.append(make) or httpx.AsyncHTTPTransport())
+    asyncio.run(connections.client().aclose())
     assert len(made) == 1

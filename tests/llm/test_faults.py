@@ -6,7 +6,7 @@ from email.utils import format_datetime
 import httpx
 import pytest
 
-from codriving.llm.faults import CallError, FaultKind, fault_of, redacted
+from codriving.llm.faults import CallError, FaultKind, fault_of, fault_of_response, redacted
 
 REQUEST = httpx.Request("POST", "http://server/v1/chat/completions")
 
@@ -90,6 +90,56 @@ def test_wait_is_read_in_seconds_and_as_a_date() -> None:
     assert from_server(429, "x").retry_after is None
     later = format_datetime(datetime.now(UTC) + timedelta(seconds=90), usegmt=True)
     assert from_server(429, "x", {"Retry-After": later}).retry_after == pytest.approx(89, abs=2)
+
+
+GEMINI = (
+    '{"error": {"code": 429, "status": "RESOURCE_EXHAUSTED", "message": "You exceeded your current quota, please check '
+    'your plan and billing details.", "details": [{"@type": "x/RetryInfo", "retryDelay": "1.5s"}]}}'
+)
+QUOTA = '{"error": {"message": "%s", "type": "insufficient_quota", "code": "insufficient_quota"}}'
+
+
+@pytest.mark.parametrize(
+    ("status", "headers", "body", "kind", "wait"),
+    [
+        (429, {"retry-after": "1"}, "You exceeded your current quota; see billing", FaultKind.RATE, 1.0),
+        (429, {"retry-after-ms": "250"}, "quota, billing", FaultKind.RATE, 0.25),
+        (429, {"retry-after": "2.5s"}, "quota, billing", FaultKind.RATE, 2.5),
+        (429, {}, GEMINI, FaultKind.RATE, 1.5),
+        (429, {}, "[" + GEMINI + "]", FaultKind.RATE, 1.5),
+        (429, {}, "You exceeded your current quota. Please try again in 20ms.", FaultKind.RATE, 0.02),
+        (429, {}, "Billing quota reached, please retry in 6m30.5s", FaultKind.RATE, 390.5),
+        (429, {}, "Rate limit for billing tier: wait 3 seconds", FaultKind.RATE, 3.0),
+        (429, {}, '{"message": "quota", "retry_after": 12}', FaultKind.RATE, 12.0),
+        (429, {}, '{"error": {"code": "rate_limit_exceeded", "message": "billing tier 1"}}', FaultKind.RATE, None),
+        (429, {}, "配额已用完", FaultKind.RATE, None),
+        (429, {}, "You exceeded your current quota, please check your plan and billing details", FaultKind.QUOTA, None),
+        (429, {}, QUOTA % "nix mehr da", FaultKind.QUOTA, None),
+        (429, {"retry-after": "1"}, QUOTA % "x", FaultKind.QUOTA, 1.0),
+        (402, {}, "配额", FaultKind.QUOTA, None),
+        (403, {}, QUOTA % "x", FaultKind.QUOTA, None),
+        (400, {}, '{"error": {"code": "context_length_exceeded", "message": "trop long"}}', FaultKind.TOO_LONG, None),
+        (400, {}, '{"error": {"code": "json_validate_failed", "message": "no"}}', FaultKind.REFUSED, None),
+        (400, {}, '{"error": {"code": "model_not_found", "message": "nein"}}', FaultKind.MODEL, None),
+        (501, {}, "not implemented", FaultKind.REFUSED, None),
+        (503, {"retry-after": "7"}, "busy", FaultKind.SERVER, 7.0),
+        (504, {}, "<html>gateway</html>", FaultKind.TIMEOUT, None),
+        (429, {"retry-after": "nan"}, "x", FaultKind.RATE, None),
+        (429, {"retry-after": "1e999"}, "x", FaultKind.RATE, float("inf")),
+        (500, {}, "[" * 100_000, FaultKind.SERVER, None),
+    ],
+)
+def test_code_and_named_wait_decide_before_words(
+    status: int, headers: dict[str, str], body: str, kind: FaultKind, wait: float | None
+) -> None:
+    fault = fault_of_response(status, headers, body)
+    assert (fault.kind, fault.retry_after) == (kind, wait if wait is None else pytest.approx(wait))
+
+
+def test_what_the_server_says_is_taken_out_of_its_json() -> None:
+    assert fault_of_response(400, {}, '{"error": {"message": "no such field"}}').detail == "400: no such field"
+    assert fault_of_response(422, {}, '{"detail": [{"loc": ["x"], "msg": "extra"}]}').detail == "422: extra"
+    assert fault_of_response(500, {}, "plain").detail == "500: plain"
 
 
 KEY = "canary/7f+3a"

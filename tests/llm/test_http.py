@@ -206,7 +206,7 @@ def test_provider_that_nobody_knows_is_refused(connect: Connect) -> None:
         connect("http://127.0.0.1:1/v1", api_base=None, model="nobody/nothing")
 
 
-@pytest.mark.parametrize("name", ["401", "echo_key_400", "echo_key_401", "404", "quota"])
+@pytest.mark.parametrize("name", ["401", "echo_key_400", "echo_key_401", "404"])
 def test_refusal_in_the_middle_ends_the_episode_and_shows_no_key(
     loopback: Loopback, connect: Connect, name: str
 ) -> None:
@@ -215,6 +215,14 @@ def test_refusal_in_the_middle_ends_the_episode_and_shows_no_key(
     with pytest.raises(ModelUnavailableError, match="asked once") as failure:
         ask(client)
     assert_no_key(failure.value)
+
+
+def test_no_credit_in_the_middle_stops_the_batch(loopback: Loopback, connect: Connect) -> None:
+    client = connect(loopback)
+    loopback.restart_plan([FAULTS["quota"]] * 5)
+    with pytest.raises(ModelError, match=r"has no credit left .*; buy some, or set CANARY_KEY to another key"):
+        ask(client)
+    assert len(loopback.requests) == 1
 
 
 def test_key_in_an_answer_is_hidden(loopback: Loopback, connect: Connect) -> None:
