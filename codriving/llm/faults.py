@@ -110,8 +110,8 @@ def fault_of(error: BaseException, key: str | None) -> CallError:
         return CallError(FaultKind.UNREADABLE, detail)
     if _NO_PROVIDER.search(str(error)):
         return CallError(FaultKind.MODEL, "LiteLLM knows no provider of that name")
-    status = getattr(error, "status_code", None)
-    return CallError(_kind(status if isinstance(status, int) else 400, str(error)), detail)
+    number = getattr(error, "status_code", None)
+    return CallError(_kind(number if isinstance(number, int) else 400, str(error)), detail)
 
 
 def _chain(error: BaseException | None) -> Iterator[BaseException]:
