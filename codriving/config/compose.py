@@ -48,7 +48,7 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
     """
     import hydra
     from hydra.errors import HydraException
-    from omegaconf import OmegaConf, open_dict
+    from omegaconf import open_dict
     from omegaconf.errors import OmegaConfBaseException
     from yaml import YAMLError
 
@@ -66,11 +66,9 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
         choices = {group: str(chosen[group]) for group in GROUPS if chosen.get(group) is not None}
         with open_dict(config):
             del config["hydra"]
-        check_references(OmegaConf.to_container(config, resolve=False))
-        with no_resolvers():
-            resolved: Any = OmegaConf.to_container(config, resolve=True)
+        resolved = resolve(config)
     except (HydraException, OmegaConfBaseException, YAMLError) as err:
-        raise ConfigError(_one_line(err)) from err
+        raise ConfigError(one_line(err)) from err
     for key in SHOWN if isinstance(resolved["method"], dict) else ():
         resolved["method"].pop(key, None)
     plain = gathered({str(key): value for key, value in resolved.items()})
@@ -78,6 +76,16 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
     _check_together(plain, choices)
     find_beside(plain["plugins"], config_dir)
     return plain, choices
+
+
+def resolve(config: Any, file: Path | None = None) -> dict[str, Any]:  # noqa: ANN401 - a config of OmegaConf, which is imported late
+    """Resolve every reference of a config, as a plain dict; none reads anything but the config itself."""
+    from omegaconf import OmegaConf
+
+    check_references(OmegaConf.to_container(config, resolve=False), file)
+    with no_resolvers():
+        found: dict[str, Any] = OmegaConf.to_container(config, resolve=True)  # type: ignore[assignment]
+    return found
 
 
 def show(resolved: Mapping[str, Any]) -> str:
@@ -89,7 +97,7 @@ def show(resolved: Mapping[str, Any]) -> str:
 
 def _check_together(resolved: Mapping[str, Any], choices: Mapping[str, str]) -> None:
     """Check what concerns more than one key of the root; rules between the keys of a node are its constructor's."""
-    _check_secrets(resolved)
+    check_secrets(resolved)
     last = resolved["seed"] + resolved["episodes"] - 1
     if last > LARGEST_SEED:
         raise ConfigError(f"seed + episodes - 1 must be at most {LARGEST_SEED}, got {last}; lower seed or episodes")
@@ -97,7 +105,7 @@ def _check_together(resolved: Mapping[str, Any], choices: Mapping[str, str]) -> 
         raise ConfigError(f"workers must be auto or 1 with launcher=serial, got {resolved['workers']}")
 
 
-def _check_secrets(resolved: Mapping[str, Any]) -> None:
+def check_secrets(resolved: Mapping[str, Any]) -> None:
     """Refuse what may be a key where the name of its variable belongs; the message leaves the value out."""
     for key, value in sorted(texts(resolved), key=lambda pair: pair[0].count(".")):
         if key.endswith("_env") and not _VARIABLE.fullmatch(value):
@@ -112,7 +120,7 @@ def _check_secrets(resolved: Mapping[str, Any]) -> None:
             )
 
 
-def _one_line(err: BaseException) -> str:
+def one_line(err: BaseException) -> str:
     """Join what a library says in several lines; the useful half is often in the cause."""
     texts = [str(err), *([str(err.__cause__)] if err.__cause__ else [])]
     lines = [line.strip() for text in texts for line in text.splitlines()]

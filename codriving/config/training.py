@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config.choices import TRAININGS, choices
-from codriving.config.compose import compose
+from codriving.config.compose import check_secrets, compose, one_line, resolve
 from codriving.config.overrides import parse, shown
-from codriving.config.references import check_references
 from codriving.config.schema import unknown
 from codriving.errors import ConfigError
 
@@ -43,23 +42,24 @@ def compose_training(
     if name not in known:
         raise ConfigError(f"there is no training {name!r}; trainings: {', '.join(known)}")
     try:
-        loaded = OmegaConf.load(known[name])
-        check_references(OmegaConf.to_container(loaded, resolve=False), known[name])
-        config: dict[str, Any] = OmegaConf.to_container(loaded, resolve=True)  # type: ignore[assignment]
+        config = resolve(OmegaConf.load(known[name]), known[name])
     except (OmegaConfBaseException, YAMLError) as err:
-        raise ConfigError(f"cannot read {known[name]} ({' '.join(str(err).split())})") from err
+        raise ConfigError(f"cannot read {known[name]} ({one_line(err)})") from err
     small = config.pop("smoke", {})
     for key, value in small.items() if smoke else ():
         _set(config, key, value)
     teacher = [token for token in overrides if token.partition("=")[0].partition(".")[0] == "llm"]
     if teacher:
         if not config.get("guidance"):
-            raise ConfigError(f"{shown(teacher[0])}: nobody teaches in this training; it has no guidance.llm")
+            raise ConfigError(
+                f"{shown(teacher[0])}: this training has no teacher, so no model can be chosen for it; leave it out"
+            )
         config["guidance"]["llm"] = compose(teacher, config_dir)["llm"]
     for override, token in ((parse(token), token) for token in overrides if token not in teacher):
         if override.is_delete() or override.is_sweep_override():
             raise ConfigError(f"{shown(token)}: a training takes one value for each key")
         _set(config, override.key_or_group, override.value())
+    check_secrets(config)
     return config
 
 

@@ -20,7 +20,7 @@ _ROUGH = 0.5  # Gaps shorter than this may lie in any direction [m]
 def check_road(road: Road) -> None:
     """Refuse a road that is not consistent in itself."""
     if not road.routes:
-        raise ScenarioError(f"road {road.name!r} has no routes; nobody could drive on it")
+        raise ScenarioError(f"road {road.name!r} has no routes; no vehicle could drive on it")
     _unique(road, "lane", (lane.id for lane in road.lanes))
     _unique(road, "route", (route.id for route in road.routes))
     for lane in road.lanes:

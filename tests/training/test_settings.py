@@ -2,6 +2,7 @@
 
 import inspect
 import re
+from pathlib import Path
 
 import pytest
 
@@ -77,9 +78,23 @@ def test_mistakes_are_refused(token: str, words: str) -> None:
         made(token)
 
 
+def test_a_config_of_ones_own_is_read_as_every_other(tmp_path: Path) -> None:
+    (tmp_path / "train").mkdir()
+    file = tmp_path / "train" / "madqn_junction.yaml"
+    text = trainings()["madqn_junction"].read_text(encoding="utf-8")
+    file.write_text(text.replace("clip: 10.0", "clip: ${batch}"))
+    assert compose_training("madqn_junction", (), False, tmp_path)["clip"] == 256
+    file.write_text(text.replace("clip: 10.0", "clip: ${oc.env:HOME}"))
+    with pytest.raises(ConfigError, match=r"madqn_junction\.yaml: clip reads an environment variable"):
+        compose_training("madqn_junction", (), False, tmp_path)
+    file.write_text(text.replace("clip: 10.0", "clip: ${bath}"))
+    with pytest.raises(ConfigError, match=r"^cannot read .* \(Interpolation key 'bath' not found\)$"):
+        compose_training("madqn_junction", (), False, tmp_path)
+
+
 def test_an_unknown_training_is_refused() -> None:
-    with pytest.raises(ConfigError, match="there is no training 'nobody'"):
-        compose_training("nobody", (), False)
+    with pytest.raises(ConfigError, match="there is no training 'rivers'"):
+        compose_training("rivers", (), False)
 
 
 def test_traffic_comes_in_when_its_time_has_come() -> None:

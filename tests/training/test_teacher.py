@@ -1,4 +1,4 @@
-"""Who teaches: the rule offline, a language model where one is chosen, and nobody once advice has no weight."""
+"""Who teaches: the rule offline, a language model where one is chosen, and none once advice has no weight."""
 
 import json
 import sys
@@ -129,7 +129,7 @@ def test_llm_puts_a_model_in_the_place_of_the_teacher() -> None:
     assert chosen["seed"] == 3
     assert build(llm, object).name == "ollama_chat/llama3.1:8b"
     assert lone("tell").teacher == "rules"
-    with pytest.raises(ConfigError, match="nobody teaches"):
+    with pytest.raises(ConfigError, match="this training has no teacher"):
         compose_training("ppo_junction", ("llm=ollama",), smoke=False)
 
 
