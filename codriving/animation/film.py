@@ -51,14 +51,16 @@ def write_film(path: Path, reel: Reel, frames: Iterator[Frame], samples: Sequenc
         palette = Path(folder, "palette.png")
         if reel.format == GIF:
             _palette(samples).save(palette)
-            options: tuple[str, ...] = ("-i", str(palette), *_ANIMATION)
+            # As a plain name: in the folder for temporary files a % would be read as a pattern of numbers.
+            options: tuple[str, ...] = ("-f", "image2", "-pattern_type", "none", "-i", str(palette), *_ANIMATION)
         else:
             # Its colours are kept for two pixels by two, so both sides must be even.
             even = "pad=ceil(iw/2)*2:ceil(ih/2)*2," if reel.rows % 2 or reel.columns % 2 else ""
             options = ("-vf", f"{even}{_COLOURS},{_SAID}", *_VIDEO)
         size = f"{reel.columns}x{reel.rows}"
         raw = ("-f", "rawvideo", "-pixel_format", "rgba", "-video_size", size, "-framerate", str(reel.rate), "-i", "-")
-        return _encode([*raw, *options, *_SAME_BYTES, "-y", str(path)], frames)
+        # Absolute: what comes before a colon would be a protocol, and what begins with a dash an option.
+        return _encode([*raw, *options, *_SAME_BYTES, "-y", str(path.absolute())], frames)
 
 
 def _encode(arguments: Sequence[str], frames: Iterator[Frame]) -> int:

@@ -1,6 +1,10 @@
 """All commands, and the one place where a user's mistake becomes a line on the screen."""
 
+import os
 import sys
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -9,13 +13,44 @@ from typer.core import TyperGroup
 from codriving import __version__
 from codriving.cli.commands import ablate, check, compare, learn, list_choices, replay, run, train
 from codriving.cli.memory import memory
+from codriving.cli.streams import OutputError, give_up_output, mend_streams
 from codriving.errors import UserError
 
-USER_ERROR, INTERRUPTED = 2, 130
+USER_ERROR, INTERRUPTED, PIPE_CLOSED = 2, 130, 141
 
 
 class _Commands(TyperGroup):
-    """The commands, with errors shown as the user needs them: mistakes in one line, bugs with their traceback."""
+    """The commands, with whatever goes wrong in one line."""
+
+    def main(self, args: Sequence[str] | None = None, prog_name: str | None = None, **options: Any) -> Any:  # type: ignore[override]  # noqa: ANN401
+        given = list(sys.argv[1:] if args is None else args)
+        mend_streams()
+        _ignore_variables()
+        try:
+            code = self._run(given, options)
+            sys.stdout.flush()
+        except OutputError as error:
+            give_up_output()
+            code = PIPE_CLOSED if error.reader_is_gone else _refused(error)
+        sys.exit(code)
+
+    def _run(self, args: list[str], options: dict[str, Any]) -> int:
+        try:
+            _refuse_unreadable(args)
+            code = super().main(args, "codriving", **{**options, "standalone_mode": False})
+        except UserError as error:
+            return _refused(error)
+        except KeyboardInterrupt:
+            print("interrupted", file=sys.stderr)
+            return INTERRUPTED
+        except Exception as error:
+            from codriving.cli.faults import one_line
+
+            if type(error).__name__ == "NoArgsIsHelpError":
+                print(error, file=sys.stderr)
+                return USER_ERROR
+            return _refused(one_line(error, args))
+        return code if isinstance(code, int) else 0
 
     def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
         # For a flag without default, as Typer's own are, Typer imports a validator on every start (0.1 s).
@@ -26,13 +61,41 @@ class _Commands(TyperGroup):
 
     def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]  # noqa: ANN401
         try:
-            return super().invoke(ctx)
-        except UserError as err:
-            print(f"error: {' '.join(str(err).split())}", file=sys.stderr)
-            raise typer.Exit(USER_ERROR) from err
-        except KeyboardInterrupt as err:
-            print("interrupted", file=sys.stderr)
-            raise typer.Exit(INTERRUPTED) from err
+            Path.cwd()
+        except OSError as error:
+            raise UserError(
+                f"the current folder cannot be used ({error.strerror}); change to one that exists"
+            ) from error
+        return super().invoke(ctx)
+
+
+def _refused(said: object) -> int:
+    if isinstance(said, OutputError) and said.reader_is_gone:
+        raise said
+    print(f"error: {' '.join(str(said).split())}", file=sys.stderr)
+    return USER_ERROR
+
+
+def _refuse_unreadable(args: Sequence[str]) -> None:
+    """Names that no file of the run could hold are refused before they get anywhere."""
+    for arg in args:
+        if "\0" in arg or any("\ud800" <= character <= "\udfff" for character in arg):
+            raise UserError(
+                f"{arg!a} holds bytes that are no text in {sys.getfilesystemencoding()}; write it in that encoding, "
+                "or choose another with LC_ALL=C.UTF-8"
+            )
+
+
+def _ignore_variables() -> None:
+    """Keep out what environment variables would do to libraries that this program uses in its own way."""
+    # Drawing needs no window, and a notebook's value names a module that only the notebook has.
+    os.environ["MPLBACKEND"] = "agg"
+    if any(option.startswith("error") for option in sys.warnoptions):
+        # A warning of a library's is not the user's to mend; workers inherit these.
+        os.environ.pop("PYTHONWARNINGS", None)
+        sys.warnoptions.clear()
+        warnings.resetwarnings()
+        warnings.simplefilter("ignore")
 
 
 app = typer.Typer(
@@ -72,6 +135,13 @@ app.command(epilog="Example: codriving train madqn --family junction seed=1")(tr
 app.command("list", epilog="Example: codriving list scenarios")(list_choices)
 
 
-def main() -> None:
-    """Run the command line."""
-    app()
+def main(args: Sequence[str] | None = None) -> None:
+    """Run the command line, and end with its exit code.
+
+    Args:
+        args: What is typed after ``codriving``; None for what the process was given.
+
+    Raises:
+        SystemExit: Always.
+    """
+    app(args)

@@ -92,7 +92,7 @@ def _whole_word(incomplete: str) -> tuple[str, str]:
     """Return what stands before the word in the shell's eyes, and the whole override as typed."""
     words = os.environ.get("COMP_WORDS", "").split("\n")
     cursor = os.environ.get("COMP_CWORD", "")
-    if not cursor.isdigit() or int(cursor) >= len(words) + 1:
+    if not cursor.isdecimal() or int(cursor) >= len(words) + 1:
         return "", incomplete
     position = int(cursor)
     here = words[position] if position < len(words) else ""

@@ -18,7 +18,7 @@ from codriving.config.choices import (
 )
 from codriving.config.compose import compose, compose_named, show
 from codriving.config.locate import conf_dir, experiments_dir
-from codriving.config.overrides import check_choice, parse
+from codriving.config.overrides import check_choice, parse, written
 from codriving.config.plugins import PLUGINS
 from codriving.config.schema import GROUPS, LARGEST_SEED, ROOT
 from codriving.config.sweep import Point, expand
@@ -28,5 +28,5 @@ __all__ = [
     "ALL", "EXPERIMENTS", "GROUPS", "LARGEST_SEED", "LISTED", "PLUGINS", "ROOT", "SWEPT", "TABLES", "TARGET",
     "TRAININGS", "Point", "asks_for", "build", "check_choice", "check_config_dir", "choices", "compose",
     "compose_named", "compose_training", "conf_dir", "default_choice", "describe", "expand", "experiments_dir",
-    "parse", "show", "styles", "taking_part", "targets", "trainings", "validate", "values",
+    "parse", "show", "styles", "taking_part", "targets", "trainings", "validate", "values", "written",
 ]  # fmt: skip

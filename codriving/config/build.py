@@ -8,6 +8,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
+from codriving.config.plugins import refuse_missing
 from codriving.config.schema import check_root, texts, unknown
 from codriving.config.target import find_class
 from codriving.datatypes import (
@@ -248,6 +249,7 @@ def validate(resolved: Mapping[str, Any]) -> None:
     """
     check_root(resolved)
     plugins = resolved["plugins"]
+    refuse_missing(plugins)
     chosen = {name: expected for name, expected in EXPECTED.items() if resolved[name] is not None}
     made: dict[str, Any] = {name: build(resolved[name], expected, name, plugins) for name, expected in chosen.items()}
     build(resolved["method"], Method, "method", plugins, {Model: made["llm"], CaseMemory: made.get("memory")})

@@ -80,16 +80,32 @@ def styles() -> dict[str, tuple[str, str, str]]:
     return {name: (said[1], said[2], said[3]) for name, text in texts.items() if (said := _STYLE.search(text))}
 
 
+def read_yaml(file: Path) -> str:
+    """Return the text of a YAML.
+
+    Raises:
+        ConfigError: If it cannot be read.
+    """
+    try:
+        return file.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as err:
+        raise ConfigError(
+            f"{file} is not written in UTF-8 ({err.reason} at byte {err.start}); save it as UTF-8"
+        ) from err
+    except OSError as err:
+        raise ConfigError(f"{file} cannot be read ({err.strerror}); change its permissions or take it away") from err
+
+
 def describe(file: Path) -> str:
     """Return the sentence that a YAML begins with, or nothing."""
-    lines = file.read_text(encoding="utf-8").splitlines()
+    lines = read_yaml(file).splitlines()
     first = next((line for line in lines if line.strip() and not line.startswith("# @package")), "")
     return first.removeprefix("#").strip() if first.startswith("#") else ""
 
 
 def values(file: Path) -> dict[str, str]:
     """Return the keys of the top level of a YAML, and of one that it inherits from, with the text of their values."""
-    found = _LINE.findall(file.read_text(encoding="utf-8"))
+    found = _LINE.findall(read_yaml(file))
     own = {name: value.strip() for name, value in found if not name.startswith("_")}
     parent = _PARENT.match(own.pop("defaults", ""))
     return {**(values(conf_dir() / file.parent.name / f"{parent[1]}.yaml") if parent else {}), **own}

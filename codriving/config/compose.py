@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from codriving.config.choices import check_config_dir
+from codriving.config.choices import check_config_dir, read_yaml
 from codriving.config.locate import conf_dir, experiments_root
-from codriving.config.overrides import prepare
+from codriving.config.overrides import at_home, prepare
 from codriving.config.plugins import find_beside, gathered
 from codriving.config.references import check_references, no_resolvers
 from codriving.config.schema import GROUPS, LARGEST_SEED, check_root, texts
@@ -69,9 +69,18 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
         resolved = resolve(config)
     except (HydraException, OmegaConfBaseException, YAMLError) as err:
         raise ConfigError(one_line(err)) from err
+    except ConfigError:
+        raise
+    except Exception as err:  # On odd YAML files these libraries raise whatever their code comes across
+        for file in sorted(config_dir.glob("*/*.yaml")) if config_dir else ():
+            read_yaml(file)
+        why = "it nests too deep" if isinstance(err, RecursionError) else f"{type(err).__name__}: {one_line(err)}"
+        raise ConfigError(
+            f"the config cannot be composed ({why}); look at the values and at the YAML files that they name"
+        ) from err
     for key in SHOWN if isinstance(resolved["method"], dict) else ():
         resolved["method"].pop(key, None)
-    plain = gathered({str(key): value for key, value in resolved.items()})
+    plain = gathered(_with_home({str(key): value for key, value in resolved.items()}))
     check_root(plain)
     _check_together(plain, choices)
     find_beside(plain["plugins"], config_dir)
@@ -93,6 +102,14 @@ def show(resolved: Mapping[str, Any]) -> str:
     from omegaconf import OmegaConf
 
     return OmegaConf.to_yaml(OmegaConf.create(dict(resolved)))
+
+
+def _with_home(node: Any) -> Any:  # noqa: ANN401 - any plain value
+    if isinstance(node, Mapping):
+        return {name: _with_home(inner) for name, inner in node.items()}
+    if isinstance(node, list):
+        return [_with_home(inner) for inner in node]
+    return at_home(node) if isinstance(node, str) else node
 
 
 def _check_together(resolved: Mapping[str, Any], choices: Mapping[str, str]) -> None:

@@ -1,6 +1,9 @@
 """What the command line says, made ready for Hydra: groups stay groups, every key is judged by our own rules."""
 
+import os
 import re
+import shlex
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +15,9 @@ KEY_VALUE = "write key=value, for instance scenario=intersection or episodes=20"
 
 TEXT_WITH_COMMAS = "for a text with commas write {key}='\"a,b\"'"
 
+_KEY = re.compile(r"\+{0,2}[A-Za-z_][\w./@:-]*", re.ASCII)
+_HOME = re.compile(r"(?s)([^=]*=)(~(?:/.*)?)")
+
 _SECRET = re.compile(r"key|token|secret|password|credential", re.IGNORECASE)
 
 
@@ -21,6 +27,7 @@ def prepare(token: str, config_dir: Path | None = None) -> str:
     Hydra refuses an unknown key unless it has a ``+``, and then accepts any. So every key gets its ``++`` here, and the
     checks after composing refuse what is not read: one rule and one message for both spellings.
     """
+    (token,) = written([token])
     override = parse(token)
     key = override.key_or_group
     if override.is_delete():
@@ -67,17 +74,80 @@ def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not 
         ConfigError: If it is not one.
     """
     from hydra.core.override_parser.overrides_parser import OverridesParser
-    from hydra.errors import HydraException
 
+    (token,) = written([token])
     try:
         return OverridesParser.create().parse_override(token)
-    except HydraException as err:
-        said = [str(error) for error in (err.__cause__, err) if error is not None and str(error) not in ("", "None")]
-        # What the parser would have expected instead is its whole alphabet.
-        reason = said[0].splitlines()[0].partition(" expecting ")[0] if said else "it has no form known here"
-        if may_be_secret(token):
-            raise ConfigError(f"cannot read {shown(token)!r}; {KEY_VALUE}") from None
-        raise ConfigError(f"cannot read {token!r} ({reason}); {KEY_VALUE}") from err
+    except Exception:  # Hydra's own, and what its parser raises on nests too deep and numbers too long
+        pass
+    # Outside the handler: what the parser says is its whole alphabet, and may quote a secret.
+    key, equals, value = token.partition("=")
+    if may_be_secret(token) or not equals or not _KEY.fullmatch(key):
+        raise ConfigError(f"cannot read {shown(token)!r:.200}; {KEY_VALUE}")
+    if any(not part.strip() for part in value.split(",")) and value and value[0] not in "[{(\"'":
+        raise ConfigError(f"cannot read {token!r:.200}: a value is missing beside a comma; several are {key}=a,b")
+    quoted = value.replace("\\", "\\\\").replace('"', '\\"')
+    text = f'"{quoted}"'
+    if value and value[0] not in "[{(\"'" and _reads_as(f"{key}={text}", value):
+        raise ConfigError(
+            f"cannot read {token!r}: a text with other characters than letters of a to z, digits and _-./:@%+ is "
+            f"quoted; write {key}={shlex.quote(text)}"
+        )
+    raise ConfigError(
+        f"cannot read {token!r:.200}: its value has brackets or quotes that do not match, nests too deep or is too "
+        f"long; {KEY_VALUE}"
+    )
+
+
+def _reads_as(token: str, value: str) -> bool:
+    from hydra.core.override_parser.overrides_parser import OverridesParser
+
+    try:
+        return len(token) < 300 and bool(OverridesParser.create().parse_override(token).value() == value)
+    except Exception:
+        return False
+
+
+def written(tokens: Iterable[object]) -> list[str]:
+    """Check that overrides were written as such, and read ``~`` as the home folder.
+
+    Raises:
+        ConfigError: If one is no text, or a key and its value stand apart.
+    """
+    found: list[str] = []
+    for token in tokens:
+        if not isinstance(token, str):
+            raise ConfigError(
+                f'a setting is a text such as "episodes=5", and each is an argument of its own; got {token!r:.100}'
+            )
+        found.append(token)
+    for index, token in enumerate(found):
+        key, equals, value = token.partition("=")
+        if value or not _KEY.fullmatch(key.lstrip("+")):
+            continue
+        after = [text for text in found[index + 1 : index + 3] if text != "="][:1]
+        given = after[0].removeprefix("=") if after and "=" not in after[0].removeprefix("=") else ""
+        if equals and not given:
+            continue  # An empty text, which some keys take
+        if may_be_secret(key):
+            given = ""
+        raise ConfigError(f"{key} stands alone; write key and value without blanks: {key}={given or '<value>'}")
+    return [_HOME.sub(_at_home, token) for token in found]
+
+
+def _at_home(match: "re.Match[str]") -> str:
+    path = at_home(match[2]).replace("\\", "\\\\").replace("'", "\\'")
+    return f"{match[1]}'{path}'"
+
+
+def at_home(text: str) -> str:
+    """Read ``~`` at the beginning of a path as the home folder."""
+    if text != "~" and not text.startswith("~/"):
+        return text
+    path = os.path.expanduser(text)  # noqa: PTH111 - a text, since a Path drops what may matter
+    if path.startswith("~"):
+        raise ConfigError(f"{text} is below the home folder, and there is none; set HOME, or write the path in full")
+    return path
 
 
 def check_choice(group: str, value: object, config_dir: Path | None = None) -> None:

@@ -50,3 +50,16 @@ def find_beside(plugins: Sequence[str], config_dir: Path | None) -> None:
     missing = {name.partition(".")[0] for name in plugins} - set(sys.modules)
     if folder not in sys.path and any(find_spec(n) is None and PathFinder.find_spec(n, [folder]) for n in missing):
         sys.path.append(folder)
+
+
+def refuse_missing(plugins: Sequence[str]) -> None:
+    """Refuse a package that is listed and not there, though no class of it may be named yet.
+
+    Raises:
+        ConfigError: With the name of the first.
+    """
+    for name in (name.partition(".")[0] for name in plugins):
+        if name not in sys.modules and find_spec(name) is None:
+            raise ConfigError(
+                f"plugins: there is no module {name}; install it, or put it beside the folder that --config-dir names"
+            )

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config.choices import ALL, LISTED, check_config_dir, choices
-from codriving.config.overrides import TEXT_WITH_COMMAS, check_choice, may_be_secret, parse, shown
+from codriving.config.overrides import TEXT_WITH_COMMAS, check_choice, may_be_secret, parse, shown, written
 from codriving.config.schema import ROOT
 from codriving.errors import ConfigError
 
@@ -60,7 +60,7 @@ def expand(tokens: Sequence[str], config_dir: Path | None = None) -> tuple[Point
     """
     if config_dir is not None:
         check_config_dir(config_dir)
-    axes = [_axis(token, config_dir) for token in tokens]
+    axes = [_axis(token, config_dir) for token in written(tokens)]
     several = [axis for axis in axes if len(axis.tokens) > 1]
     for axis in several:
         if sum(other.key == axis.key for other in axes) > 1:

@@ -6,7 +6,7 @@ from typing import Any
 
 from codriving.config.choices import TRAININGS, choices
 from codriving.config.compose import check_secrets, compose, one_line, resolve
-from codriving.config.overrides import parse, shown
+from codriving.config.overrides import parse, shown, written
 from codriving.config.schema import unknown
 from codriving.errors import ConfigError
 
@@ -38,6 +38,7 @@ def compose_training(
     from omegaconf.errors import OmegaConfBaseException
     from yaml import YAMLError
 
+    overrides = written(overrides)
     known = trainings(config_dir)
     if name not in known:
         raise ConfigError(f"there is no training {name!r}; trainings: {', '.join(known)}")

@@ -7,7 +7,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from codriving.config import TABLES, Point, check_choice, choices, expand, experiments_dir, parse, styles, taking_part
+from codriving.config import (
+    TABLES,
+    Point,
+    check_choice,
+    choices,
+    expand,
+    experiments_dir,
+    parse,
+    styles,
+    taking_part,
+    written,
+)
 from codriving.errors import ConfigError
 from codriving.experiment.cells import Cell
 from codriving.experiment.drive import Driven, Outputs, drive
@@ -55,7 +66,7 @@ class Comparison:
 
 def comparison_command(table: str | None) -> Command:
     """Return the command of a table of ``codriving compare``."""
-    if table is None or table not in TABLES:
+    if not isinstance(table, str) or table not in TABLES:
         given = "compare needs the name of a table" if table is None else f"unknown table {table!r}"
         raise ConfigError(f"{given}; write codriving compare TABLE [KEY=VALUE]..., tables: {', '.join(TABLES)}")
     make_outputs = make_loads if table == LOAD else partial(make_comparison, table)
@@ -84,6 +95,7 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
 
     Every method of the table that has a YAML takes part. ``method=`` adds others to them.
     """
+    overrides = written(overrides)
     keys = [parse(token).key_or_group for token in overrides]
     added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
     others = [token for token, key in zip(overrides, keys, strict=True) if key != "method"]

@@ -6,10 +6,10 @@ from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
-from codriving.config import Point, expand, experiments_dir, parse
+from codriving.config import Point, expand, experiments_dir, parse, written
 from codriving.errors import ConfigError
 from codriving.experiment.drive import Driven, HaltedError, Interrupted, Outputs, drive
-from codriving.experiment.memory_build import FIRST_SEED, MOST, refuse_forgetful, split_interactions
+from codriving.experiment.memory_build import FIRST_SEED, MOST, count_of, refuse_forgetful, split_interactions
 from codriving.experiment.plan import make_plan
 from codriving.experiment.remembering import memory_file
 from codriving.experiment.run import print_configs, report, resume_command, stopped
@@ -45,7 +45,7 @@ def run_learn(overrides: Sequence[str], config_dir: Path | None = None, show_onl
     Raises:
         UserError: If the config or a run folder cannot be used.
     """
-    sizes, others = _sizes(overrides)
+    sizes, others = _sizes(written(overrides))
     points = settings_of(others, config_dir)
     if show_only:
         print_configs(build_points(points, max(SIZES), "learn"), config_dir)
@@ -127,8 +127,11 @@ def _sizes(overrides: Sequence[str]) -> tuple[list[int], list[str]]:
     if not given:
         return list(SIZES), others
     texts = given[-1].split(",")
-    if not all(text.isdigit() and int(text) <= MOST for text in texts):
+    sizes = [count_of(text) for text in texts]
+    counts = {size for size in sizes if size is not None and size <= MOST}
+    if None in sizes or len(counts) != len(set(sizes)):
         raise ConfigError(
-            f"interactions must be whole numbers from 0 to {MOST}, for instance interactions=0,2,5, got {given[-1]!r}"
+            f"interactions must be whole numbers from 0 to {MOST}, for instance interactions=0,2,5, "
+            f"got {given[-1]!r:.100}"
         )
-    return sorted({int(text) for text in texts}), others
+    return sorted(counts), others

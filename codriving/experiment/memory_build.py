@@ -1,9 +1,10 @@
 """`codriving memory build`: episodes to learn from, on seeds that no table uses, into one file a cell."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from codriving.config import Point, expand, parse
+from codriving.config import Point, expand, parse, written
 from codriving.errors import ConfigError
 from codriving.experiment.drive import Driven, Outputs
 from codriving.experiment.plan import Plan
@@ -23,7 +24,7 @@ MOST = 10_000  # Most interactions of one command
 
 def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
     """Find out what is to be driven."""
-    given, others = split_interactions(overrides)
+    given, others = split_interactions(written(overrides))
     keys = {token: parse(token).key_or_group for token in others}
     named = set(keys.values())
     if "episodes" in named:
@@ -35,7 +36,7 @@ def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> li
     base += [] if "experiment" in named else ["experiment=memory"]
     base += [] if "seed" in named else [f"seed={FIRST_SEED}"]
     points = [Point((*base, *p.overrides), p.swept, p.removed) for p in expand(others, config_dir)]
-    seeds = [int(t.partition("=")[2]) for t in others if keys[t] == "seed" and t.partition("=")[2].isdigit()]
+    seeds = [seed for t in others if keys[t] == "seed" and (seed := count_of(t.partition("=")[2])) is not None]
     if any(seed in TABLE_SEEDS for seed in seeds):
         raise ConfigError(
             f"seed must be {TABLE_SEEDS.stop} or more to learn from, got {seeds[-1]}: smaller ones are for tables, and "
@@ -52,9 +53,15 @@ def split_interactions(overrides: Sequence[str]) -> tuple[list[str], list[str]]:
 
 def interactions_of(text: str) -> int:
     """Read a number of interactions."""
-    if not text.isdigit() or not 1 <= int(text) <= MOST:
-        raise ConfigError(f"interactions must be a whole number, 1 to {MOST}, got {text!r}")
-    return int(text)
+    count = count_of(text)
+    if count is None or not 1 <= count <= MOST:
+        raise ConfigError(f"interactions must be a whole number, 1 to {MOST}, got {text!r:.100}")
+    return count
+
+
+def count_of(text: str) -> int | None:
+    """Read a whole number of plain digits; None for any other text, for instance a raised 2."""
+    return int(text) if re.fullmatch(r"[0-9]{1,18}", text) else None
 
 
 def built(driven: Driven) -> Outputs:

@@ -56,7 +56,9 @@ def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode
     run, manifest = find_run(run)
     entry = _cell(run, manifest, cell)
     episodes = within(run, run / EPISODES / entry.folder)
-    seeds = sorted(int(path.name) for path in episodes.glob("*") if path.is_dir() and path.name.isdigit())
+    seeds = sorted(
+        int(path.name) for path in episodes.glob("*") if path.is_dir() and path.name.isascii() and path.name.isdigit()
+    )
     if not seeds:
         raise RunFolderError(
             f"no episode of {entry.folder} in {run} is finished yet; the command of the run with the same run=<name> "

@@ -63,7 +63,7 @@ class AnswerCache:
         try:
             with self._lock:
                 return action(self._connection())
-        except (sqlite3.Error, OSError, ValueError) as error:
+        except (sqlite3.Error, OSError, ValueError, RecursionError) as error:
             raise ModelError(
                 f"the answer cache {self.path} cannot be used ({error}); move it away, set llm.cache_file to another "
                 "file, or set llm.cache=off"

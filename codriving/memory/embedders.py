@@ -188,7 +188,7 @@ class WordEmbedder(Embedder):
             return token
         value = float(token)
         # Bands grow with the number: 0, 1, 2 to 3, 4 to 7, ...
-        band = 0 if abs(value) < 1 else 1 + int(log(abs(value), 2))
+        band = 0 if abs(value) < 1 else 1 + int(log(min(abs(value), 1e300), 2))
         return f"#{'-' if value < 0 else ''}{band}"
 
 

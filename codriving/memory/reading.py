@@ -1,5 +1,6 @@
 """A memory for people: what is in it, and what in it speaks of some words."""
 
+import sqlite3
 from collections import Counter
 from contextlib import closing
 from dataclasses import dataclass
@@ -38,12 +39,12 @@ def read_memory(path: Path) -> Reading:
         MemoryFileError: If it is missing, damaged or of another version.
     """
     with closing(open_file(path, write=False)) as connection:
-        said = about(connection)
         try:
+            said = about(connection)
             name, dimension = said["embedder"], int(said["dimension"])
             rows = connection.execute("SELECT * FROM interactions ORDER BY id").fetchall()
             snapshot = load(connection, dimension, name, [row[0] for row in rows])
-        except (KeyError, ValueError) as error:
+        except (sqlite3.Error, LookupError, ValueError, TypeError, OverflowError) as error:
             raise damaged(path, error) from error
     return Reading(path, name, dimension, tuple(Interaction(*row[1:]) for row in rows), snapshot)
 

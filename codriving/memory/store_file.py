@@ -98,7 +98,7 @@ def check_embedder(path: Path, said: Mapping[str, str], embedder: Embedder) -> i
             f"{path} was made with the embedder {name}, and {embedder.name} is asked for; set memory.embedder to "
             "match, or build it again"
         )
-    if not dimension.isdigit() or (embedder.dimension is not None and int(dimension) != embedder.dimension):
+    if not dimension.isdecimal() or (embedder.dimension is not None and int(dimension) != embedder.dimension):
         raise MemoryFileError(
             f"{path} holds vectors of {dimension or 'unknown'} numbers, and {embedder.name} makes "
             f"{embedder.dimension}; build it again"
@@ -136,7 +136,7 @@ def from_row(row: tuple[Any, ...], step: int = 0, ego: str = "") -> Experience:
         return Experience(
             description, Action(action), Verdict(verdict), Effect(**json.loads(effect)), lesson, step, ego
         )
-    except (TypeError, KeyError) as error:
+    except (TypeError, KeyError, RecursionError) as error:
         raise ValueError(str(error)) from error
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from codriving.datatypes import EpisodeRecord, Trajectory
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import whole_folder
-from codriving.runs.json_files import damaged, decode, encode, lines_text, read_episode_text, read_lines
+from codriving.runs.json_files import damaged, decode, encode, lines_text, parse_json, read_episode_text, read_lines
 from codriving.runs.redaction import scrubbed
 from codriving.runs.trajectory_file import TRAJECTORY, trajectory_text
 
@@ -107,7 +107,7 @@ def read_record(folder: Path) -> EpisodeRecord:
         text = read_episode_text(path)
         # Release 0.1 wrote a single score, and not of which metric.
         if '\n  "score": ' in text:
-            fields = json.loads(text)
+            fields = parse_json(text)
             score = fields.pop("score")
             text = json.dumps({**fields, "scores": {} if score is None else {UNNAMED: score}})
         return decode(EpisodeRecord, text)

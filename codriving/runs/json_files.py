@@ -88,6 +88,18 @@ def _finite(value: object) -> object:
     return [_finite(item) for item in value] if isinstance(value, list | tuple) else value
 
 
+def parse_json(text: str) -> Any:  # noqa: ANN401 - any JSON
+    """Read JSON; what nests too deep is no better than what breaks off.
+
+    Raises:
+        ValueError: If it is none.
+    """
+    try:
+        return json.loads(text)
+    except RecursionError:
+        raise ValueError("it nests too deep") from None
+
+
 def read_episode_text(path: Path) -> str:
     """Read a file of an episode."""
     try:
@@ -104,7 +116,7 @@ def read_lines(path: Path) -> tuple[dict[str, Any], ...]:
     """Read a file of one JSON object a line."""
     try:
         # Not splitlines(): it knows line ends that may stand within a text.
-        lines = [json.loads(line) for line in read_episode_text(path).split("\n") if line.strip()]
+        lines = [parse_json(line) for line in read_episode_text(path).split("\n") if line.strip()]
     except ValueError as error:
         raise damaged(path, str(error)) from error
     if not all(isinstance(line, dict) for line in lines):

@@ -11,7 +11,7 @@ from typing import Any
 
 from codriving.errors import RunFolderError
 from codriving.runs.identity import CellEntry, settings_of, snapshot_of
-from codriving.runs.json_files import decode
+from codriving.runs.json_files import decode, parse_json
 from codriving.runs.redaction import nested
 
 MANIFEST = "manifest.json"
@@ -49,7 +49,7 @@ def read_manifest(folder: Path) -> Manifest | None:
     """
     path = folder / MANIFEST
     try:
-        plain = json.loads(path.read_text(encoding="utf-8"))
+        plain = parse_json(path.read_text(encoding="utf-8"))
         layout = plain.get("format") if isinstance(plain, dict) else None
         if isinstance(layout, int) and layout > FORMAT:
             raise RunFolderError(
@@ -62,6 +62,8 @@ def read_manifest(folder: Path) -> Manifest | None:
                 raise ValueError(f"{name!a} is no name of a folder")
         if len(folders) != len({name.casefold() for name in folders}) or not set(manifest.rows) <= set(folders):
             raise ValueError("its rows are not its cells")
+        for cell in manifest.cells:
+            nested(cell.settings)
     except FileNotFoundError:
         return None
     except OSError as error:

@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from codriving.runs.json_files import parse_json
+
 MASK = "<redacted>"
 _SECRET = re.compile(r"key|token|secret|password|credential", re.IGNORECASE)
 # These hold the *name* of a variable, which is no secret and is needed to repeat the run.
@@ -97,5 +99,5 @@ def nested(pairs: Mapping[str, str]) -> dict[str, object]:
             if not isinstance(inner, dict):
                 raise ValueError(f"{key} lies below a value")
             node = inner
-        node[last] = json.loads(text)
+        node[last] = parse_json(text)
     return settings

@@ -1,5 +1,6 @@
 """Help, lists, versions and exit codes of the command line, in this process."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -153,12 +154,89 @@ def test_a_users_mistake_is_one_line_and_exit_code_2(args: tuple[str, ...], said
     assert result.stderr.count("\n") == 1
 
 
-def test_a_bug_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bug_is_one_line_that_names_the_file_of_its_traceback(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     def broken(*_: object) -> int:
         raise RuntimeError("a bug")
 
     monkeypatch.setattr("codriving.experiment.run_command", broken)
-    assert isinstance(call("run").exception, RuntimeError)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    result = call("run")
+    assert (result.exit_code, result.stdout) == (2, "")
+    (file,) = tmp_path.iterdir()
+    assert f"RuntimeError: a bug); its traceback is in {file}: " in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert "in broken" in file.read_text()
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (("run", "--episodes", "5"), "--episodes is not an option; settings are written without dashes: episodes=5; "),
+        (("run", "--episodes=5"), "--episodes is not an option; settings are written without dashes: episodes=5; "),
+        (("ablate", "--seed"), "--seed is not an option; settings are written without dashes: seed=<value>; "),
+        (("run", "--scenario.cavs", "4"), "--scenario.cavs is not an option; settings are written without dashes: sc"),
+        (("run", "-m", "seed=1"), "-m is not needed: values with commas make a sweep, for instance scenario=intersec"),
+        (("run", "episodes", "5"), "episodes stands alone; write key and value without blanks: episodes=5"),
+        (("run", "episodes", "=", "5"), "episodes stands alone; write key and value without blanks: episodes=5"),
+        (("compare", "baselines", "episodes=", "5"), "episodes stands alone; write key and value without blanks: epis"),
+        (("memory", "build", "interactions", "5"), "interactions stands alone; write key and value without blanks: in"),
+        (("train", "madqn", "seed", "5"), "seed stands alone; write key and value without blanks: seed=5"),
+        (("run", "llm.api_key", "sk-1"), "llm.api_key stands alone; write key and value without blanks: llm.api_key=<"),
+        (("rum",), "No such command 'rum'. Did you mean 'run'?; "),
+        (("replay", "x", "--episode", "²"), "Invalid value for '--episode': "),
+        (
+            ("run", "output=übung"),
+            """cannot read 'output=übung': a text with other characters than letters of a to z, """,
+        ),
+        (
+            ("run", "memory.file=a#1"),
+            "cannot read 'memory.file=a#1': a text with other characters than letters of a to",
+        ),
+        (("run", f"episodes={'9' * 5000}"), "cannot read 'episodes=9999"),
+        (("run", f"episodes={'[' * 3000}"), "cannot read 'episodes=[[[["),
+        (
+            ("learn", "interactions=²"),
+            "interactions must be whole numbers from 0 to 10000, for instance interactions=0,",
+        ),
+        (("memory", "build", "interactions=²"), "interactions must be a whole number, 1 to 10000, got '²'"),
+        (("memory", "build", f"interactions={'1' * 5000}"), "interactions must be a whole number, 1 to 10000, got '11"),
+        (
+            ("run", "plugins=[nope]"),
+            "plugins: there is no module nope; install it, or put it beside the folder that --config-dir ",
+        ),
+        (("run", "run=a\0b"), "'run=a\\x00b' holds bytes that are no text in "),
+        (("replay", "a\udcff"), "'a\\udcff' holds bytes that are no text in "),
+    ],
+)
+def test_what_is_written_otherwise_is_shown_as_it_is_written_here(args: tuple[str, ...], said: str) -> None:
+    result = call(*args)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr.startswith(f"error: {said}")
+    assert result.stderr.count("\n") == 1
+
+
+def test_the_quoting_that_is_shown_works() -> None:
+    assert call("run", "output=übung").stderr.endswith("""; write output='"übung"'\n""")
+    assert call("run", "--cfg", 'output="übung"').stdout.count("output: übung\n") == 1
+
+
+@pytest.mark.parametrize("token", ["output=~/runs", 'output="~/runs"', "++output=~/runs"])
+def test_a_tilde_is_the_home_folder(token: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", "/home/me and others")
+    assert "output: /home/me and others/runs\n" in call("run", "--cfg", token).stdout
+
+
+def test_a_current_folder_that_is_gone_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    result = call("run", "episodes=1")
+    assert (result.exit_code, result.stdout) == (2, "")
+    said = "error: the current folder cannot be used (No such file or directory); change to one that exists\n"
+    assert result.stderr == said
 
 
 def test_an_interruption_before_the_batch_is_exit_code_130(monkeypatch: pytest.MonkeyPatch) -> None:

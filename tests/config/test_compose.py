@@ -76,7 +76,7 @@ def test_unknown_key_of_the_root(plus: str) -> None:
         ("scenario=[intersection]", "scenario takes names without brackets"),
         ("scenario=intersection,merge", "scenario=intersection,merge: scenario takes one value here"),
         ("episodes=1,2", "episodes=1,2: episodes takes one value here; for a text with commas write episodes="),
-        ("episodes", "cannot read 'episodes'"),
+        ("episodes", "episodes stands alone; write key and value without blanks: episodes=<value>"),
         ("episodes=[1", "cannot read 'episodes=[1'"),
         ("a=b=c", "cannot read 'a=b=c'"),
         ("~episodes", "~episodes: keys cannot be removed"),

@@ -49,7 +49,7 @@ class Purpose:
             values["target_speeds"] = tuple(tuple(map(float, grid)) for grid in values["target_speeds"])
             values["actions"], values["hidden"] = tuple(values["actions"]), tuple(map(int, values["hidden"]))
             made = cls(**values)
-        except (ValueError, TypeError, KeyError) as err:
+        except (ValueError, TypeError, KeyError, OverflowError, RecursionError) as err:
             raise WeightsError(f"{where} does not describe trained weights ({type(err).__name__}: {err})") from err
         if made.form not in FORMS:
             raise WeightsError(f"{where} is for a network of the kind {made.form!r}; known: {', '.join(FORMS)}")
