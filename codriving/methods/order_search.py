@@ -79,7 +79,7 @@ class SearchedOrder(OrderRule):
             if keeps:
                 return f"{passes} in the order kept from before, since no other one saves enough time"
             which = "of all orders" if found.complete else f"of {found.tried} orders tried"
-            return f"{passes} in the one that costs everybody together least time {which}"
+            return f"{passes} in the one that costs all together least time {which}"
 
         counts = {"orders_tried": found.tried, "all_orders_tried": int(found.complete), "order_kept": int(keeps)}
         return Ordering(order, times, reasons(instance, order, reason), counts)

@@ -91,7 +91,7 @@ def _situation(moment: Moment, name: str, agreed: PassingOrder, drive: Drive, ch
 def _assessment(action: Action, gain: float | None, taken: Action) -> ActionAssessment:
     why: tuple[str, ...] = ()
     if action not in LONGITUDINAL and action is not taken:
-        why = ("not asked for, not safe, or granted to somebody else",)
+        why = ("not asked for, not safe, or granted to another vehicle",)
     elif action in LONGITUDINAL and gain is None:
-        why = ("no plan of the library that begins with it keeps the order and clear of everybody",)
+        why = ("no plan of the library that begins with it keeps the order and clear of all vehicles",)
     return ActionAssessment(action, not why or action is taken, why, (), gain)

@@ -72,7 +72,7 @@ class ProjectedIdm(WaitingDriver):
         """Return the acceleration that is wished."""
         scene = moment.scenes[ego]
         speed, top = scene.ego.speed, moment.forecast.model.top_speed
-        options = [(self.idm.accelerate(speed, top), "nobody holds it up")]
+        options = [(self.idm.accelerate(speed, top), "no vehicle holds it up")]
         for ahead in leaders(scene, moment.road_map):
             options.append((self.idm.accelerate(speed, top, ahead.gap, ahead.speed), f"{ahead.id} is ahead"))
         starts = self.may_start(moment, ego, met, waited)

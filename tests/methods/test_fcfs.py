@@ -81,7 +81,7 @@ def test_reason_says_so_when_a_later_ticket_goes_first() -> None:
     answer = FirstComeFirstServed().order(problem, NoPlanner())
     assert answer.sequence == ("b", "a", "c")
     assert answer.reasons["b", "c"] == (
-        "b goes in spite of its later ticket (4.0 s against 3.0 s): c has to wait for somebody behind it"
+        "b goes in spite of its later ticket (4.0 s against 3.0 s): c has to wait for a vehicle behind it"
     )
 
 

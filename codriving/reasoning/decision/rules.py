@@ -96,10 +96,10 @@ def _reason(action: Action, allowed: list[Action], waits_for: str) -> str:
     if waits_for:
         return f"{action} still lets {waits_for} pass first"
     if action is Action.FASTER:
-        return "nobody goes first and accelerating is safe"
+        return "no vehicle goes first and accelerating is safe"
     if action is allowed[0]:
-        return f"nobody goes first, and {action} is the fastest action that is safe"
-    return f"nobody goes first, and {action} gets farther in the end behind those ahead"
+        return f"no vehicle goes first, and {action} is the fastest action that is safe"
+    return f"no vehicle goes first, and {action} gets farther in the end behind those ahead"
 
 
 def is_plain(situation: Situation, sees_conflicts: bool) -> bool:

@@ -109,9 +109,9 @@ def drive_of(moment: Moment, plans: JointPlans, joint: Joint, ordering: Ordering
 
 def _reason(plans: JointPlans, joint: Joint, name: str, sequence: Sequence[str]) -> str:
     if name in joint.stuck:
-        return "no plan keeps clear of everybody; this one does for longest"
+        return "no plan keeps clear of all vehicles; this one does for longest"
     if joint.chosen[name] == 0:
-        return "nobody has to be waited for"
+        return "no vehicle has to be waited for"
     earlier = sequence[: sequence.index(name)] if name in sequence else sequence
     waits = [other for other in earlier if other in joint.chosen and plans.meetings(other, name)]
     action = plans.plan_of(name, joint.chosen[name])[0]

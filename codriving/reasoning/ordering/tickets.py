@@ -97,11 +97,11 @@ def by_ticket(one: str, other: str, held: Mapping[str, Ticket]) -> str:
         times = f"({held[one].time:.1f} s against {held[other].time:.1f} s)"
         if held[one] <= held[other]:
             return f"{one} holds the earlier ticket {times}"
-        return f"{one} goes in spite of its later ticket {times}: {other} has to wait for somebody behind it"
+        return f"{one} goes in spite of its later ticket {times}: {other} has to wait for a vehicle behind it"
     if one in held:
         return f"{one} holds a ticket, {other} is still too far away"
     if other in held:
-        return f"{one} goes without a ticket: {other} has to wait for somebody behind it"
+        return f"{one} goes without a ticket: {other} has to wait for a vehicle behind it"
     return f"{one} can arrive before {other}; both are still too far away for a ticket"
 
 

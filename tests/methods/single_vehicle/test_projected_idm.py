@@ -20,7 +20,7 @@ def test_alone_it_accelerates_at_any_speed_below_the_top(junction: Junction) -> 
     for speed in (0.0, 0.01, 3.0, 6.0):
         choice = decide(pidm(), junction, car("CAV1", "south-north", 40.0, speed))
         assert (choice.action, choice.precedences) == (Action.FASTER, ())
-        assert choice.reason.startswith("nobody holds it up")
+        assert choice.reason.startswith("no vehicle holds it up")
     assert decide(pidm(), junction, car("CAV1", "south-north", 40.0, 9.0)).action is Action.IDLE
 
 
