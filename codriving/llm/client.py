@@ -9,11 +9,12 @@ from functools import partial
 from typing import Any
 from weakref import WeakValueDictionary
 
+from codriving.llm.answers import judge
 from codriving.llm.attempts import ConcurrencyLimit, Retries, Retry, Sleep
 from codriving.llm.cache import AnswerCache
 from codriving.llm.faults import CallError, FaultKind, unavailable, unusable
 from codriving.llm.loop import loop
-from codriving.llm.parsing import judge, one_line
+from codriving.llm.parsing import one_line
 from codriving.llm.question import Answer, Call, Chat, Message, Question
 from codriving.llm.request import KNOWN, TOO_LONG, UNREADABLE, ChatRequest, Forms, Reply, schema_of, worded
 from codriving.llm.send import Sender
@@ -32,10 +33,10 @@ async def converse(question: Question, fetch: Fetch) -> Answer:
     while True:
         messages = question.messages + again
         reply, cached = await fetch(messages, question)
-        value, problem = judge(reply, question)
+        read = judge(reply, question)
         call = Call(
             messages=worded(messages, reply.form, schema_of(question.schema)),
-            text=reply.text,
+            text=reply.text or next(iter(reply.beside), ""),
             form=reply.form,
             prompt_tokens=reply.prompt_tokens,
             completion_tokens=reply.completion_tokens,
@@ -43,20 +44,21 @@ async def converse(question: Question, fetch: Fetch) -> Answer:
             seconds=reply.seconds,
             attempts=reply.attempts,
             cached=cached,
-            problem=problem,
+            problem=read.problem,
         )
         calls.append(call)
         if reply.finish_reason == TOO_LONG:
             shorter = question.shorter()
             if shorter is None:
-                return Answer(None, tuple(calls), problem, shortened)
+                return Answer(None, tuple(calls), read.problem, shortened)
             question, shortened = shorter, shortened + 1
-        elif value is not None or again:
-            return Answer(value, tuple(calls), problem, shortened)
+        elif read.value is not None or again:
+            return Answer(read.value, tuple(calls), read.problem, shortened, read.mended)
         else:
             # Some servers insist that user and assistant take turns.
-            wish = f"This answer cannot be used: {problem}. Answer again, with one JSON object of the form asked for."
-            again = (Message("assistant", one_line(reply.text, 2000) or "(no answer)"), Message("user", wish))
+            wish = "Answer again, with one JSON object of the form asked for."
+            said = Message("assistant", one_line(reply.text, 2000) or "(no answer)")
+            again = (said, Message("user", f"This answer cannot be used: {read.problem}. {wish}"))
 
 
 _GREETING = (Message("system", "You check that a connection works."), Message("user", "Answer with the one word: yes"))

@@ -19,6 +19,15 @@ _PIECE = 65_536  # What is unpacked at once at most [bytes]
 
 _largest: ContextVar[int] = ContextVar("largest", default=LARGEST)
 
+_bodies: ContextVar[list[bytes] | None] = ContextVar("bodies", default=None)
+
+
+def keep_bodies() -> list[bytes]:
+    """Return a list into which the bodies of the responses to this task go, as the server sent them."""
+    kept: list[bytes] = []
+    _bodies.set(kept)
+    return kept
+
 
 @contextmanager
 def at_most(size: int) -> Iterator[None]:
@@ -65,8 +74,11 @@ class Client(httpx.AsyncClient):
             if response.status_code >= 400:
                 await response.aread()
                 raise fault_of_response(response.status_code, response.headers, response.text)
-            if not stream and (refused := refusal_within(await response.aread())):
-                raise refused
+            if not stream:
+                if (bodies := _bodies.get()) is not None:
+                    bodies.append(await response.aread())
+                if refused := refusal_within(await response.aread()):
+                    raise refused
         except BaseException:
             await response.aclose()
             raise

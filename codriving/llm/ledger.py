@@ -22,6 +22,7 @@ class Ledger:
         self._counts["prompt_tokens"] += sum(call.prompt_tokens for call in answer.calls)
         self._counts["completion_tokens"] += sum(call.completion_tokens for call in answer.calls)
         self._counts["re_asks"] += answer.asked_again
+        self._counts["mended"] += answer.mended
         self._counts["fallbacks"] += answer.value is None
         self._counts["shortened"] += answer.shortened
         self._cost += sum(call.cost or 0.0 for call in answer.calls)
@@ -59,6 +60,7 @@ def _line(question: Question, answer: Answer, time: float) -> dict[str, Any]:
         "subject": question.subject,
         "value": None if answer.value is None else answer.value.model_dump(mode="json"),
         "problem": answer.problem,
+        "mended": answer.mended,
         "shortened": answer.shortened,
         "calls": [{key: value for key, value in asdict(call).items() if key != "cached"} for call in answer.calls],
     }

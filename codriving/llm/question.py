@@ -55,6 +55,7 @@ class Answer:
     calls: tuple[Call, ...]
     problem: str = ""
     shortened: int = 0
+    mended: bool = False  # Whether only the tolerant reading found it
 
     @property
     def asked_again(self) -> bool:

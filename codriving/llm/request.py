@@ -45,12 +45,14 @@ class Reply:
     form: str = ""
     seconds: float = 0.0  # How long it took, retries included [s]
     attempts: int = 1
+    # What else may hold the answer, in order: arguments of tool calls, and what the model said to itself.
+    beside: tuple[str, ...] = ()
 
     @classmethod
     def from_dict(cls, stored: Mapping[str, Any]) -> "Reply":
         """Read what ``asdict`` gave."""
         with suppress(TypeError):
-            return cls(**stored)
+            return cls(**{**stored, "beside": tuple(stored.get("beside", ()))})
         raise ModelError("the file of llm.cache_file was written by another version; name another one")
 
 

@@ -1,17 +1,21 @@
 """The only place that knows LiteLLM: one request out, one reply in, and nothing decided."""
 
 import asyncio
+import json
 import logging
 import os
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict
 from importlib import import_module
 from types import ModuleType
 from typing import Any, cast
 
-from codriving.llm.connections import client
+from codriving.llm.connections import client, keep_bodies
 from codriving.llm.faults import fault_of, without_key
 from codriving.llm.loop import loop
 from codriving.llm.parsing import clean
+from codriving.llm.places import places_of
 from codriving.llm.request import ChatRequest, Reply, response_format, worded
 
 # Sent where no key is named; without it LiteLLM would take one from the environment and give it to a stranger.
@@ -30,6 +34,7 @@ class Sender:
     async def send(self, request: ChatRequest, form: str, key: str | None, deadline: float) -> Reply:
         """Send a request once."""
         optional = {"temperature": request.temperature, "response_format": response_format(form, request.schema)}
+        bodies = keep_bodies()
         try:
             response = await _loaded[0].acompletion(
                 model=request.model,
@@ -44,9 +49,12 @@ class Sender:
                 max_tokens=request.max_tokens,
                 **{name: value for name, value in optional.items() if value is not None},
             )
-            return _reply(response, form, key)
+            return reply_of(response.model_dump(), _completion(bodies), form, key)
         except Exception as err:
             fault = fault_of(err, key)
+        if body := _completion(bodies):
+            # LiteLLM takes no content in parts; the server's own words are there all the same.
+            return reply_of(body, body, form, key)
         # Outside the handler: LiteLLM's exception, which may quote the key, is not dragged along as context.
         raise fault
 
@@ -112,27 +120,42 @@ def provider_of(model: str, api_base: str | None) -> str | None:
     return None
 
 
-def _reply(response: Any, form: str, key: str | None) -> Reply:  # noqa: ANN401 - LiteLLM's response has no narrow type
-    """Normalise a response: any text that is there, and why it ends."""
-    usage = getattr(response, "usage", None)
-    names = ("prompt_tokens", "completion_tokens")
-    tokens: dict[str, Any] = {name: max(0, int(getattr(usage, name, None) or 0)) for name in names}
-    choices = getattr(response, "choices", None) or ()
-    if not choices:
+def _completion(bodies: Sequence[bytes]) -> dict[str, Any]:
+    """Read the body of a response, if it is a chat completion."""
+    with suppress(ValueError, RecursionError):
+        body = json.loads(bodies[-1]) if bodies else None
+        if isinstance(body, dict) and isinstance(_first(body).get("message"), dict):
+            return body
+    return {}
+
+
+def _first(body: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the first choice of a chat completion; empty if there is none."""
+    choices = body.get("choices")
+    return choices[0] if isinstance(choices, list) and choices and isinstance(choices[0], dict) else {}
+
+
+def reply_of(
+    response: Mapping[str, Any], body: Mapping[str, Any] | None = None, form: str = "", key: str | None = None
+) -> Reply:
+    """Normalise a response: all that was said, and why it ends.
+
+    Args:
+        response: The response as LiteLLM understands it.
+        body: The response as the server sent it, if that is known: LiteLLM merges some places of an answer.
+    """
+    usage = response.get("usage") or {}
+    tokens: dict[str, Any] = {
+        name: max(0, int(usage.get(name) or 0)) for name in ("prompt_tokens", "completion_tokens")
+    }
+    if not _first(response):
         return Reply("", "", form=form, **tokens)
-    message = choices[0].message
-    beside = getattr(message, "provider_specific_fields", None) or {}
+    said = {name: clean(without_key(text, key)) for name, text in places_of(_first(body or response)["message"])}
     return Reply(
-        text=clean(without_key(_text(getattr(message, "content", None)), key)),
-        finish_reason=str(choices[0].finish_reason or ""),
-        refusal=clean(without_key(str(getattr(message, "refusal", None) or beside.get("refusal") or ""), key)),
+        text=said.pop("content", ""),
+        finish_reason=str(_first(response).get("finish_reason") or ""),
+        refusal=said.pop("refusal", ""),
         form=form,
+        beside=tuple(said.values()),
         **tokens,
     )
-
-
-def _text(content: object) -> str:
-    """Return the text of a message, whose content may come in parts."""
-    if isinstance(content, list):
-        return "".join(str(part.get("text") or "") for part in content if isinstance(part, dict))
-    return content if isinstance(content, str) else ""

@@ -34,6 +34,7 @@ ASKED = (
     COST,
     SECONDS,
     "re_asks",
+    "mended",
     "fallbacks",
     "shortened",
     "repaired_orders",

@@ -196,8 +196,8 @@ def _model_notes(cells: Sequence[CellResults], screen: bool) -> list[str]:
         price += " and what is not known"
     return [
         f"In all: {total['model_calls']:,} calls, {total['prompt_tokens']:,} + {total['completion_tokens']:,} tokens, "
-        f"{price}; {total['re_asks']:,} asked again, {total['fallbacks']:,} fallbacks, {total['repaired_orders']:,} "
-        "repaired orders.",
+        f"{price}; {total['re_asks']:,} asked again, {total['mended']:,} mended, {total['fallbacks']:,} fallbacks, "
+        f"{total['repaired_orders']:,} repaired orders.",
         f"{FALLBACK_NOTE} Failed episodes count in all sums.",
         *([STEP_NOTE] if screen else []),
     ]

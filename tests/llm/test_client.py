@@ -19,7 +19,6 @@ BAD = {
     "empty choices": reply("", ""),
     "empty content": reply("  "),
     "cut off": reply(GOOD[:20], "length"),
-    "cut off after a whole object": reply(GOOD, "length"),
     "filtered": reply("", "content_filter"),
     "refusal": reply("", refusal="I cannot help with that."),
     "page": reply("<html><body>Sign in</body></html>"),

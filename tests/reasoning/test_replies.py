@@ -13,7 +13,7 @@ PAIRS = {"p1": ("CAV1", "CAV2"), "p2": ("CAV2", "CAV3")}
 
 def order(*said: tuple[str, str]) -> dict[str, tuple[str, str]]:
     text = json.dumps({"orders": [{"pair": pair, "first": first, "reason": "so"} for pair, first in said]})
-    return first_of_pairs(order_reply(PAIRS).model_validate_json(text), PAIRS)
+    return first_of_pairs(order_reply(PAIRS).model_validate_json(text))
 
 
 def test_decision_asks_for_the_allowed_actions_and_a_reason_first() -> None:
@@ -23,10 +23,19 @@ def test_decision_asks_for_the_allowed_actions_and_a_reason_first() -> None:
 
 
 def test_order_asks_for_the_pairs_and_the_vehicles() -> None:
-    entry = schema_of(order_reply(PAIRS))["$defs"]["Pair"]["properties"]
-    assert entry["pair"]["enum"] == ["p1", "p2"]
-    assert entry["first"]["enum"] == ["CAV1", "CAV2", "CAV3"]
-    assert "reason" in entry
+    schema = schema_of(order_reply(PAIRS))
+    assert list(schema["properties"]) == schema["required"] == ["reason", "p1", "p2"]
+    assert schema["properties"]["p1"] == {"enum": ["CAV1", "CAV2"], "type": "string"}
+    assert schema["properties"]["p2"] == {"enum": ["CAV2", "CAV3"], "type": "string"}
+    assert schema["additionalProperties"] is False
+
+
+def test_reason_of_all_pairs_is_the_reason_of_each_that_has_none() -> None:
+    said = {"reason": "nearer", "p1": "CAV1", "p2": {"first": "CAV3", "reason": "cannot stop"}}
+    assert first_of_pairs(order_reply(PAIRS).model_validate(said)) == {
+        "p1": ("CAV1", "nearer"),
+        "p2": ("CAV3", "cannot stop"),
+    }
 
 
 def test_decision_puts_up_with_case_and_long_reasons() -> None:

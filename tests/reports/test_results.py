@@ -24,7 +24,7 @@ from tests.reports.making import column_of, episodes_of, print_cells, summary_of
 
 Make = Callable[..., EpisodeRecord]
 ASKED = (
-    "model_calls", "prompt_tokens", "completion_tokens", "cost_usd", "step_seconds", "re_asks", "fallbacks",
+    "model_calls", "prompt_tokens", "completion_tokens", "cost_usd", "step_seconds", "re_asks", "mended", "fallbacks",
     "shortened", "repaired_orders", "plain_decisions", "kept_orders",
 )  # fmt: skip
 COUNTS = {
@@ -48,8 +48,8 @@ def asked(make: Make) -> Callable[..., EpisodeRecord]:
 
 def test_the_columns_stand_in_their_order_after_all_others(make: Make, asked: Make) -> None:
     records = [asked(0), make(1, counts={"nodes": 3})]
-    assert episodes_of(records).keys[-13:] == ("message", *ASKED, "nodes")
-    assert summary_of(records).keys[-13:] == (*ASKED, "fallback_rate", "nodes")
+    assert episodes_of(records).keys[-14:] == ("message", *ASKED, "nodes")
+    assert summary_of(records).keys[-14:] == (*ASKED, "fallback_rate", "nodes")
 
 
 def test_tables_without_a_model_are_as_they_were(make: Make) -> None:
@@ -110,7 +110,8 @@ def test_people_read_calls_tokens_cost_and_fallbacks_and_their_sums(make: Make, 
     assert table.rows[1].cells[-4:] == ("", "", "", "")
     sums, meaning, told = table.notes[1:]
     assert sums == (
-        "In all: 2,400 calls, 800,000 + 40,000 tokens, 0.2000 USD; 380 asked again, 20 fallbacks, 0 repaired orders."
+        "In all: 2,400 calls, 800,000 + 40,000 tokens, 0.2000 USD; 380 asked again, 0 mended, "
+        "20 fallbacks, 0 repaired orders."
     )
     assert "failed episodes count" in meaning.lower()
     assert told == "told"

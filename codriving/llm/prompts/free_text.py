@@ -1,6 +1,7 @@
 """Names and sentences as they may stand in a prompt: on one line, capped, and without what an ablation hides."""
 
 import re
+import unicodedata
 from collections.abc import Iterable, Mapping
 
 from codriving.datatypes import SceneDescription, Situation
@@ -16,6 +17,21 @@ def one_line(text: str, longest: int = LONGEST_SENTENCE) -> str:
     """Put free text on one line: no control characters, single spaces, capped."""
     shown = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return shown if len(shown) <= longest else shown[: longest - 1].rstrip() + "…"
+
+
+def the_one_of(said: object, names: Iterable[str]) -> str | None:
+    """Return the name that was meant, if letters and digits of exactly one are those that were said, or None."""
+    if isinstance(said, float) and said.is_integer():
+        said = int(said)
+    if not isinstance(said, str | int) or isinstance(said, bool):
+        return None
+    known, text = dict.fromkeys(names), str(said).strip()
+    fitting = [name for name in known if _plain(name) == _plain(text)] if _plain(text) else []
+    return text if text in known else fitting[0] if len(fitting) == 1 else None
+
+
+def _plain(text: str) -> str:
+    return "".join(c for c in unicodedata.normalize("NFKC", text).casefold() if c.isalnum())
 
 
 class Names:

@@ -4,17 +4,19 @@ They take in a little more than they ask for, so that an answer which only names
 whole; the check of each question says what is wrong.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, BeforeValidator, Field, create_model
+from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_model, model_validator
 
-from codriving.llm.prompts.free_text import one_line
+from codriving.llm.prompts.free_text import one_line, the_one_of
 
 
-def _short(value: Any) -> Any:  # noqa: ANN401 - anything that the model put there
-    return one_line(value) if isinstance(value, str) else "" if value is None else value
+def _short(value: Any) -> str:  # noqa: ANN401 - anything that the model put there
+    if isinstance(value, list):
+        value = "; ".join(text for text in value if isinstance(text, str))
+    return one_line(value) if isinstance(value, str) else ""
 
 
 def _upper(value: Any) -> Any:  # noqa: ANN401 - anything that the model put there
@@ -24,6 +26,11 @@ def _upper(value: Any) -> Any:  # noqa: ANN401 - anything that the model put the
 def _one_of(words: Sequence[str]) -> Any:  # noqa: ANN401 - pydantic's own type is not public
     """Ask for one of some words; that it is one of them is checked later, see above."""
     return Field(json_schema_extra={"enum": list(words)})
+
+
+def _one_word(words: Sequence[str]) -> WithJsonSchema:
+    """Ask for one of some words where more is read."""
+    return WithJsonSchema({"enum": list(words), "type": "string"})
 
 
 Reason = Annotated[str, BeforeValidator(_short)]  # A reason: on one line, and capped
@@ -41,15 +48,56 @@ class DecisionReply(BaseModel):
 class PairReply(BaseModel):
     """Which vehicle goes first in one pair."""
 
-    pair: str
     first: str
     reason: Reason = ""
 
 
 class OrderReply(BaseModel):
-    """Which vehicle goes first in every pair."""
+    """Which vehicle goes first in every pair: a key for each pair; a pair may be missing.
 
-    orders: Sequence[PairReply]
+    The form of version 0.1, a list of pairs below the key ``orders``, is read, too.
+    """
+
+    pairs: ClassVar[Mapping[str, tuple[str, str]]]
+    older_keys: ClassVar[tuple[str, ...]] = ("orders",)
+
+    reason: Reason = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _listed(cls, said: Any) -> dict[str, Any]:  # noqa: ANN401 - anything that the model put there
+        """Take what can be used: pairs that exist, of which one of the two goes first, and always the same."""
+        of = {"reason": said.get("reason")} if isinstance(said, dict) else {}
+        found: dict[str, dict[str, Any]] = {}
+        torn: set[str] = set()
+        for pair, first, reason in _entries(said):
+            name = the_one_of(pair, cls.pairs)
+            goes = None if name is None else the_one_of(first, cls.pairs[name])
+            if name is None or goes is None:
+                continue
+            if found.setdefault(name, {"first": goes, "reason": reason})["first"] != goes:
+                torn.add(name)
+        return {**of, **{name: pair for name, pair in found.items() if name not in torn}}
+
+
+def _entries(said: Any) -> Iterator[tuple[Any, Any, Any]]:  # noqa: ANN401 - anything that the model put there
+    """Give pair, vehicle and reason of each entry of an order, in whichever of its forms."""
+    if isinstance(said, list):
+        for entry in said:
+            yield from _entries(entry)
+    if not isinstance(said, dict):
+        return
+    keys = {the_one_of(key, ("orders", "pair", "first", "reason")) or key: value for key, value in said.items()}
+    if "orders" in keys:
+        yield from _entries(keys["orders"])
+    elif "pair" in keys:
+        yield keys["pair"], keys.get("first"), keys.get("reason")
+    else:
+        for pair, value in said.items():
+            [(_, first, reason)] = (
+                _entries({**value, "pair": pair}) if isinstance(value, dict) else [(pair, value, None)]
+            )
+            yield pair, first, reason
 
 
 class LessonReply(BaseModel):
@@ -80,26 +128,18 @@ def correction_reply(allowed: tuple[str, ...]) -> type[CorrectionReply]:
 
 def order_reply(pairs: Mapping[str, tuple[str, str]]) -> type[OrderReply]:
     """Return the form of a passing order."""
-    vehicles = sorted({name for pair in pairs.values() for name in pair})
-    entry = create_model("Pair", __base__=PairReply, pair=(str, _one_of(list(pairs))), first=(str, _one_of(vehicles)))
-    return create_model("Order", __base__=OrderReply, orders=(list[entry], ...))  # type: ignore[valid-type]
+    return _order_reply(tuple(pairs.items()))
 
 
-def first_of_pairs(reply: OrderReply, pairs: Mapping[str, tuple[str, str]]) -> dict[str, tuple[str, str]]:
-    """Return what can be used of an order: pairs that exist, of which one of the two goes first.
+@lru_cache(maxsize=64)
+def _order_reply(pairs: tuple[tuple[str, tuple[str, str]], ...]) -> type[OrderReply]:
+    fields: dict[str, Any] = {name: (Annotated[PairReply | None, _one_word(both)], None) for name, both in pairs}
+    made = create_model("Order", __base__=OrderReply, **fields)
+    made.pairs = dict(pairs)
+    return made
 
-    A pair that is named twice with different answers is left out.
 
-    Returns:
-        Which vehicle goes first and why, by the name of the pair.
-    """
-    found: dict[str, tuple[str, str]] = {}
-    torn: set[str] = set()
-    for entry in reply.orders:
-        name, first = entry.pair.strip(), entry.first.strip()
-        if name not in pairs or first not in pairs[name]:
-            continue
-        if name in found and found[name][0] != first:
-            torn.add(name)
-        found.setdefault(name, (first, entry.reason))
-    return {name: answer for name, answer in found.items() if name not in torn}
+def first_of_pairs(reply: OrderReply) -> dict[str, tuple[str, str]]:
+    """Return which vehicle goes first and why, by the name of each pair that was ordered."""
+    found = {name: getattr(reply, name) for name in reply.pairs}
+    return {name: (pair.first, pair.reason or reply.reason) for name, pair in found.items() if pair is not None}

@@ -78,7 +78,7 @@ class ModelCoordinator(Coordinator):
         [answer] = self.model.ask([self._question(scenes, problem, pairs, names)])
         if answer.value is None:
             return None
-        said = first_of_pairs(cast(OrderReply, answer.value), _shown(pairs, names))
+        said = first_of_pairs(cast(OrderReply, answer.value))
         agreed: AgreedPairs = {}
         for name, (first, reason) in said.items():
             c = pairs[name]
@@ -97,7 +97,7 @@ class ModelCoordinator(Coordinator):
         values = negotiation_view(scenes, problem.instance, listed, rules.previous, names, rules.binding)
 
         def check(reply: object) -> str:
-            if first_of_pairs(cast(OrderReply, reply), shown):
+            if first_of_pairs(cast(OrderReply, reply)):
                 return ""
             wanted = "; ".join(f"{name}: {one} or {other}" for name, (one, other) in shown.items())
             return f"no pair was ordered; say who goes first in each pair ({wanted})"

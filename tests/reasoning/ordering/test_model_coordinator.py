@@ -233,5 +233,5 @@ def test_answers_are_noted_as_they_came(junction: Junction) -> None:
     again(made, thoughts)
     [line] = ledger.close_step(2.5)[1]
     assert line["time"] == 2.5
-    assert {entry["pair"] for entry in line["value"]["orders"]} == {"p1", "p2", "p3"}
+    assert set(line["value"]) == {"reason", "p1", "p2", "p3"}
     assert line["calls"][0]["messages"][1]["content"].startswith("1. State sharing.")
