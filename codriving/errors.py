@@ -5,6 +5,7 @@ CodrivingError                      anything this program raises on purpose
 │   ├── ConfigError                 a key, value, range or cross-field rule of the config
 │   │   └── ScenarioError           a scenario whose vehicles cannot be placed or whose road is broken
 │   ├── RunFolderError              a run folder that is unwritable, of another config, or damaged
+│   │   └── DamagedEpisodeError     an episode whose files are not as they were written; it is driven again
 │   ├── FilmError                   a film that cannot be written
 │   ├── MemoryFileError             a file of memories that is missing, damaged, or of another embedder or version
 │   ├── WeightsError                trained weights that are missing, damaged, or meant for something else
@@ -34,6 +35,10 @@ class ScenarioError(ConfigError):
 
 class RunFolderError(UserError):
     """Raised when a run folder cannot be written, belongs to another config, or is damaged."""
+
+
+class DamagedEpisodeError(RunFolderError):
+    """Raised when the files of a stored episode are missing, damaged, or of another one; a run drives it again."""
 
 
 class FilmError(UserError):

@@ -34,7 +34,9 @@ def run(server: Loopback, output: Path, *more: str) -> Result:
 def lasting(folder: Path) -> dict[str, bytes]:
     """What has to be the same in a replay."""
     paths = [folder / name for name in TABLES]
-    paths += [path for path in folder.glob("episodes/*/*/*") if path.name not in {"timing.json", "error.txt"}]
+    paths += [
+        path for path in folder.glob("episodes/*/*/*") if path.name not in {"timing.json", "error.txt", "SHA256SUMS"}
+    ]
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
 
 

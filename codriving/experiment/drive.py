@@ -1,5 +1,6 @@
 """A plan to a finished run folder: what is missing is driven, what is there is kept, tables are made from records."""
 
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
@@ -10,7 +11,7 @@ from typing import Any
 
 from codriving.config import experiments_dir, show
 from codriving.datatypes import Ending, EpisodeRecord
-from codriving.errors import ModelError, ModelUnavailableError
+from codriving.errors import DamagedEpisodeError, ModelError, ModelUnavailableError
 from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell, with_metrics
 from codriving.experiment.film import FilmEpisode
@@ -48,6 +49,7 @@ from codriving.runs import (
     new_run_path,
     read_timing,
     redact,
+    removed,
     unwritable,
     variables_in,
     versions,
@@ -144,7 +146,10 @@ def drive(
         names = dict(zip((cell.folder for cell in plan.driven), folder.manifest.rows, strict=True))
         cells = [replace(cell, folder=names[cell.folder]) for cell in plan.driven]
         shown = [replace(cell, folder=names[cell.folder]) for cell in plan.cells]
-        records = _records(folder, cells, plan.seeds)
+        damaged: list[DamagedEpisodeError] = []
+        records = _records(folder, cells, plan.seeds, damaged=damaged)
+        if damaged:
+            print(_again(damaged), file=sys.stderr)
         # One batch of all cells: no core waits for the last episode of a cell.
         units = [Unit(cell.folder, seed) for cell in cells for seed in plan.seeds]
         missing = [unit for unit in units if unit not in records]
@@ -173,13 +178,15 @@ def drive(
                             failures.note(report)
                             update(report.unit.cell, report.ending is Ending.ERROR)
         except (KeyboardInterrupt, ModelError) as stop:
-            finished = len(_records(folder, cells, plan.seeds, records))
+            finished = len(_records(folder, cells, plan.seeds, records, damaged=[]))
             if isinstance(stop, ModelError):
                 raise HaltedError(stop, folder.path, finished, len(units)) from stop
             raise Interrupted(folder.path, finished, len(units)) from None
         finally:
             folder.clean()
         everything = _records(folder, cells, plan.seeds, records, errors=True)
+        if gone := [unit for unit in units if unit not in everything]:
+            raise removed(folder.path, f"{len(gone)} of {len(units)} episodes are not there any more")
         by_folder = {
             cell.folder: scored(
                 [(folder.episode(cell.folder, seed), everything[Unit(cell.folder, seed)]) for seed in plan.seeds],
@@ -284,16 +291,34 @@ def _records(
     seeds: Sequence[int],
     known: Mapping[Unit, EpisodeRecord] | None = None,
     errors: bool = False,
+    damaged: list[DamagedEpisodeError] | None = None,
 ) -> dict[Unit, EpisodeRecord]:
-    """Read the records that are not known yet; failed episodes only on demand, since they are to be driven again."""
+    """Read the records that are not known yet; failed episodes only on demand, since they are to be driven again.
+
+    Args:
+        damaged: Takes what is wrong with each damaged episode, which then counts as not driven; None lets it be raised.
+    """
     found = dict(known or {})
     for cell in cells:
         entry = cell.entry()
         for unit in (Unit(cell.folder, seed) for seed in seeds):
-            record = None if unit in found else folder.record(entry, unit.seed)
+            try:
+                record = None if unit in found else folder.record(entry, unit.seed)
+            except DamagedEpisodeError as error:
+                if damaged is None:
+                    raise
+                damaged.append(error)
+                continue
             if record is not None and (errors or record.outcome.ending is not Ending.ERROR):
                 found[unit] = record
     return found
+
+
+def _again(damaged: Sequence[DamagedEpisodeError]) -> str:
+    """Say which episodes are driven although they are there."""
+    first = str(damaged[0]).partition("; ")[0]
+    more = f", and {len(damaged) - 1} more episodes" if len(damaged) > 1 else ""
+    return f"{first}{more}: driven again."
 
 
 def _write(plan: Plan, driven: Driven, outputs: Outputs) -> RunTables:

@@ -10,10 +10,10 @@ from typing import Any
 
 from codriving.config import build
 from codriving.datatypes import Ending, Scenario
-from codriving.errors import UserError
+from codriving.errors import DamagedEpisodeError, UserError
 from codriving.experiment.stored import read_film
 from codriving.experiment.worker import AfterEpisode, Unit
-from codriving.runs import RECORD, TRAJECTORY, episode_folder, read_record, whole_file, write_text
+from codriving.runs import RECORD, TRAJECTORY, check_files, episode_folder, read_record, whole_file, write_text
 
 FILM, FILM_ERROR = "replay.mp4", "replay-error.txt"
 
@@ -38,8 +38,14 @@ class FilmEpisode(AfterEpisode):
     def saved(self, unit: Unit) -> Ending | None:
         """Tell how an episode ended that need not be driven again."""
         folder = self._place(unit)
-        ending = read_record(folder).outcome.ending if (folder / RECORD).exists() else Ending.ERROR
-        return None if ending is Ending.ERROR else ending
+        if not (folder / RECORD).exists():
+            return None
+        try:
+            record = read_record(folder)
+            check_files(folder, record)
+        except DamagedEpisodeError:
+            return None
+        return None if record.outcome.ending is Ending.ERROR else record.outcome.ending
 
     def finish(self, unit: Unit) -> None:
         """Make the film of an episode that lacks one; ``replay-error.txt`` says why if that fails."""

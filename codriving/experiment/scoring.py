@@ -10,7 +10,7 @@ from codriving.config import TARGET, build
 from codriving.datatypes import Ending, EpisodeRecord, Metric, Scenario
 from codriving.errors import RunFolderError
 from codriving.metrics import Scorer
-from codriving.runs import RECORD, UNNAMED, encode, flat, read_trajectory, write_text
+from codriving.runs import RECORD, UNNAMED, flat, read_trajectory, rewrite_record
 
 
 def scorers_of(config: Mapping[str, Any]) -> dict[str, Scorer]:
@@ -47,7 +47,7 @@ def scored(episodes: Iterable[tuple[Path, EpisodeRecord]], config: Mapping[str, 
                     new = {name: replace(kept, settings=s.settings) if alike(s, kept) else s for name, s in new.items()}
                 record = replace(record, scores={**record.scores, **new})
                 if UNNAMED not in record.scores:
-                    write_text(folder / RECORD, encode(record))
+                    rewrite_record(folder, record)
             except OSError as error:
                 raise RunFolderError(f"cannot write {folder / RECORD}: {error.strerror or error}") from error
             except Exception as error:

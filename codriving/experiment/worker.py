@@ -11,7 +11,7 @@ from codriving.datatypes import CaseMemory, Ending, Method, Model, Simulator
 from codriving.errors import UserError
 from codriving.experiment.episode import EpisodeResult, Labels, failed_result, run_episode
 from codriving.metrics import Scorer
-from codriving.runs import episode_folder, secrets_of, timing_of, write_episode
+from codriving.runs import episode_folder, removed, secrets_of, timing_of, write_episode
 
 CELLS_AT_ONCE = 4  # Cells whose objects a worker holds
 
@@ -42,7 +42,9 @@ class SaveEpisode:
     variables: tuple[str, ...] = ()  # Environment variables whose values must not be written
 
     def __call__(self, unit: Unit, result: EpisodeResult) -> None:
-        """Write one episode, whole or not at all."""
+        """Write one episode, whole or not at all; never make anew a folder that was taken away."""
+        if not self.run.is_dir():
+            raise removed(self.run)
         write_episode(
             episode_folder(self.run, unit.cell, unit.seed),
             result.record,

@@ -4,7 +4,6 @@ from codriving.runs.atomic import whole_file, whole_folder, write_text
 from codriving.runs.continuation import changed_versions
 from codriving.runs.episode_folder import (
     EPISODES,
-    RECORD,
     UNNAMED,
     Timing,
     episode_folder,
@@ -26,18 +25,18 @@ from codriving.runs.identity import (
     settings_of,
     snapshot_of,
 )
-from codriving.runs.json_files import encode
+from codriving.runs.intact import RECORD, TRAJECTORY, check_files, rewrite_record
 from codriving.runs.manifest import FORMAT, MANIFEST, Manifest, read_manifest
 from codriving.runs.provenance import commit, machine, versions
 from codriving.runs.redaction import MASK, flat, nested, redact, secrets_of, variables_in
-from codriving.runs.run_folder import RunFolder, locked, new_run_path, unwritable, within
-from codriving.runs.trajectory_file import TRAJECTORY, read_trajectory
+from codriving.runs.run_folder import RunFolder, locked, new_run_path, removed, unwritable, within
+from codriving.runs.trajectory_file import read_trajectory
 
 __all__ = [
     "BEHAVIOUR", "CHOICES", "EPISODES", "FORMAT", "MANIFEST", "MASK", "MEMORY", "RECORD", "TRAJECTORY", "UNNAMED",
-    "CellEntry", "Manifest", "NamedFile", "RunFolder", "Timing", "changed_versions", "commit", "driving_values",
-    "encode", "episode_folder", "files_of", "fingerprint", "flat", "locked", "machine", "nested", "new_run_path",
-    "read_decisions", "read_manifest", "read_record", "read_timing", "read_trajectory", "redact", "secrets_of",
-    "settings_of", "snapshot_of", "timing_of", "unwritable", "variables_in", "versions", "whole_file", "whole_folder",
-    "within", "write_episode", "write_text",
+    "CellEntry", "Manifest", "NamedFile", "RunFolder", "Timing", "changed_versions", "check_files", "commit",
+    "driving_values", "episode_folder", "files_of", "fingerprint", "flat", "locked", "machine", "nested",
+    "new_run_path", "read_decisions", "read_manifest", "read_record", "read_timing", "read_trajectory", "redact",
+    "removed", "rewrite_record", "secrets_of", "settings_of", "snapshot_of", "timing_of", "unwritable", "variables_in",
+    "versions", "whole_file", "whole_folder", "within", "write_episode", "write_text",
 ]  # fmt: skip

@@ -4,7 +4,7 @@ import os
 import shutil
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 PARTIAL = ".partial-"  # Prefix of everything unfinished; a leading dot keeps it out of listings
@@ -79,7 +79,9 @@ def whole_folder(path: Path) -> Iterator[Path]:
 def sweep(folder: Path) -> None:
     """Remove what a killed run left unfinished directly in a folder."""
     for item in folder.glob(f"{PARTIAL}*"):
-        if item.is_dir():
+        if item.is_dir() and not item.is_symlink():
             shutil.rmtree(item, ignore_errors=True)
-        else:
+            continue
+        # What cannot be removed stays; a folder that cannot be written is told where something has to be written.
+        with suppress(OSError):
             item.unlink(missing_ok=True)

@@ -9,12 +9,10 @@ from typing import Any
 from codriving.datatypes import EpisodeRecord, Trajectory
 from codriving.errors import RunFolderError
 from codriving.runs.atomic import whole_folder
+from codriving.runs.intact import DECISIONS, RECORD, SUMS, TRAJECTORY, sums_text
 from codriving.runs.json_files import damaged, decode, encode, lines_text, parse_json, read_episode_text, read_lines
 from codriving.runs.redaction import scrubbed
-from codriving.runs.trajectory_file import TRAJECTORY, trajectory_text
-
-RECORD = "record.json"
-DECISIONS = "decisions.jsonl"  # What was shared, negotiated, removed and decided, one line a decision step
+from codriving.runs.trajectory_file import trajectory_text
 
 TRANSCRIPT = "transcript.jsonl"  # What a language model was asked and what it answered, one line a question
 
@@ -78,13 +76,13 @@ def write_episode(
         # A server may echo a key in an error or in an answer.
         record = replace(record, outcome=replace(record.outcome, message=scrubbed(record.outcome.message, secrets)))
         decisions, transcript, traceback = scrubbed((decisions, transcript, traceback), secrets)
-    files = {RECORD: encode(record), DECISIONS: lines_text(DECISIONS, decisions), TIMING: encode(timing)}
+    files = {RECORD: encode(record), DECISIONS: lines_text(DECISIONS, decisions)}
     if transcript:
         files[TRANSCRIPT] = lines_text(TRANSCRIPT, transcript)
     if trajectory is not None:
         files[TRAJECTORY] = trajectory_text(trajectory)
-    if traceback:
-        files[ERROR] = traceback
+    # Of these two nothing depends on.
+    files |= {SUMS: sums_text(files), TIMING: encode(timing)} | ({ERROR: traceback} if traceback else {})
     try:
         with whole_folder(folder) as partial:
             for name, text in files.items():
@@ -111,7 +109,7 @@ def read_record(folder: Path) -> EpisodeRecord:
             score = fields.pop("score")
             text = json.dumps({**fields, "scores": {} if score is None else {UNNAMED: score}})
         return decode(EpisodeRecord, text)
-    except ValueError as error:
+    except (ValueError, AttributeError, KeyError, RecursionError) as error:
         raise damaged(path, str(error)) from error
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from codriving.errors import RunFolderError
+from codriving.errors import DamagedEpisodeError, RunFolderError
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -103,13 +103,21 @@ def parse_json(text: str) -> Any:  # noqa: ANN401 - any JSON
 def read_episode_text(path: Path) -> str:
     """Read a file of an episode."""
     try:
-        return path.read_text(encoding="utf-8")
+        return read_episode_bytes(path).decode()
+    except UnicodeDecodeError as error:
+        raise damaged(path, str(error)) from error
+
+
+def read_episode_bytes(path: Path) -> bytes:
+    """Read a file of an episode as it is."""
+    try:
+        return path.read_bytes()
     except FileNotFoundError:
         raise damaged(path, "it is missing") from None
+    except (IsADirectoryError, NotADirectoryError) as error:
+        raise damaged(path, str(error.strerror)) from error
     except OSError as error:
         raise RunFolderError(f"cannot read {path}: {error.strerror}; check its permissions") from error
-    except ValueError as error:
-        raise damaged(path, str(error)) from error
 
 
 def read_lines(path: Path) -> tuple[dict[str, Any], ...]:
@@ -124,8 +132,8 @@ def read_lines(path: Path) -> tuple[dict[str, Any], ...]:
     return tuple(lines)
 
 
-def damaged(path: Path, reason: str) -> RunFolderError:
+def damaged(path: Path, reason: str) -> DamagedEpisodeError:
     """Return the error for a file of an episode that cannot be trusted, with its cure."""
-    return RunFolderError(
-        f"{path} is damaged ({reason}); delete the folder {path.parent} and run again: only this episode is repeated"
+    return DamagedEpisodeError(
+        f"{path} is damaged ({reason}); run again with the same run=<name>: only this episode is repeated"
     )

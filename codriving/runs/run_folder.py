@@ -10,11 +10,12 @@ from typing import Self
 from filelock import FileLock, Timeout
 
 from codriving.datatypes import Ending, EpisodeRecord
-from codriving.errors import RunFolderError
+from codriving.errors import DamagedEpisodeError, RunFolderError
 from codriving.runs.atomic import PARTIAL, sweep, write_text
 from codriving.runs.continuation import continued, other_behaviour
-from codriving.runs.episode_folder import EPISODES, RECORD, episode_folder, read_record
+from codriving.runs.episode_folder import EPISODES, episode_folder, read_record
 from codriving.runs.identity import BEHAVIOUR, CellEntry
+from codriving.runs.intact import RECORD, check_files
 from codriving.runs.json_files import damaged, encode
 from codriving.runs.manifest import MANIFEST, Manifest, read_manifest
 
@@ -98,7 +99,10 @@ class RunFolder:
         cells = {cell.folder: cell for cell in manifest.cells}
         seeds = range(manifest.first_seed, manifest.first_seed + manifest.episodes)
         records = (self.record(cells[name], seed) for name in manifest.rows for seed in seeds)
-        return all(record is not None and record.outcome.ending is not Ending.ERROR for record in records)
+        try:
+            return all(record is not None and record.outcome.ending is not Ending.ERROR for record in records)
+        except DamagedEpisodeError:
+            return False
 
     def clean(self) -> None:
         """Remove what a killed run left unfinished."""
@@ -118,13 +122,14 @@ class RunFolder:
             The record, or None if the episode has not been driven.
 
         Raises:
-            RunFolderError: If it is damaged; nothing is changed on disk.
+            DamagedEpisodeError: If it, or another file of the episode, is damaged; nothing is changed on disk.
         """
         folder = self.episode(cell.folder, seed)
         if not folder.exists():
             return None
         within(self.path, folder)
         record = read_record(folder)
+        check_files(folder, record)
         expected = (cell.scenario, cell.method, cell.variant, cell.reasoner, seed)
         found = (record.scenario, record.method, record.variant, record.reasoner, record.seed)
         if found != expected:
@@ -159,6 +164,14 @@ def within(run: Path, path: Path) -> Path:
             "put a copy in its place"
         )
     return path
+
+
+def removed(path: Path, what: str = "") -> RunFolderError:
+    """The error for a folder that vanished while it was written."""
+    return RunFolderError(
+        f"the run folder {path} was removed or moved while it was written{f' ({what})' if what else ''}; put it back "
+        "if you can, and run again with the same run=<name>: what is there is kept"
+    )
 
 
 def unwritable(path: Path, error: OSError) -> RunFolderError:

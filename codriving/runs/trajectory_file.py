@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from codriving.datatypes import EpisodeRecord, Kind, Track, Trajectory
+from codriving.runs.intact import TRAJECTORY
 from codriving.runs.json_files import damaged, read_episode_text
 
-TRAJECTORY = "trajectory.csv"
 COLUMNS = ("time", "id", "kind", "x", "y", "heading", "speed", "acceleration", "action")
 
 

@@ -1,14 +1,22 @@
 """A run: the same bytes however it comes about, resumed where it was left, refused where it must be."""
 
+import dataclasses
+import hashlib
 import json
 import os
+import re
+import shutil
+from collections.abc import Generator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from toy_plan import EPISODES, toy, toy_cell, toy_plan
 
 from codriving.errors import RunFolderError
 from codriving.experiment.drive import drive
+from codriving.experiment.launchers import Serial
+from codriving.experiment.worker import Report
 
 TABLES = ["episodes.csv", "summary.csv", "summary.md"]
 
@@ -45,7 +53,8 @@ def test_a_run_folder_holds_everything(tmp_path: Path) -> None:
     top = {item.name for item in finished.folder.iterdir()}
     assert top == {"config.yaml", "configs", "manifest.json", "timing.csv", "episodes", ".lock", *TABLES}
     episode = finished.folder / "episodes" / "toy-steady-full" / "3"
-    assert {p.name for p in episode.iterdir()} == {"record.json", "trajectory.csv", "decisions.jsonl", "timing.json"}
+    files = {"record.json", "trajectory.csv", "decisions.jsonl", "timing.json", "SHA256SUMS"}
+    assert {p.name for p in episode.iterdir()} == files
     assert len((finished.folder / "episodes.csv").read_text().splitlines()) == EPISODES + 1
 
 
@@ -135,14 +144,119 @@ def test_failed_episodes_are_records_and_are_driven_again(tmp_path: Path, refere
     assert deterministic(mended.folder) == reference
 
 
-def test_a_damaged_record_stops_before_anything_is_driven_or_lost(tmp_path: Path) -> None:
+def cut(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:-40])
+
+
+def flip(path: Path) -> None:
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+
+
+def swap(path: Path) -> None:
+    path.write_bytes((path.parent.with_name("1") / path.name).read_bytes())
+
+
+DAMAGE = {
+    "cut": cut,
+    "flipped": flip,
+    "swapped": swap,
+    "gone": Path.unlink,
+    "empty": lambda path: path.write_text(""),
+    "garbage": lambda path: path.write_bytes(b"\xff\x00garbage" * 50),
+    "a folder": lambda path: (path.unlink(), path.mkdir()),
+}
+
+
+@pytest.mark.parametrize("how", DAMAGE)
+@pytest.mark.parametrize("name", ["record.json", "trajectory.csv", "decisions.jsonl", "SHA256SUMS"])
+def test_a_damaged_episode_is_named_and_driven_again(
+    name: str, how: str, tmp_path: Path, reference: dict[str, bytes], capsys: pytest.CaptureFixture[str]
+) -> None:
     folder = drive(toy_plan(tmp_path), build=toy()).folder
-    path = folder / "episodes" / "toy-steady-full" / "4" / "record.json"
-    rewrite(path, '"seed": 4', '"seed": "4"')
-    before = all_files(folder)
-    with pytest.raises(RunFolderError, match=r"4/record\.json is damaged"):
+    path = folder / "episodes" / "toy-steady-full" / "4" / name
+    DAMAGE[how](path)
+    capsys.readouterr()
+    # Any other episode would fail.
+    again = drive(toy_plan(tmp_path), build=toy(raises=tuple(s for s in range(EPISODES) if s != 4)))
+    said = capsys.readouterr().err
+    if (name, how) == ("SHA256SUMS", "gone"):
+        # Then it is like one of release 0.1, whose files are looked at for their form.
+        assert (again.driven, said) == (0, "")
+        return
+    assert (again.driven, again.kept, again.failed) == (1, EPISODES - 1, ())
+    assert re.fullmatch(rf"{path.parent}/[\w.]+ is damaged \(.*\): driven again\.", said.splitlines()[0])
+    assert deterministic(folder) == reference
+
+
+@pytest.mark.parametrize("how", ["cut", "gone", "empty", "garbage"])
+@pytest.mark.parametrize("name", ["record.json", "trajectory.csv", "decisions.jsonl"])
+def test_damage_is_noticed_without_a_list_of_sums_too(
+    name: str, how: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = drive(toy_plan(tmp_path), build=toy()).folder
+    for path in folder.glob("episodes/*/*/SHA256SUMS"):
+        path.unlink()
+    for seed in ("4", "6"):
+        DAMAGE[how](folder / "episodes" / "toy-steady-full" / seed / name)
+    again = drive(toy_plan(tmp_path), build=toy())
+    assert again.driven == 2
+    assert re.search(rf"4/{name} is damaged \(.*\), and 1 more episodes: driven again\.", capsys.readouterr().err)
+
+
+def test_the_sums_of_an_episode_are_those_that_the_system_tells(tmp_path: Path) -> None:
+    folder = drive(toy_plan(tmp_path, episodes=1), build=toy()).folder / "episodes" / "toy-steady-full" / "0"
+    lines = (folder / "SHA256SUMS").read_text().splitlines()
+    assert [line.partition("  ")[2] for line in lines] == ["record.json", "decisions.jsonl", "trajectory.csv"]
+    for line in lines:
+        digest, _, name = line.partition("  ")
+        assert digest == hashlib.sha256((folder / name).read_bytes()).hexdigest()
+
+
+def test_a_run_folder_that_is_taken_away_ends_the_batch(tmp_path: Path) -> None:
+    class Takes(Serial):
+        def launch(self, *args: Any, **kwargs: Any) -> Generator[Report, None, None]:
+            for report in super().launch(*args, **kwargs):
+                if report.unit.seed == 2:
+                    (tmp_path / "run" / "mine").rename(tmp_path / "elsewhere")
+                yield report
+
+    plan = dataclasses.replace(toy_plan(tmp_path), launcher=Takes())
+    with pytest.raises(RunFolderError, match=r"run/mine was removed or moved while it was written; put it back if"):
+        drive(plan, build=toy())
+    assert not (tmp_path / "run" / "mine").exists()
+    assert len(list((tmp_path / "elsewhere" / "episodes" / "toy-steady-full").iterdir())) == 3
+
+
+def test_episodes_that_are_taken_away_are_missed(tmp_path: Path) -> None:
+    class Takes(Serial):
+        def launch(self, *args: Any, **kwargs: Any) -> Generator[Report, None, None]:
+            yield from super().launch(*args, **kwargs)
+            shutil.rmtree(tmp_path / "run" / "mine" / "episodes" / "toy-steady-full" / "1")
+
+    plan = dataclasses.replace(toy_plan(tmp_path), launcher=Takes())
+    with pytest.raises(RunFolderError, match=rf"removed or moved .*\(1 of {EPISODES} episodes are not there"):
+        drive(plan, build=toy())
+
+
+def test_a_disk_that_is_full_ends_the_batch_and_keeps_what_is_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, reference: dict[str, bytes]
+) -> None:
+    write = Path.write_text
+
+    def full(self: Path, *args: Any, **kwargs: Any) -> int:
+        if self.parent.name.startswith(".partial-3-"):
+            raise OSError(28, "No space left on device")
+        return write(self, *args, **kwargs)
+
+    monkeypatch.setattr(Path, "write_text", full)
+    with pytest.raises(RunFolderError, match=r"cannot write .*/3: No space left on device; make room .* are kept"):
         drive(toy_plan(tmp_path), build=toy())
-    assert all_files(folder) == before
+    monkeypatch.undo()
+    again = drive(toy_plan(tmp_path), build=toy(raises=(0, 1, 2)))
+    assert (again.kept, again.failed) == (3, ())
+    assert deterministic(again.folder) == reference
 
 
 def test_another_config_is_refused(tmp_path: Path) -> None:

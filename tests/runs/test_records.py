@@ -155,7 +155,7 @@ def test_damage_is_named_with_its_cure_and_nothing_is_lost(tmp_path: Path, recor
     with pytest.raises(RunFolderError, match=reason) as caught:
         read_record(tmp_path)
     assert str(path) in str(caught.value)
-    assert f"delete the folder {tmp_path}" in str(caught.value)
+    assert "run again with the same run=<name>: only this episode is repeated" in str(caught.value)
     assert "\n" not in str(caught.value)
     assert path.read_bytes() == before
 

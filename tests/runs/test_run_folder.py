@@ -108,7 +108,7 @@ def test_an_episode_folder_holds_its_files_and_no_clock_in_them(tmp_path: Path, 
     for name, seconds in (("a", 1.0), ("b", 2.0)):
         write_episode(tmp_path / name, record, None, [{"step": 0}], timing_of(seconds, []), "Traceback ...")
     a, b = files(tmp_path / "a"), files(tmp_path / "b")
-    assert a.keys() == {"record.json", "decisions.jsonl", "timing.json", "error.txt"}
+    assert a.keys() == {"record.json", "decisions.jsonl", "timing.json", "error.txt", "SHA256SUMS"}
     assert a.pop("timing.json") != b.pop("timing.json")
     assert a == b
 

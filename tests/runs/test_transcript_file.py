@@ -60,11 +60,11 @@ def test_no_file_of_an_episode_holds_a_key(
     secrets = secrets_of(variables_in({"llm": [{"api_key_env": "MY_KEY"}]}))
     write_episode(tmp_path / "7", record, None, [{"reason": message}], timing_of(1.0, []), message, said, secrets)
     files = sorted(tmp_path.glob("7/*"))
-    assert len(files) == 5
+    assert len(files) == 6
     for path in files:
         text = path.read_text()
         assert "canary" not in text
-        assert path.name == "timing.json" or f"you sent Bearer {MASK}" in text
+        assert path.name in ("timing.json", "SHA256SUMS") or f"you sent Bearer {MASK}" in text
     assert read_transcript(tmp_path / "7")[0]["calls"][0]["messages"][0]["content"] == MASK * 2
 
 

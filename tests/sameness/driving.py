@@ -101,7 +101,7 @@ def episodes(folder: Path) -> dict[str, bytes]:
     rows = sorted(folder.glob("episodes/*"))
     for row in rows:
         for path in sorted(row.glob("*/*")):
-            if path.name == "timing.json":
+            if path.name in ("timing.json", "SHA256SUMS"):
                 continue
             variant = json.loads((path.parent / "record.json").read_text())["variant"]
             begin = f"{variant}: " if len(rows) > 1 else ""

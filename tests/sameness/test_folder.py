@@ -27,9 +27,12 @@ def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "outputs" / "run"
 
 
+LOCAL = ("timing.json", "decisions.jsonl", "SHA256SUMS")
+
+
 def driven(folder: Path) -> dict[str, bytes]:
     """Files of the episodes, by cell, but for the decisions, whose last digits depend on the machine."""
-    files = [path for path in folder.glob("episodes/*/*/*") if path.name not in ("timing.json", "decisions.jsonl")]
+    files = [path for path in folder.glob("episodes/*/*/*") if path.name not in LOCAL]
     return {path.relative_to(folder).as_posix(): comparable(path) for path in files}
 
 
