@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 __all__ = ["__version__", "compare", "parallel_env", "run"]
 
-__version__ = "0.1.0"
+__version__ = "0.2.0.dev0"
 
 
 def run(*overrides: str, config_dir: str | Path | None = None) -> "Results":

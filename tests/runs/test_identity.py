@@ -29,7 +29,7 @@ def told(*overrides: str, names: tuple[str, ...] = NAMES, files: tuple[NamedFile
 
 
 def test_the_behaviour_number_is_that_of_release_0_1() -> None:
-    assert BEHAVIOUR == 1
+    assert BEHAVIOUR == 2
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 """Second layer: a lane change must not collide with the vehicles of the adjacent lane (Section III-C.4)."""
 
-from codriving.datatypes import Action, TrackedVehicle
+from codriving.datatypes import Action, SceneDescription, TrackedVehicle
 from codriving.reasoning.prediction.expectation import is_behind
 from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.safety_input import SIDES, SafetyInput
@@ -12,8 +12,11 @@ HEADWAY = 0.5  # Time gap to leave to the one behind [s]
 
 COMFORT = 4.0  # Braking that the one behind may be asked for [m/s2]
 
-# Distance along the road within which a vehicle on the far side of the lane could change onto it as well [m].
+# Distance along the road within which a vehicle on the far side of the lane could change onto it as well [m]; where the
+# one behind is the faster, what it covers more until it has seen the change and has braked to the other's speed is added.
 SIDE_GAP = 8.0
+
+SEEN_AFTER = 1.0  # Time after which the one behind brakes for a vehicle that changed onto the lane with it [s]
 
 HELD_UP = -0.3  # Below this acceleration a human driver is held up and may want to change lanes [m/s2]
 
@@ -64,9 +67,17 @@ def _meets(there: SafetyInput, n: TrackedVehicle, action: Action, must: bool) ->
     wanted = scene.intent.target_lane[2] + SIDES[action]
     for name, lane in there.road_map.changes.routes_beside(scene.intent.route, scene.intent.target_lane):
         for route, place in n.routes:
-            if lane[2] == wanted and route == name and abs(place - scene.place) < SIDE_GAP:
+            if lane[2] == wanted and route == name and abs(place - scene.place) < _far_side_gap(scene, n, place):
                 waits = n.intent is not None and (place, n.id) < (scene.place, scene.ego.id)
                 calm = must and n.intent is None and (n.acceleration or 0.0) > HELD_UP
                 if not waits and not calm:
                     return f"{n.id} is alongside on the other side and might change there, too"
     return ""
+
+
+def _far_side_gap(scene: SceneDescription, n: TrackedVehicle, place: float) -> float:
+    """Return the distance along the road from which two vehicles may change onto the lane between them [m]."""
+    mine, theirs = (scene.ego.speed, scene.intent.target_speed), (n.speed, n.target)
+    behind, ahead = (mine, theirs) if scene.place < place else (theirs, mine)
+    closing = max(0.0, max(behind) - min(ahead))
+    return SIDE_GAP + SEEN_AFTER * closing + closing**2 / (2 * COMFORT)

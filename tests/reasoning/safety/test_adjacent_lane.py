@@ -151,12 +151,30 @@ def test_two_cavs_at_one_speed_never_change_into_the_same_gap(highway: Junction,
         assert abs(apart) > LENGTH + 2.0
 
 
-@pytest.mark.xfail(strict=True, reason="a vehicle more than 8 m away on the far side is not looked for, however fast")
-def test_somebody_faster_from_behind_does_not_change_into_the_same_gap(highway: Junction) -> None:
-    thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, 28.0), car("CAV2", "lane-2", 312.0, 20.0))
-    assert not _goes(thoughts.safety_input("CAV1"), Action.LANE_RIGHT) or not _goes(
+@settings(max_examples=60, deadline=None)
+@given(st.floats(0.0, 80.0), SPEED, SPEED)
+def test_a_faster_one_from_behind_does_not_change_into_the_same_gap(
+    highway: Junction, apart: float, behind: float, ahead: float
+) -> None:
+    thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, behind), car("CAV2", "lane-2", 300.0 + apart, ahead))
+    if _goes(thoughts.safety_input("CAV1"), Action.LANE_RIGHT) and _goes(
         thoughts.safety_input("CAV2"), Action.LANE_LEFT
-    )
+    ):
+        # The one behind sees the other one on its lane a second later, and then brakes by 4 m/s2 to its speed.
+        closing = max(0.0, behind - ahead)
+        assert apart - closing - closing**2 / 8 > LENGTH
+
+
+def test_how_far_a_faster_vehicle_on_the_far_side_is_looked_for(highway: Junction) -> None:
+    # At 28 and 20 m/s: 8 m, 8 m of reaction and 8 m of braking.
+    for apart, goes in ((23.9, False), (24.1, True)):
+        thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, 28.0), car("CAV2", "lane-2", 300.0 + apart, 20.0))
+        assert _goes(thoughts.safety_input("CAV1"), Action.LANE_RIGHT) is goes
+        assert _goes(thoughts.safety_input("CAV2"), Action.LANE_LEFT)
+    # A slower one behind is looked for within 8 m.
+    for apart, goes in ((7.9, False), (8.1, True)):
+        thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, 20.0), car("CAV2", "lane-2", 300.0 + apart, 28.0))
+        assert _goes(thoughts.safety_input("CAV1"), Action.LANE_RIGHT) is goes
 
 
 def test_a_human_driver_on_the_far_side_might_change_there_as_well(highway: Junction) -> None:
