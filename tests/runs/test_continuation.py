@@ -117,9 +117,7 @@ def old(folder: Path, layout: int = 2, **settings: str) -> Path:
 
 
 @pytest.mark.parametrize("layout", [1, 2])
-def test_a_folder_of_release_0_1_goes_on_and_is_told_by_names_and_files_then(
-    tmp_path: Path, record: EpisodeRecord, layout: int
-) -> None:
+def test_a_folder_of_release_0_1_is_read_and_not_extended(tmp_path: Path, record: EpisodeRecord, layout: int) -> None:
     here = manifest(dataclasses.replace(cell("f9", **{"method.margin": "1.5"})))
     with RunFolder(tmp_path, here, CONFIGS):
         pass
@@ -128,10 +126,10 @@ def test_a_folder_of_release_0_1_goes_on_and_is_told_by_names_and_files_then(
     assert found is not None
     assert (found.rows, found.behaviour, found.cells[0].choices) == (("a-cell",), 1, {})
     assert found.cells[0].settings == {"seed": "0", "method.margin": "1.5"}
-    with RunFolder(tmp_path, here, CONFIGS) as folder:
-        assert folder.manifest == here
-    assert "codriving.old" not in path.read_text()
-    assert "theirs" not in path.read_text()
+    before = path.read_bytes()
+    with pytest.raises(RunFolderError, match=r"\(behaviour 1, here 2\).* not extended"):
+        RunFolder(tmp_path, here, CONFIGS)
+    assert path.read_bytes() == before
 
 
 def test_a_finished_folder_of_release_0_1_stays_to_the_byte(tmp_path: Path, record: EpisodeRecord) -> None:
@@ -164,13 +162,13 @@ def test_a_folder_of_another_behaviour_is_reported_and_not_extended(tmp_path: Pa
     with RunFolder(tmp_path, here, CONFIGS) as folder:
         write_episode(folder.episode("a-cell", 7), record, None, [], timing_of(1.0, []))
     path = tmp_path / "manifest.json"
-    path.write_text(path.read_text().replace('"behaviour": 1', '"behaviour": 7'))
+    path.write_text(path.read_text().replace('"behaviour": 2', '"behaviour": 7'))
     before = files(tmp_path)
     now = dataclasses.replace(here, versions={"codriving": "0.2"})
     with RunFolder(tmp_path, now, CONFIGS) as folder:
         assert folder.record(cell(), 7) == record
     for more in (dataclasses.replace(now, episodes=2), asked(cell(), named("b", "f2"), episodes=1)):
-        with pytest.raises(RunFolderError, match=r"by codriving 0\.9 \(behaviour 7, here 1\).* not extended"):
+        with pytest.raises(RunFolderError, match=r"by codriving 0\.9 \(behaviour 7, here 2\).* not extended"):
             RunFolder(tmp_path, dataclasses.replace(more, first_seed=7), {**CONFIGS, "b": ""})
     assert files(tmp_path) == before
 

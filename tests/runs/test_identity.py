@@ -28,7 +28,7 @@ def told(*overrides: str, names: tuple[str, ...] = NAMES, files: tuple[NamedFile
     return fingerprint(names, choices, resolved, files)
 
 
-def test_the_behaviour_number_is_that_of_release_0_1() -> None:
+def test_the_behaviour_number_is_written_down() -> None:
     assert BEHAVIOUR == 2
 
 

@@ -1,7 +1,8 @@
 """Writes the golden values: ``PYTHONPATH=CHECKOUT python tests/sameness/record.py [WORD ...]``.
 
-They were recorded with a checkout of version 0.1. With words, only the cells in whose name one of them is are recorded
-anew; a change of the code is no reason to do so unless it is meant to change what is driven.
+They were recorded with a checkout of version 0.1, but for the cells in which a later behaviour number drives otherwise.
+With words, only the cells in whose name one of them is are recorded anew; a change of the code is no reason to do so
+unless it is meant to change what is driven.
 """
 
 import os

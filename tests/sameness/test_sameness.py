@@ -1,4 +1,4 @@
-"""What version 0.1 drove is driven today: hashes of records and trajectories, prompts and the texts of memories."""
+"""What this behaviour number drove is driven today: hashes of records, trajectories, prompts and memories."""
 
 from pathlib import Path
 

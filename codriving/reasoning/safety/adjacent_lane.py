@@ -12,8 +12,8 @@ HEADWAY = 0.5  # Time gap to leave to the one behind [s]
 
 COMFORT = 4.0  # Braking that the one behind may be asked for [m/s2]
 
-# Distance along the road within which a vehicle on the far side of the lane could change onto it as well [m]; where the
-# one behind is the faster, what it covers more until it has seen the change and has braked to the other's speed is added.
+# Distance along the road within which a vehicle on the far side of the lane could change onto it as well [m]; where
+# the one behind is faster, what it gains until it has seen the change and has braked to the other's speed is added.
 SIDE_GAP = 8.0
 
 SEEN_AFTER = 1.0  # Time after which the one behind brakes for a vehicle that changed onto the lane with it [s]
