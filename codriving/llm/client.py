@@ -131,6 +131,7 @@ class ModelChat(Chat):
     async def _answer(self, messages: tuple[Message, ...], question: Question) -> tuple[Reply, bool]:
         """Reply to a conversation from the cache or by asking, and say which."""
         request = self._request(messages, schema_of(question.schema))
+        request = replace(request, max_tokens=request.max_tokens + question.more_tokens)
         try:
             if self._cache is not None:
                 return await self._cached(self._cache, request)

@@ -29,6 +29,7 @@ class Question:
     # Gives the same question with less in it, if the model's context is too short; None if nothing more can be left
     # out.
     shorter: "Callable[[], Question | None]" = lambda: None
+    more_tokens: int = 0  # How much longer the answer may be than ``llm.max_tokens`` [tokens]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +38,7 @@ class Call:
 
     messages: tuple[Message, ...]
     text: str
-    form: str  # How the answer was asked for: ``json_schema``, ``json_object`` or ``text``
+    form: str  # How the answer was asked for, see ``FORMS``
     prompt_tokens: int
     completion_tokens: int
     cost: float | None  # What it cost [USD]; None where no price is known

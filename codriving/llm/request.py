@@ -56,7 +56,7 @@ class Reply:
         raise ModelError("the file of llm.cache_file was written by another version; name another one")
 
 
-FORMS = ("json_schema", "json_object", "text")  # Strictest first
+FORMS = ("json_schema", "json_schema_any_length", "json_object", "text")  # Strictest first
 
 
 @lru_cache(maxsize=256)
@@ -90,12 +90,22 @@ def response_format(form: str, schema: Mapping[str, Any] | None) -> dict[str, An
         return None
     if form == "json_object":
         return {"type": "json_object"}
-    return {"type": "json_schema", "json_schema": {"name": "answer", "strict": True, "schema": dict(schema)}}
+    asked = dict(schema) if form == "json_schema" else _any_length(schema)
+    return {"type": "json_schema", "json_schema": {"name": "answer", "strict": True, "schema": asked}}
+
+
+def _any_length(node: Any) -> Any:  # noqa: ANN401 - any JSON
+    """Leave out how long a text may be, which some servers do not take in a schema."""
+    if isinstance(node, list):
+        return [_any_length(inner) for inner in node]
+    if not isinstance(node, dict):
+        return node
+    return {key: _any_length(inner) for key, inner in node.items() if key != "maxLength" or isinstance(inner, dict)}
 
 
 def worded(messages: tuple[Message, ...], form: str, schema: Mapping[str, Any] | None) -> tuple[Message, ...]:
     """Describe the schema in the first user message where the form does not carry it."""
-    if schema is None or form == "json_schema":
+    if schema is None or form.startswith("json_schema"):
         return messages
     wish = (
         "Answer with one JSON object and nothing else, no code fence, no prose. It has to fit this JSON schema:\n"

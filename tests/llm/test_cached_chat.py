@@ -17,7 +17,7 @@ from codriving.llm.spending import Spending
 def troubled(request: ChatRequest, form: str) -> CallError | str:
     """A server with a short context, no JSON schema, and a bad first answer."""
     words = request.messages[1].content
-    if form == "json_schema":
+    if form.startswith("json_schema"):
         return CallError(FaultKind.FORM, "400: response_format")
     if len(words) > 20:
         return CallError(FaultKind.TOO_LONG, "400: context")

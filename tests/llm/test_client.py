@@ -110,10 +110,18 @@ def test_form_is_stepped_down_once_for_all_questions() -> None:
     sender = FakeSender(reply_to)
     client = chat(sender)
     (call,) = ask(client).calls
-    assert (call.form, call.attempts) == ("text", 3)
+    assert (call.form, call.attempts) == ("text", 4)
     assert "JSON schema" in call.messages[1].content
     client.ask([question()] * 3)
-    assert [form for _, form, _ in sender.sent] == ["json_schema", "json_object", "text", "text", "text", "text"]
+    steps = ["json_schema", "json_schema_any_length", "json_object", "text"]
+    assert [form for _, form, _ in sender.sent] == [*steps, "text", "text", "text"]
+
+
+def test_a_longer_answer_is_given_its_length() -> None:
+    sender = FakeSender()
+    ask(chat(sender), question(more_tokens=600))
+    ask(chat(sender))
+    assert [request.max_tokens for request, _, _ in sender.sent] == [900, 300]
 
 
 @pytest.mark.parametrize("kind", [FaultKind.TIMEOUT, FaultKind.DROPPED, FaultKind.RATE, FaultKind.SERVER])

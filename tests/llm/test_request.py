@@ -5,6 +5,7 @@ from typing import Literal
 
 from pydantic import BaseModel
 
+from codriving.llm.prompts.replies import LessonReply, correction_reply, decision_reply, order_reply
 from codriving.llm.question import Message
 from codriving.llm.request import FORMS, Forms, response_format, schema_of, worded
 
@@ -23,6 +24,7 @@ class Orders(BaseModel):
     action: Literal["IDLE", "SLOWER"]
 
 
+PAIRS = {f"p{k}": ("CAV1", f"CAV{k + 1}") for k in range(1, 25)}
 SCHEMA = schema_of(Orders)
 TALK = (Message("system", "You drive."), Message("user", "Choose."))
 
@@ -50,6 +52,28 @@ def test_each_form_says_the_schema_once() -> None:
         assert json.loads(told[1].content.splitlines()[-1]) == SCHEMA
 
 
+def test_lengths_go_first() -> None:
+    decision = schema_of(decision_reply(("IDLE",)))
+    bounded, free = (response_format(form, decision) for form in FORMS[:2])
+    assert bounded is not None
+    assert free is not None
+    assert bounded["json_schema"]["schema"]["properties"]["reason"] == {"type": "string", "maxLength": 240}
+    assert free["json_schema"]["schema"]["properties"]["reason"] == {"type": "string"}
+    assert free["json_schema"]["schema"]["required"] == ["reason", "action"]
+    assert worded(TALK, "json_schema_any_length", decision) == TALK
+    named = {"properties": {"maxLength": {"type": "string", "maxLength": 3}}}
+    asked = response_format("json_schema_any_length", named)
+    assert asked is not None
+    assert asked["json_schema"]["schema"] == {"properties": {"maxLength": {"type": "string"}}}
+
+
+def test_a_form_leaves_no_way_to_run_on() -> None:
+    forms = (decision_reply(("IDLE", "SLOWER")), correction_reply(("IDLE",)), order_reply(PAIRS), LessonReply)
+    for schema in map(schema_of, forms):
+        assert schema["additionalProperties"] is False
+        assert all("enum" in node or node["maxLength"] == 240 for node in schema["properties"].values())
+
+
 def test_without_a_schema_nothing_is_added() -> None:
     for form in FORMS:
         assert response_format(form, None) is None
@@ -60,8 +84,9 @@ def test_step_down_is_remembered_once_per_model() -> None:
     forms = Forms()
     assert forms.step_down("a", None, "json_schema")
     assert forms.step_down("a", None, "json_schema"), "a question that was on its way when the first one was refused"
-    assert forms.best("a", None) == "json_object"
+    assert forms.best("a", None) == "json_schema_any_length"
     assert forms.best("b", None) == forms.best("a", "http://elsewhere/v1") == "json_schema"
+    assert forms.step_down("a", None, "json_schema_any_length")
     assert forms.step_down("a", None, "json_object")
     assert not forms.step_down("a", None, "text")
     assert forms.best("a", None) == "text"

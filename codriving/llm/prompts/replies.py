@@ -33,7 +33,8 @@ def _one_word(words: Sequence[str]) -> WithJsonSchema:
     return WithJsonSchema({"enum": list(words), "type": "string"})
 
 
-Reason = Annotated[str, BeforeValidator(_short)]  # A reason: on one line, and capped
+# A reason: on one line, and capped; a model may write a little more than is kept, rather than in the middle of a word.
+Reason = Annotated[str, BeforeValidator(_short), WithJsonSchema({"type": "string", "maxLength": 240})]
 
 ActionWord = Annotated[str, BeforeValidator(_upper)]
 

@@ -21,6 +21,9 @@ from codriving.reasoning import (
 
 AgreedPairs = dict[Pair, str]  # Pairs of CAVs, the one that goes first first, and why
 
+# A pair takes 10 tokens in the form that is asked for, 15 where names are long, and 25 in the form of version 0.1.
+TOKENS_A_PAIR = 25
+
 OpenPairs = Mapping[str, Conflict]  # The pairs of a question: the most urgent conflict of each, by the name of the pair
 
 
@@ -108,7 +111,7 @@ class ModelCoordinator(Coordinator):
             return self._question(scenes, problem, half, names) if half else None
 
         messages = self.model.prompts.messages("negotiate", values)
-        return Question("negotiate", "", messages, order_reply(shown), check, shorter)
+        return Question("negotiate", "", messages, order_reply(shown), check, shorter, TOKENS_A_PAIR * len(pairs))
 
 
 def _most_urgent(problem: Problem, conflicts: Mapping[str, tuple[Conflict, ...]]) -> dict[Pair, Conflict]:

@@ -58,6 +58,8 @@ def test_model_decides_the_pairs_and_gives_the_reasons(junction: Junction) -> No
     counts, lines = ledger.close_step(0.0)
     assert chat.calls == counts["model_calls"] == 1
     assert not counts.get("repaired_orders")
+    # Of three pairs, 25 each: a list of 24 pairs with short reasons takes 604 tokens, and 300 are there anyway.
+    assert [q.more_tokens for q in chat.questions] == [75]
     assert [(line["purpose"], line["subject"]) for line in lines] == [("negotiate", "")]
 
 
