@@ -18,8 +18,8 @@ from tests.mutants.forked import Outcome, reach, run
 
 HERE = Path(__file__).parent
 ROOMS = ("codriving/reasoning/safety", "codriving/reasoning/ordering", "codriving/reasoning/decision")
-METHODS = ("codriving", "deliberation", "fcfs", "idfst", "lanes", "ordered", "pipeline")
-TESTS = ("tests/reasoning", *(f"tests/methods/test_{name}.py" for name in METHODS))
+METHODS = ("codriving", "codriving_deliberation", "codriving_lanes", "fcfs", "idfst", "ordered", "pipeline")
+TESTS = ("tests/reasoning", "tests/methods/language_model", *(f"tests/methods/test_{name}.py" for name in METHODS))
 LEAST = 0.8
 """Share of the changes that has to be noticed."""
 
