@@ -62,7 +62,7 @@ def test_a_junction_is_never_cut_into_rows() -> None:
     assert len(Camera(drive(-190.0, 0.0), large(), VIEW).at(0.0)) == 1
 
 
-def test_where_everybody_is_far_from_the_shared_part_they_are_in_the_middle() -> None:
+def test_where_every_vehicle_is_far_from_the_shared_part_they_are_in_the_middle() -> None:
     trajectory = Trajectory(0.1, (replace(drive(-150.0).tracks[0], x=np.linspace(-190.0, -150.0, 200)),))
     (window,) = Camera(trajectory, large(), VIEW).at(3.0)
     assert window.x == pytest.approx(-170.0)
@@ -78,7 +78,7 @@ def test_a_long_road_is_shown_as_a_whole_in_rows_that_stay() -> None:
         assert sum(window.owns((x, 0.0)) for window in windows) == 1
 
 
-def test_a_row_shows_lanes_that_nobody_drives_on() -> None:
+def test_a_row_shows_lanes_that_no_vehicle_drives_on() -> None:
     windows = overview(np.array([(0.0, 0.0), (780.0, 0.0)]), highway(lanes=4), VIEW)
     assert all(windows[1].sees([(windows[1].x, y)]) for y in (0.0, 4.0, 8.0, 12.0))
 

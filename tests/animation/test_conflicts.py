@@ -91,7 +91,7 @@ def test_one_behind_the_other_meet_between_them() -> None:
         assert lines
 
 
-def test_whoever_has_left_the_road_is_in_no_conflict() -> None:
+def test_a_vehicle_that_has_left_the_road_is_in_no_conflict() -> None:
     assert (drawn(meeting(other="HDV9")) == drawn()).all()
 
 

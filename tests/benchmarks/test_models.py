@@ -27,7 +27,7 @@ def test_what_is_asked_is_shared_among_all_steps() -> None:
     assert row["full_step_tokens"] == round(100 + 4 * 160 / 3)
 
 
-def test_nobody_asked_is_nothing() -> None:
+def test_no_question_is_nothing() -> None:
     row = model_questions.summary([], 4, len)
     assert (row["calls"], row["tokens"], row["full_step_tokens"]) == (0, 0, 0)
 

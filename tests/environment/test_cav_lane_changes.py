@@ -95,7 +95,7 @@ def test_changes_are_offered_where_there_is_a_lane_that_may_be_used(
     assert {Action.SLOWER, Action.IDLE, Action.FASTER} <= set(offered)
 
 
-def test_nobody_changes_lanes_while_standing(by_hand: Build, highway: Road) -> None:
+def test_no_vehicle_changes_lanes_while_standing(by_hand: Build, highway: Road) -> None:
     env = by_hand(starts=[Start("CAV1", CAV, "lane-1", 100.0, 0.0)], road=highway, target_speeds=FAST)
     assert set(env.reset(0).available["CAV1"]) == {Action.SLOWER, Action.IDLE, Action.FASTER}
 
@@ -123,7 +123,7 @@ def test_only_beside_all_lanes_is_off_the_road(y: float, off_road: bool, by_hand
         assert (env.outcome.ending, env.outcome.off_road) == (Ending.OFF_ROAD, ("CAV1",))
 
 
-def test_between_two_lanes_nobody_is_off_the_road(by_hand: Build, highway: Road) -> None:
+def test_between_two_lanes_no_vehicle_is_off_the_road(by_hand: Build, highway: Road) -> None:
     starts = [Start("CAV1", CAV, "lane-0", 100.0, 10.0)]
     env = by_hand(starts=starts, road=highway, target_speeds=FAST, time_limit=20.0)
     env.reset(0)

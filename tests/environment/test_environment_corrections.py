@@ -128,7 +128,7 @@ def test_vehicles_are_on_the_lane_of_their_own_route(by_hand: Build) -> None:
     assert lanes["route_lane",] == ("ir0", "il3", 0)
 
 
-def test_nobody_is_frozen_inside_the_junction(by_hand: Build) -> None:
+def test_no_vehicle_is_frozen_inside_the_junction(by_hand: Build) -> None:
     starts = [Start("HDV1", HDV, "south-north", 101.0, 4.0), Start("CAV1", CAV, "west-east", 97.0, 6.0)]
     for off, target in (((), 4.0), (("yield_at_entry",), 0.0)):
         env = by_hand(*off, starts=starts)

@@ -42,7 +42,7 @@ def test_drivers_have_the_parameters_of_the_settings_and_the_class_has_none(env:
 
 
 @on_each
-def test_whatever_is_decided_everybody_is_where_the_world_says(env: Environment) -> None:
+def test_whatever_is_decided_every_vehicle_is_where_the_world_says(env: Environment) -> None:
     rng, lanes = np.random.default_rng(0), env.road_map.lanes
     for seed in (0, 1):
         world = env.reset(seed)

@@ -71,7 +71,7 @@ def test_the_methods_are_those_that_exist() -> None:
     assert "method=codriving" in THERE
 
 
-def test_a_method_of_ones_own_is_added_once_and_takes_no_ones_place(own: Path) -> None:
+def test_a_method_of_ones_own_is_added_once_and_takes_no_place(own: Path) -> None:
     assert methods("baselines", "method=mine", config_dir=own) == [*THERE, "method=mine"]
     assert methods("load", "method=mine,codriving,other", "scenario.cavs=4", "scenario=merge", config_dir=own) == [
         *THERE,

@@ -34,7 +34,7 @@ def test_agents_leave_one_by_one(make: Make) -> None:
     assert env.agents == []
 
 
-def test_a_collision_terminates_everybody_and_blames_who_took_part(make: Make) -> None:
+def test_a_collision_terminates_all_agents_and_names_who_took_part(make: Make) -> None:
     env = make(cavs=8, reward={"collision": -50.0})
     for seed in range(20):
         observations, rewards, terminated, truncated, infos = episode(env, always(FASTER), seed)[-1]
@@ -55,7 +55,7 @@ def test_a_collision_terminates_everybody_and_blames_who_took_part(make: Make) -
     assert env.agents == []
 
 
-def test_the_time_limit_truncates_everybody(make: Make) -> None:
+def test_the_time_limit_truncates_all_agents(make: Make) -> None:
     env = make(time_limit=4.0, cav_speed=(5.0, 5.0), hdvs=(0, 0))
     observations, _, terminated, truncated, infos = episode(env, always(SLOWER), seed=0)[-1]
     assert truncated == dict.fromkeys(env.possible_agents, True)

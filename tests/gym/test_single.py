@@ -42,7 +42,7 @@ def test_passes_the_check_of_gymnasium(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", choices("scenario"))
-def test_everybody_starts_where_they_always_do(name: str) -> None:
+def test_every_vehicle_starts_where_they_always_do(name: str) -> None:
     scenario = configured(name, (), "full", None, {})[0].scenario
     for seed in range(10_000, 10_005):
         full, one = scenario.scene(seed), OneCav(scenario).scene(seed)

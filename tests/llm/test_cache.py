@@ -26,7 +26,7 @@ def asked(number: int) -> dict[str, Any]:
     return {**REQUEST, "number": number}
 
 
-def test_what_was_kept_is_found_by_everybody(tmp_path: Path) -> None:
+def test_what_was_kept_is_found_by_each_process(tmp_path: Path) -> None:
     path = tmp_path / "deep" / "llm-cache.sqlite"
     cache = AnswerCache(path, "use")
     assert cache.find(REQUEST) is None
@@ -38,7 +38,7 @@ def test_what_was_kept_is_found_by_everybody(tmp_path: Path) -> None:
     assert AnswerCache(str(path), "replay").find(REQUEST) == REPLY
 
 
-def test_the_first_reply_stays_and_everybody_is_given_it(tmp_path: Path) -> None:
+def test_the_first_reply_stays_and_each_process_is_given_it(tmp_path: Path) -> None:
     one, other = AnswerCache(tmp_path / "c", "use"), AnswerCache(tmp_path / "c", "use")
     assert one.keep(REQUEST, {"text": "first"}) == {"text": "first"}
     assert other.keep(REQUEST, {"text": "second"}) == {"text": "first"}

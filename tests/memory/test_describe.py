@@ -38,7 +38,7 @@ def test_scene_conflict_and_order_in_words_and_numbers(junction: Junction) -> No
     assert told.numbers["lead_gap"] == pytest.approx(25.0, abs=0.2)
 
 
-def test_nobody_and_nothing_is_named(junction: Junction) -> None:
+def test_no_vehicle_and_nothing_else_is_named(junction: Junction) -> None:
     text = describe(situation(junction, *MET, order=order_of("CAV2 CAV1"))).text
     assert not re.search(r"CAV\d|HDV\d|south|north|west|east", text)
 

@@ -100,7 +100,7 @@ def test_a_collision_soon_after_is_put_down_to_it(time: float, within: bool) -> 
     assert verdict_of(effect, Action.FASTER) is (Verdict.INTENSIFIED if within else Verdict.NEUTRAL)
 
 
-def test_whoever_braked_before_the_collision_is_not_to_blame() -> None:
+def test_a_vehicle_that_braked_before_the_collision_is_not_to_blame() -> None:
     way = crossing_way(
         20.0, 28.0, [8.0, 5.0, 2.0], [8.0] * 3, Action.SLOWER, collision=OwnCollision(2.0, "CAV2", False)
     )
@@ -114,7 +114,7 @@ def test_whoever_braked_before_the_collision_is_not_to_blame() -> None:
 
 
 @pytest.mark.parametrize("striker", [True, False])
-def test_on_one_lane_only_whoever_runs_into_somebody_is_to_blame(striker: bool) -> None:
+def test_on_one_lane_only_the_vehicle_behind_is_to_blame(striker: bool) -> None:
     way = DecisionHistory(
         tuple(moment(Action.FASTER, 5.0 * k, 10.0) for k in range(4)), 0.5, OwnCollision(1.5, "HDV1", striker)
     )
@@ -129,7 +129,7 @@ def test_a_lane_change_before_a_collision_is_what_led_to_it() -> None:
     assert [effect_of(way, k).to_blame for k in range(4)] == [False, True, False, False]
 
 
-def test_cutting_in_so_that_somebody_has_to_brake_hard_has_intensified_it() -> None:
+def test_cutting_in_so_that_a_vehicle_has_to_brake_hard_has_intensified_it() -> None:
     def behind(x: float, speed: float) -> tuple[object, ...]:
         return (vehicle("HDV1", x, speed),)
 
@@ -153,12 +153,12 @@ def waiting(other_speed: float, could_go: bool = True, lead_gap: float | None = 
     return DecisionHistory(moments, 0.5)
 
 
-def test_waiting_for_somebody_who_does_not_come_is_too_cautious() -> None:
+def test_waiting_for_a_vehicle_that_does_not_come_is_too_cautious() -> None:
     assert verdict_of(effect_of(waiting(0.0), 0), Action.IDLE) is Verdict.TOO_CAUTIOUS
 
 
 @pytest.mark.parametrize("way", [waiting(4.0), waiting(0.0, could_go=False), waiting(0.0, lead_gap=4.0)])
-def test_waiting_for_somebody_who_comes_or_because_nothing_else_is_safe_is_not(way: DecisionHistory) -> None:
+def test_waiting_for_a_vehicle_that_comes_or_because_nothing_else_is_safe_is_not(way: DecisionHistory) -> None:
     assert not effect_of(way, 0).needless
 
 

@@ -50,7 +50,7 @@ def test_a_slow_driver_is_overtaken_whatever_is_shared(change: dict[str, Any], h
 
 
 @pytest.mark.parametrize("change", [{}, SENSED, ALONE])
-def test_nobody_changes_onto_a_vehicle_beside_whatever_is_shared(change: dict[str, Any], highway: Junction) -> None:
+def test_no_vehicle_changes_onto_a_vehicle_beside_whatever_is_shared(change: dict[str, Any], highway: Junction) -> None:
     slow = car("HDV1", "lane-1", 335.0, 15.0)
     me = car("CAV1", "lane-1", 300.0, 20.0)
     for left, right, expected in ((False, False, CHANGES), (True, False, {Action.LANE_RIGHT}), (True, True, set())):

@@ -33,7 +33,7 @@ def drive(environment: Environment, seed: int) -> dict[str, list[tuple[Action, s
 
 @pytest.mark.parametrize("seed", [10_001, 20_002])
 @pytest.mark.parametrize("scenario", ["intersection", "roundabout"])
-def test_where_ways_cross_or_meet_everybody_arrives_without_changing_lanes(
+def test_where_ways_cross_or_meet_every_vehicle_arrives_without_changing_lanes(
     scenario: str, seed: int, configured: Make
 ) -> None:
     for steps in drive(configured(f"scenario={scenario}"), seed).values():

@@ -19,7 +19,7 @@ def test_bid_is_the_formula() -> None:
     assert bid(vehicle("a", 2, distance=18.0, speed=9.0), 4.0) == pytest.approx(0.4 + 3 / 20 + 1 / 2.5)
 
 
-def test_nobody_bids_without_end() -> None:
+def test_no_vehicle_bids_without_end() -> None:
     assert bid(vehicle("a", 0, distance=0.0, speed=0.0), 0.0) == pytest.approx(3 / 2 + 1 / 0.5)
     assert bid(vehicle("a", 0, distance=10.0, speed=0.0), 0.0) == bid(vehicle("a", 0, distance=10.0, speed=0.5), 0.0)
 
@@ -80,7 +80,7 @@ def test_order_that_cannot_be_kept_any_more_is_given_up() -> None:
 
 
 @given(st.dictionaries(st.text("abcdef", min_size=1, max_size=1), st.floats(0, 5), min_size=1), st.floats(0, 1))
-def test_nobody_stays_behind_who_bids_enough_more(bids: dict[str, float], by: float) -> None:
+def test_no_vehicle_stays_behind_who_bids_enough_more(bids: dict[str, float], by: float) -> None:
     order = overtaken(sorted(bids), bids, by)
     assert sorted(order) == sorted(bids)
     assert all(bids[b] <= bids[a] + by for a, b in pairwise(order))

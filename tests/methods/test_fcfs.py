@@ -46,7 +46,7 @@ def test_tickets_do_not_change_when_arrivals_do() -> None:
     assert rule.order(instance({"a": 6.0, "b": 2.0}, separation), NoPlanner()).sequence == ("b", "a")
 
 
-def test_whoever_comes_later_gets_a_ticket_within_the_radius() -> None:
+def test_a_vehicle_that_comes_later_gets_a_ticket_within_the_radius() -> None:
     rule, separation = FirstComeFirstServed(control_radius=50.0), both("a", "b", 2.0)
     rule.order(instance({"a": 9.0}, a={"distance": 80.0}), NoPlanner())
     assert "a" in rule.tickets.held, "at the first step everybody gets one"

@@ -23,7 +23,7 @@ from codriving.reasoning.ordering.schedule import (
 
 
 @pytest.mark.parametrize("windows", [False, True])
-def test_nobody_passes_later_than_with_fcfs(windows: bool) -> None:
+def test_no_vehicle_passes_later_than_with_fcfs(windows: bool) -> None:
     earlier = 0
     for seed in range(10_000, 10_340):
         problem = crossroads(seed, 2 + seed % 23, windows)

@@ -64,7 +64,7 @@ def test_the_same_seed_gives_the_same_lines(scenario: str, configured: Make) -> 
     assert json.loads(json.dumps(lines[0], allow_nan=False)) == lines[0]
 
 
-def test_it_gets_everybody_through_the_junction(configured: Make) -> None:
+def test_it_gets_every_vehicle_through_the_junction(configured: Make) -> None:
     environment = configured("scenario=intersection", "scenario.cavs=4", "scenario.hdvs=[0,0]")
     endings = []
     for seed in range(10_000, 10_004):
@@ -88,7 +88,7 @@ def test_alone_on_a_lane_it_goes(highway: Junction) -> None:
 @pytest.mark.parametrize("other", ["CAV2", "HDV1"])
 @pytest.mark.parametrize("speed", [6.0, 7.5])
 @pytest.mark.parametrize(("distance", "pace"), [(10.0, 2.0), (6.0, 0.0)])
-def test_it_does_not_speed_up_before_a_zone_that_somebody_is_in(
+def test_it_does_not_speed_up_before_a_zone_that_a_vehicle_is_in(
     other: str, speed: float, distance: float, pace: float, junction: Junction
 ) -> None:
     zone = junction.road_map.zones("south-north", "west-east")[0]

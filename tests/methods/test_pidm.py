@@ -24,13 +24,13 @@ def test_alone_it_accelerates_at_any_speed_below_the_top(junction: Junction) -> 
     assert decide(pidm(), junction, car("CAV1", "south-north", 40.0, 9.0)).action is Action.IDLE
 
 
-def test_it_slows_down_behind_somebody_who_stands_on_its_lane(junction: Junction) -> None:
+def test_it_slows_down_behind_a_vehicle_that_stands_on_its_lane(junction: Junction) -> None:
     choice = decide(pidm(), junction, EGO, car("HDV1", "south-north", 84.0, 0.0))
     assert choice.action is Action.SLOWER
     assert choice.reason.startswith("HDV1 is ahead")
 
 
-def test_far_behind_somebody_faster_it_accelerates(junction: Junction) -> None:
+def test_far_behind_a_faster_vehicle_it_accelerates(junction: Junction) -> None:
     assert decide(pidm(), junction, EGO, car("HDV1", "south-north", 110.0, 8.0)).action is Action.FASTER
 
 
@@ -67,7 +67,7 @@ def test_who_has_waited_long_enough_starts_into_an_empty_zone(junction: Junction
     assert set(actions[patience:]) == {Action.FASTER}
 
 
-def test_nobody_starts_into_a_zone_in_which_somebody_stands(junction: Junction) -> None:
+def test_no_vehicle_starts_into_a_zone_in_which_a_vehicle_stands(junction: Junction) -> None:
     stuck = (car("CAV1", "south-north", 102.0, 0.0), car("HDV1", "west-east", 112.0, 0.0))
     driver = pidm()
     assert all(driver.decide(*view).action is not Action.FASTER for view in seen_each(junction, [stuck] * 12))
@@ -109,7 +109,7 @@ def test_of_those_who_wait_each_starts_after_the_one_before(junction: Junction) 
     assert actions.index(Action.FASTER) == round((driver.patience + TURN) / junction.model.decision_interval)
 
 
-def test_nobody_waits_inside_another_crossing(junction: Junction) -> None:
+def test_no_vehicle_waits_inside_another_crossing(junction: Junction) -> None:
     # HDV1 comes from the right and goes first; the CAV is first before HDV2, whose crossing lies on the way.
     ego, right = car("CAV1", "south-north", 97.0, 3.0), car("HDV1", "east-west", 103.0, 6.0)
     left = car("HDV2", "west-east", 78.0, 4.0)

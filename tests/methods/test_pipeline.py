@@ -48,7 +48,7 @@ def test_without_state_sharing_headings_lanes_and_accelerations_of_others_are_no
         assert shared[0] != shared[1], "with state sharing they are known"
 
 
-def test_without_state_sharing_nobody_far_away_is_known(method: Make, junction: Junction) -> None:
+def test_without_state_sharing_no_vehicle_far_away_is_known(method: Make, junction: Junction) -> None:
     near = car("CAV1", "south-north", 40.0, 7.0)
     far = [car("CAV2", "north-south", 40.0, 7.0), car("CAV3", "west-north", 50.0, 7.0)]
     alone, among = (
@@ -92,7 +92,7 @@ def test_without_intent_sharing_crossing_traffic_changes_no_decision(
             assert alone == among
 
 
-def test_the_true_route_of_a_human_driver_is_known_to_nobody(method: Make, junction: Junction) -> None:
+def test_the_true_route_of_a_human_driver_is_known_to_no_cav(method: Make, junction: Junction) -> None:
     lines = []
     for route in ("west-north", "west-east", "west-south"):
         starts = Start("CAV1", Kind.CAV, "south-north", 80.0, 7.0), Start("HDV1", Kind.HDV, route, 75.0, 7.0)

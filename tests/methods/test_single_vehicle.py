@@ -119,7 +119,7 @@ def test_four_at_once_do_not_wait_for_one_another_for_ever(name: str, junction: 
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_nobody_is_in_conflict_with_somebody_it_cannot_see(name: str, junction: Junction) -> None:
+def test_no_vehicle_is_in_conflict_with_a_vehicle_it_cannot_see(name: str, junction: Junction) -> None:
     method = made(name)
     method.reset(junction.road_map, junction.model, 0)
     step = method.act(junction.world(car("CAV1", "south-north", 30.0, 6.0), car("CAV2", "west-east", 30.0, 6.0)))

@@ -51,7 +51,7 @@ def test_another_config_is_refused_with_the_keys_that_differ(tmp_path: Path) -> 
     assert files(tmp_path) == before
 
 
-def test_a_folder_of_somebody_elses_is_left_alone(tmp_path: Path) -> None:
+def test_a_folder_of_another_user_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("years of work")
     with pytest.raises(RunFolderError, match=r"no run folder \(it holds thesis.tex\)"):
         RunFolder(tmp_path, manifest(), CONFIGS)

@@ -30,7 +30,7 @@ def test_rows_go_by_time_and_then_by_track() -> None:
     ]
 
 
-def test_nobody_gives_the_header_alone() -> None:
+def test_no_vehicle_gives_the_header_alone() -> None:
     assert trajectory_text(Trajectory(0.1, ())) == "time,id,kind,x,y,heading,speed,acceleration,action\n"
 
 

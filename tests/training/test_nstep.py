@@ -98,7 +98,7 @@ def test_a_crash_is_blamed_on_those_who_are_in_it() -> None:
     ]  # fmt: skip
 
 
-def test_the_time_limit_bootstraps_for_everybody() -> None:
+def test_the_time_limit_bootstraps_for_all_agents() -> None:
     found = list(remembered(moment(Ending.TIMEOUT), {}, 2, GAMMA))
     assert [(t.action, t.discount, t.later[0]) for t in found] == [(0, 0.5, 100), (1, 0.5, 101), (2, 0.5, 102)]
 

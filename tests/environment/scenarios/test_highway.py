@@ -46,7 +46,7 @@ def test_seeds_cover_every_lane_and_number_of_drivers() -> None:
     spacing=st.floats(6, 40),
     far=st.floats(100, 400),
 )
-def test_everybody_can_brake(seed: int, cavs: int, hdvs: int, lanes: int, spacing: float, far: float) -> None:
+def test_every_vehicle_can_brake(seed: int, cavs: int, hdvs: int, lanes: int, spacing: float, far: float) -> None:
     speeds = {"cav_speed": (10.0, 30.0), "hdv_speed": (15.0, 24.0)}
     room = {"lanes": lanes, "spacing": spacing, "start": (20.0, far), "finish": 800.0}
     try:

@@ -62,7 +62,7 @@ def test_seeds_cover_every_route_and_number_of_drivers() -> None:
     spacing=st.floats(6, 14),
     speed=st.floats(0, 10),
 )
-def test_everybody_can_brake(seed: int, cavs: int, hdvs: int, near: float, spacing: float, speed: float) -> None:
+def test_every_vehicle_can_brake(seed: int, cavs: int, hdvs: int, near: float, spacing: float, speed: float) -> None:
     change = {"cavs": cavs, "hdvs": (0, hdvs), "start": (near, 85.0), "spacing": spacing, "cav_speed": (0.0, speed)}
     scenario = Intersection(**{**DEFAULT, **change})
     try:

@@ -67,7 +67,7 @@ def test_some_drivers_start_on_the_ramp(share: float, least: float, most: float)
     spacing=st.floats(6, 25),
     far=st.floats(100, 240),
 )
-def test_everybody_can_brake(seed: int, cavs: int, hdvs: int, lanes: int, spacing: float, far: float) -> None:
+def test_every_vehicle_can_brake(seed: int, cavs: int, hdvs: int, lanes: int, spacing: float, far: float) -> None:
     speeds = {"cav_speed": (5.0, 20.0), "hdv_speed": (10.0, 18.0)}
     room = {"lanes": lanes, "spacing": spacing, "start": (5.0, far), "before": 250.0}
     try:

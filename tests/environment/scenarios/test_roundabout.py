@@ -60,7 +60,7 @@ def test_seeds_cover_every_route_and_number_of_drivers() -> None:
     on_ring=st.floats(0, 1),
     spacing=st.floats(6, 20),
 )
-def test_everybody_has_room_also_round_the_ring(
+def test_every_vehicle_has_room_also_round_the_ring(
     seed: int, cavs: int, hdvs: int, on_ring: float, spacing: float
 ) -> None:
     people = {"cavs": cavs, "hdvs": (0, hdvs), "cav_speed": (0.0, 9.0), "hdv_speed": (6.0, 9.0)}
@@ -178,7 +178,7 @@ def check_ring(of: Roundabout) -> RoadMap:
     return road
 
 
-def test_legs_touch_the_ring_and_nobody_crosses() -> None:
+def test_legs_touch_the_ring_and_no_vehicle_crosses() -> None:
     assert check_ring(roundabout()).road.regulated
 
 

@@ -31,7 +31,7 @@ def placed(by_hand: Build, *starts: Start) -> tuple[Environment, dict[str, Route
     return env, {vehicle.id: vehicle for vehicle in env._traffic.vehicles}
 
 
-def test_a_driver_stops_before_a_zone_that_somebody_is_in(by_hand: Build) -> None:
+def test_a_driver_stops_before_a_zone_that_a_vehicle_is_in(by_hand: Build) -> None:
     stands = Start("CAV1", CAV, "west-east", 113.0, 0.0)
     env, road = placed(by_hand, stands, Start("HDV1", HDV, "south-north", 92.0, 6.0))
     (zone,) = env.road_map.zones("south-north", "west-east")

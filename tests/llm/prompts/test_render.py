@@ -110,7 +110,7 @@ def test_hidden_intents_are_in_no_prompt(on: Callable[..., Reasoned]) -> None:
         assert re.findall(r"\b(?:north|south|east|west)-\w+", text) == [own]
 
 
-def test_without_negotiation_nobody_else_is_heard(on: Callable[..., Reasoned]) -> None:
+def test_without_negotiation_no_other_vehicle_is_heard(on: Callable[..., Reasoned]) -> None:
     made = on("intersection", negotiation=False, ask_plain=True)
     assert {q.purpose for q in made.chat.questions} == {"decide"}
     assert "it can be there earlier" not in everything(made)
@@ -190,7 +190,7 @@ def test_free_text_stays_on_one_short_line(text: str) -> None:
 
 
 @given(st.lists(st.text(min_size=1, max_size=50), unique=True, max_size=6))
-def test_names_are_plain_and_tell_everybody_apart(ids: list[str]) -> None:
+def test_names_are_plain_and_tell_all_apart(ids: list[str]) -> None:
     names = Names(ids)
     assert len({names(name) for name in ids}) == len(ids)
     assert all(re.fullmatch(r"[\w.-]+", names(name)) for name in ids)

@@ -263,7 +263,7 @@ def test_order_that_cannot_be_kept_any_more_is_given_up() -> None:
     assert rule.order(problem, Scheduled(problem, lambda order: order[0] == "b")).sequence == ("b", "a")
 
 
-def test_whoever_would_lose_is_counted_and_can_refuse() -> None:
+def test_a_vehicle_that_would_lose_is_counted_and_can_refuse() -> None:
     problem = crossing(vehicle("a", 3.0, remaining=200.0), vehicle("b", 3.1, remaining=40.0))
     ordering = game().order(problem, Scheduled(problem))
     assert (ordering.sequence, ordering.counts["worse_off"]) == (("b", "a"), 1)
@@ -334,7 +334,7 @@ def test_settings_out_of_range_are_refused(change: dict[str, Any], message: str)
         game(**change)
 
 
-def test_where_nobody_can_keep_any_order_the_one_with_the_fewest_who_cannot_is_taken() -> None:
+def test_where_no_order_can_be_kept_by_all_the_one_with_the_fewest_who_cannot_is_taken() -> None:
     problem = crossing(*(vehicle(name, 3.0) for name in "abc"))
 
     class Stuck(Scheduled):

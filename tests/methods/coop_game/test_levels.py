@@ -127,7 +127,7 @@ def test_streams_come_as_their_first_vehicles_came() -> None:
     assert streams.conflicts == {(0, 1)}
 
 
-def test_whoever_has_no_stream_is_one_of_its_own() -> None:
+def test_a_vehicle_that_has_no_stream_is_one_of_its_own() -> None:
     streams = find_streams(instance(vehicle("a", 1, stream=""), vehicle("b", 2, stream="")), ["a", "b"])
     assert streams.names == ("a", "b")
     assert not streams.conflicts
@@ -151,7 +151,7 @@ def test_vehicles_are_ranked_by_level_and_then_as_they_came() -> None:
 
 
 @given(problems())
-def test_everybody_is_in_one_stream(problem: Instance) -> None:
+def test_every_vehicle_is_in_one_stream(problem: Instance) -> None:
     streams = find_streams(problem, sorted(problem.vehicles))
     assert sorted(name for members in streams.members.values() for name in members) == sorted(problem.vehicles)
     for i, j in streams.conflicts:

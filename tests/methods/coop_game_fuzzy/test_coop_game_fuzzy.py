@@ -54,7 +54,7 @@ def entry(junction: Junction, one: str, other: str) -> float:
     return junction.road_map.zones(one, other)[0].entry_i
 
 
-def test_whoever_is_alone_goes(junction: Junction) -> None:
+def test_a_vehicle_that_is_alone_goes(junction: Junction) -> None:
     route, _ = routes(junction)
     drive = coalition().drive(moment(junction, car("CAV1", route, 20.0, 4.0)), ORDER)
     assert drive.actions == {"CAV1": Action.FASTER}
@@ -76,7 +76,7 @@ def test_of_two_who_would_meet_one_gives_way(junction: Junction, participation: 
     assert apart.min() > 4.0
 
 
-def test_risk_without_weight_lets_everybody_go(junction: Junction) -> None:
+def test_risk_without_weight_lets_every_vehicle_go(junction: Junction) -> None:
     one, other = routes(junction)
     cars = (
         car("CAV1", one, entry(junction, one, other) - 15.0, 6.0),
@@ -98,7 +98,7 @@ def test_a_human_driver_is_given_way_to(junction: Junction) -> None:
     assert coalition().drive(moment(junction, ego, gone), ORDER).actions == {"CAV1": Action.FASTER}
 
 
-def test_whoever_follows_does_not_run_into_the_one_ahead(junction: Junction) -> None:
+def test_a_vehicle_that_follows_does_not_run_into_the_one_ahead(junction: Junction) -> None:
     route, _ = routes(junction)
     cars = car("CAV1", route, 34.0, 0.0), car("CAV2", route, 20.0, 8.0), car("HDV1", route, 42.0, 0.0)
     assert coalition().drive(moment(junction, *cars), ORDER).actions["CAV2"] is Action.SLOWER
@@ -131,7 +131,7 @@ def test_only_what_the_road_allows_is_chosen(junction: Junction) -> None:
     assert coalition().drive(bound, ORDER).actions == {"CAV1": Action.IDLE}
 
 
-def test_nobody_there_is_nothing_to_do(junction: Junction) -> None:
+def test_without_vehicles_there_is_nothing_to_do(junction: Junction) -> None:
     empty = Moment(0.0, {}, {}, {}, {}, junction.road_map, Forecast(junction.model, LIBRARY))
     assert coalition().drive(empty, ORDER).actions == {}
 
@@ -167,7 +167,7 @@ def test_settings_out_of_range_are_refused(change: dict[str, Any], message: str)
         coalition(**change)
 
 
-def test_whoever_has_to_change_lanes_stops_before_its_lane_ends(merge: Junction) -> None:
+def test_a_vehicle_that_has_to_change_lanes_stops_before_its_lane_ends(merge: Junction) -> None:
     ramp = next(r for r in sorted(merge.road_map.routes) if "ramp" in r)
     rooms = {}
     for place in np.arange(0.0, merge.road_map.paths[ramp].length - 30.0, 5.0):
@@ -179,7 +179,7 @@ def test_whoever_has_to_change_lanes_stops_before_its_lane_ends(merge: Junction)
     assert rooms[max(rooms)] is Action.FASTER
 
 
-def test_whoever_came_first_is_shown_first() -> None:
+def test_a_vehicle_that_came_first_is_shown_first() -> None:
     problem = instance(vehicle("a", 4), vehicle("b", 2), conflicts=[("a", "b")])
     rule = Arrival(60.0)
     rule.reset(0)

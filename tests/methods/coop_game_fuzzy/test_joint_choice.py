@@ -59,7 +59,9 @@ def test_the_group_finds_its_best_if_all_take_part(seed: int, n: int) -> None:
 
 @settings(max_examples=40)
 @given(st.integers(0, 999), st.integers(1, 3), st.sampled_from([0.0, 0.7]))
-def test_nobody_would_rather_change_if_there_is_such_a_joint_action(seed: int, n: int, participation: float) -> None:
+def test_no_vehicle_would_rather_change_if_there_is_such_a_joint_action(
+    seed: int, n: int, participation: float
+) -> None:
     costs = drawn(seed, n)
     stable = [joint for joint in product(range(3), repeat=n) if is_stable(costs, joint, participation)]
     found = settle(costs, options(n), participation)
@@ -70,12 +72,12 @@ def test_nobody_would_rather_change_if_there_is_such_a_joint_action(seed: int, n
 
 @settings(max_examples=20)
 @given(st.integers(0, 999), st.integers(4, 6))
-def test_many_arrive_where_nobody_would_rather_change_if_all_take_part(seed: int, n: int) -> None:
+def test_many_arrive_where_no_vehicle_would_rather_change_if_all_take_part(seed: int, n: int) -> None:
     costs = drawn(seed, n)
     assert is_stable(costs, settle(costs, options(n), 1.0), 1.0)
 
 
-def test_in_a_game_of_chicken_somebody_yields() -> None:
+def test_in_a_game_of_chicken_a_vehicle_yields() -> None:
     """Both want option 0, and pay dearly if both take it; the first in the list of equal ones goes."""
     pair = np.zeros((2, 2, 2, 2))
     pair[0, 0, 1, 0] = pair[1, 0, 0, 0] = 5.0
@@ -93,7 +95,7 @@ def test_looking_after_oneself_can_cost_all_more() -> None:
     assert settle(costs, [[0, 1], [0, 1]], 1.0) == (0, 0)
 
 
-def test_nobody_settles_on_nothing() -> None:
+def test_without_vehicles_nothing_is_settled() -> None:
     assert settle(Costs(np.zeros((0, 3)), np.zeros((0, 3, 0, 3))), [], 0.5) == ()
 
 
@@ -128,7 +130,7 @@ def test_who_adds_the_same_gets_the_same(game: tuple[list[str], Worths]) -> None
 
 
 @given(games(), st.floats(-5, 5))
-def test_who_adds_nothing_to_anybody_gets_its_own_worth(game: tuple[list[str], Worths], own: float) -> None:
+def test_who_adds_nothing_to_any_vehicle_gets_its_own_worth(game: tuple[list[str], Worths], own: float) -> None:
     players, worths = game
 
     def worth(members: frozenset[str]) -> float:

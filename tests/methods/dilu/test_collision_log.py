@@ -55,7 +55,7 @@ def test_mistake_is_the_last_decision_before_the_collision_that_was_not_to_slow_
     assert mistake.later == pytest.approx(1.2)
 
 
-def test_whoever_slowed_down_all_along_made_no_mistake(told: Situation) -> None:
+def test_a_vehicle_that_slowed_down_all_along_made_no_mistake(told: Situation) -> None:
     assert kept(logged(told, [Action.SLOWER] * 4), CRASHED) == []
 
 

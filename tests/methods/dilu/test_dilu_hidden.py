@@ -39,7 +39,7 @@ def test_prompts_and_decisions_do_not_depend_on_what_is_hidden(
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
-def test_prompts_name_no_route_but_the_own_one_and_nobody_by_id(
+def test_prompts_name_no_route_but_the_own_one_and_no_vehicle_by_id(
     scenario: str, configured: Callable[..., Environment]
 ) -> None:
     junction = Junction(configured(f"scenario={scenario}"))

@@ -43,7 +43,7 @@ def says(action: str) -> str:
     return json.dumps({"reason": "so it shall be", "action": action})
 
 
-def test_everybody_is_asked_at_once(told: tuple[Situation, ...]) -> None:
+def test_all_are_asked_at_once(told: tuple[Situation, ...]) -> None:
     made, chat, ledger = decider(deciding(says("SLOWER")))
     decisions = made.decide(told)
     assert [(d.ego, d.action, d.reason) for d in decisions] == [

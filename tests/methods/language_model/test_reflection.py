@@ -87,6 +87,6 @@ def test_a_lesson_of_the_models_is_stored_and_counted(junction: Junction, tmp_pa
     assert {line["purpose"] for line in lines} == {"reflect"}
 
 
-def test_without_a_model_nobody_can_write_lessons(tmp_path: Path) -> None:
+def test_without_a_model_no_lessons_are_written(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"memory\.reflection=llm needs a language model"):
         CoDriving(CdaLevel(**FULL), Offline(), online(tmp_path / "m.sqlite", reflection="llm"), 1.5)

@@ -115,7 +115,7 @@ def test_danger_lowers_the_payoff_and_progress_raises_it() -> None:
     assert worth(0.5, 1.0, True) == pytest.approx(worth(0.5, 1.0) - 10.0)
 
 
-def test_a_lane_change_before_somebody_who_would_have_to_brake_hard_is_refused(highway: Junction) -> None:
+def test_a_lane_change_before_a_vehicle_that_would_have_to_brake_hard_is_refused(highway: Junction) -> None:
     lanes = sorted(highway.road_map.routes)
     ego = car("CAV1", lanes[1], 100.0, 15.0)
     slow = car("HDV1", lanes[1], 118.0, 10.0)

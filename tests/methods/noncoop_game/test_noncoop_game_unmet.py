@@ -30,6 +30,6 @@ def wishes(junction: Junction, slowing: float) -> list[str]:
     return [driver.decide(*view).reason.partition("; it wishes ")[2] for view in seen_each(junction, moments)]
 
 
-def test_the_game_brakes_for_somebody_who_does_not_and_goes_on_before_somebody_who_does(junction: Junction) -> None:
+def test_the_game_brakes_for_a_vehicle_that_does_not_and_goes_on_before_a_vehicle_that_does(junction: Junction) -> None:
     assert [wish[0] for wish in wishes(junction, 0.0)] == ["+", "-", "-"]
     assert [wish[0] for wish in wishes(junction, 1.0)] == ["+", "+", "+"]

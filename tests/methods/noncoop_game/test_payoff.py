@@ -26,7 +26,9 @@ def test_matching_pennies_has_none_and_the_other_player_takes_the_best_of_the_wo
 
 
 @given(payoffs, payoffs)
-def test_in_an_equilibrium_nobody_gains_by_another_action_and_no_such_pair_is_missed(own: Array, other: Array) -> None:
+def test_in_an_equilibrium_no_vehicle_gains_by_another_action_and_no_such_pair_is_missed(
+    own: Array, other: Array
+) -> None:
     found = pure_equilibria(own, other)
     for i in range(4):
         for j in range(4):

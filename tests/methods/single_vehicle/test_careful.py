@@ -38,7 +38,7 @@ def test_it_keeps_its_distance(gap: float, action: Action, junction: Junction) -
         assert "too close to HDV1" in choice.refused[Action.FASTER]
 
 
-def test_it_does_not_drive_to_where_somebody_else_will_be(junction: Junction) -> None:
+def test_it_does_not_drive_to_where_another_vehicle_will_be(junction: Junction) -> None:
     zone = junction.road_map.zones("south-north", "west-east")[0]
     ego = car("CAV1", "south-north", zone.entry_i - 14.0, 7.0, 9.0)
     crosses = car("HDV1", "west-east", zone.entry_j - 12.0, 7.0)

@@ -42,7 +42,7 @@ def test_who_gets_away_is_not_too_close(junction: Junction) -> None:
     assert decide(junction, ego, car("HDV1", "south-north", 48, 1)).action is Action.SLOWER
 
 
-def test_zone_is_left_to_whoever_is_there_first(junction: Junction) -> None:
+def test_zone_is_left_to_the_first_there(junction: Junction) -> None:
     ego = car("CAV1", "south-north", 84, 9, 9)
     late = decide(junction, ego, car("HDV1", "west-east", 88, 9))
     assert late.action is Action.SLOWER

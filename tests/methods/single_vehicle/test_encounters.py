@@ -80,7 +80,7 @@ def test_at_once_from_opposite_sides_names_decide(junction: Junction) -> None:
     assert found["CAV2"] == (False, "both are there at once, and names decide")
 
 
-def test_whoever_would_have_to_brake_hard_is_not_expected_to_wait(junction: Junction) -> None:
+def test_a_vehicle_that_would_have_to_brake_hard_is_not_expected_to_wait(junction: Junction) -> None:
     # The CAV would be there at about the same time and comes from the right, but can still wait; HDV1 cannot.
     cars = (car("CAV1", "south-north", 99.0, 3.0), car("HDV1", "west-east", 92.0, 9.0))
     (e,) = [e for e in encounters(*seen(junction, *cars), FIRM) if e.conflict.routes[1] == "west-east"]
@@ -88,6 +88,6 @@ def test_whoever_would_have_to_brake_hard_is_not_expected_to_wait(junction: Junc
     assert goes_first(e, junction.road_map, TIE) == (False, "HDV1 cannot be expected to stop")
 
 
-def test_whoever_is_in_the_zone_goes_first(junction: Junction) -> None:
+def test_a_vehicle_that_is_in_the_zone_goes_first(junction: Junction) -> None:
     found = first(junction, car("CAV1", "south-north", 106.0, 1.0), car("CAV2", "west-east", 107.0, 9.0))
     assert found == {"CAV1": (True, "it is there already"), "CAV2": (False, "CAV1 is there already")}

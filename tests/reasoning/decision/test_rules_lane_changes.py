@@ -48,7 +48,7 @@ def test_one_lane_change_after_the_other(highway: Junction) -> None:
 
 
 @pytest.mark.parametrize(("speed", "action"), [(2.9, IDLE), (3.1, LEFT)])
-def test_nobody_blocks_two_lanes_by_changing_slowly(speed: float, action: Action, highway: Junction) -> None:
+def test_no_vehicle_blocks_two_lanes_by_changing_slowly(speed: float, action: Action, highway: Junction) -> None:
     assert decide(highway, car("CAV1", "lane-1", 300.0, speed), {IDLE: 100.0, LEFT: 200.0}).action is action
 
 

@@ -41,11 +41,11 @@ def test_alone_on_the_road_everything_is_plain(junction: Junction) -> None:
     ],
     ids=["crossing", "human crossing", "near ahead", "far ahead", "caught up a little", "caught up", "behind"],
 )
-def test_somebody_to_consider(junction: Junction, other: Car, plain: bool) -> None:
+def test_a_vehicle_to_consider(junction: Junction, other: Car, plain: bool) -> None:
     assert is_plain(situation(junction, ALONE, other), True) is plain
 
 
-def test_where_conflicts_cannot_be_seen_everybody_ahead_counts(junction: Junction) -> None:
+def test_where_conflicts_cannot_be_seen_each_vehicle_ahead_counts(junction: Junction) -> None:
     ahead = replace(situation(junction, ALONE, car("CAV2", "west-east", 62, 8)), conflicts=())
     assert is_plain(ahead, True)
     assert not is_plain(ahead, False)

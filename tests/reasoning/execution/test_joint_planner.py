@@ -32,7 +32,7 @@ def orders(draw: st.DrawFn) -> tuple[dict[str, TrackedVehicle], list[str]]:
 
 
 @given(orders())
-def test_where_nobody_drives_ahead_the_passing_order_is_kept(
+def test_where_no_vehicle_drives_ahead_the_passing_order_is_kept(
     drawn: tuple[dict[str, TrackedVehicle], list[str]],
 ) -> None:
     some, sequence = drawn
@@ -44,7 +44,7 @@ def test_where_nobody_drives_ahead_the_passing_order_is_kept(
 
 
 @given(orders(), st.permutations(NAMES), links)
-def test_whoever_drives_ahead_is_planned_before_those_behind(
+def test_a_vehicle_that_drives_ahead_is_planned_before_those_behind(
     drawn: tuple[dict[str, TrackedVehicle], list[str]], lane: list[str], some_links: set[tuple[str, str]]
 ) -> None:
     some, sequence = drawn
@@ -59,7 +59,7 @@ def test_whoever_drives_ahead_is_planned_before_those_behind(
 
 
 @given(orders(), links)
-def test_everybody_is_planned_once_even_if_they_follow_one_another_in_a_circle(
+def test_every_vehicle_is_planned_once_even_if_they_follow_one_another_in_a_circle(
     drawn: tuple[dict[str, TrackedVehicle], list[str]], some_links: set[tuple[str, str]]
 ) -> None:
     some, sequence = drawn

@@ -72,11 +72,11 @@ def test_a_slow_leader_makes_it_ask_for_the_lane_beside(highway: Junction) -> No
 
 
 @pytest.mark.parametrize("speed", [0.0, 2.9])
-def test_whoever_hardly_moves_does_not_ask(speed: float, highway: Junction) -> None:
+def test_a_vehicle_that_hardly_moves_does_not_ask(speed: float, highway: Junction) -> None:
     assert ask(highway, car("CAV1", "lane-1", 300.0, speed), car("HDV1", "lane-1", 308.0, 0.0)) == []
 
 
-def test_onto_a_vehicle_beside_or_in_front_of_a_fast_one_nobody_asks_to_go(highway: Junction) -> None:
+def test_onto_a_vehicle_beside_or_in_front_of_a_fast_one_no_vehicle_asks_to_go(highway: Junction) -> None:
     def sides(*cars: Car) -> set[Action]:
         return {r.action for r in ask(highway, ME, SLOW, *cars)}
 
@@ -214,7 +214,7 @@ def test_the_best_subset_is_the_best_of_all(drawn: tuple[list[float], set[tuple[
 
 
 @given(requests_of)
-def test_in_order_nobody_later_displaces_anybody_earlier(drawn: tuple[list[float], set[tuple[int, int]]]) -> None:
+def test_in_order_no_later_vehicle_displaces_an_earlier_one(drawn: tuple[list[float], set[tuple[int, int]]]) -> None:
     requests = requests_from(*drawn)
     granted = in_order(requests)
     for k, r in enumerate(requests):

@@ -83,7 +83,7 @@ def test_the_first_layer_goes_and_the_others_hold(junction: Junction) -> None:
         (True, 80.0, Action.SLOWER),
     ],
 )
-def test_whoever_waits_slows_down_near_the_zone_or_wherever_it_is(
+def test_a_vehicle_that_waits_slows_down_near_the_zone_or_wherever_it_is(
     anywhere: bool, away: float, action: Action, junction: Junction
 ) -> None:
     (zone,) = junction.road_map.zones("west-east", "south-north")
@@ -92,7 +92,7 @@ def test_whoever_waits_slows_down_near_the_zone_or_wherever_it_is(
     assert drive.actions == {"CAV1": Action.FASTER, "CAV2": action}
 
 
-def test_nobody_enters_a_zone_that_is_taken(junction: Junction) -> None:
+def test_no_vehicle_enters_a_zone_that_is_taken(junction: Junction) -> None:
     (zone,) = junction.road_map.zones("south-north", "west-east", TRUE)
     inside = car("CAV2", "west-east", (zone.entry_j + zone.exit_j) / 2, 3.0)
     drive = act(junction, [car("CAV1", "south-north", 90.0, 6.0), inside], "CAV1", "CAV2")
@@ -101,7 +101,7 @@ def test_nobody_enters_a_zone_that_is_taken(junction: Junction) -> None:
 
 
 @pytest.mark.parametrize(("gap", "action"), [(6.0, Action.SLOWER), (7.5, Action.IDLE), (14.0, Action.FASTER)])
-def test_nobody_comes_too_close_to_whoever_drives_ahead(gap: float, action: Action, junction: Junction) -> None:
+def test_no_vehicle_comes_too_close_to_the_one_ahead(gap: float, action: Action, junction: Junction) -> None:
     # 0.9 s at 6 m/s, and a metre: 6.4 m between the bodies. A little farther away it neither slows down nor speeds up.
     cars = [car("CAV1", "south-north", 40.0, 6.0), car("CAV2", "south-north", 45.0 + gap, 6.0)]
     drive = act(junction, cars)

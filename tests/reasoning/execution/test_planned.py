@@ -98,7 +98,7 @@ def test_only_what_keeps_the_order_is_worth_something(junction: Junction) -> Non
     assert drive.actions["CAV2"] is Action.SLOWER
 
 
-def test_nobody_reaches_its_zone_before_the_method_allows_it(junction: Junction) -> None:
+def test_no_vehicle_reaches_its_zone_before_the_method_allows_it(junction: Junction) -> None:
     moment = moment_of(junction.thoughts(*CROSSING))
     times = moment.forecast.times
     at_once, later = (
@@ -112,7 +112,7 @@ def test_nobody_reaches_its_zone_before_the_method_allows_it(junction: Junction)
     assert later.counts["plans_infeasible"] == 0
 
 
-def test_a_follower_keeps_behind_whoever_drives_ahead_whatever_the_order_says(junction: Junction) -> None:
+def test_a_follower_keeps_behind_the_vehicle_ahead_whatever_the_order_says(junction: Junction) -> None:
     cars = car("CAV1", "south-north", 60.0, 9.0), car("CAV2", "south-north", 69.0, 3.0)
     for order in (("CAV1", "CAV2"), ("CAV2", "CAV1"), ()):
         drive = moment(junction, *cars, order=order)

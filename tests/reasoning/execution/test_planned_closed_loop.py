@@ -51,21 +51,21 @@ def test_cavs_alone_arrive(name: str, driven: dict[str, list[Episode]]) -> None:
 
 
 @pytest.mark.parametrize("name", EPISODES)
-def test_everybody_has_a_plan_all_the_time(name: str, driven: dict[str, list[Episode]]) -> None:
+def test_every_vehicle_has_a_plan_all_the_time(name: str, driven: dict[str, list[Episode]]) -> None:
     # What is planned with the exact vehicle model can be gone on with: CAVs alone lose no plan that works.
     without = [step.counts["plans_infeasible"] for e in driven[name] for step in e.steps]
     assert sum(without) <= 0.01 * len(without)
 
 
 @pytest.mark.parametrize("name", EPISODES)
-def test_nobody_is_told_what_the_road_forbids(name: str, driven: dict[str, list[Episode]]) -> None:
+def test_no_vehicle_is_told_what_the_road_forbids(name: str, driven: dict[str, list[Episode]]) -> None:
     for episode in driven[name]:
         for world, actions in zip(episode.worlds, episode.actions, strict=False):
             assert set(actions) == set(world.available)
             assert all(action in world.available[cav] for cav, action in actions.items())
 
 
-def test_nobody_becomes_faster_than_the_top_speed(four: Environment, driven: dict[str, list[Episode]]) -> None:
+def test_no_vehicle_becomes_faster_than_the_top_speed(four: Environment, driven: dict[str, list[Episode]]) -> None:
     top = four.driving_model.target_speeds[-1]
     assert all(t.speed.max() <= top + 1e-6 for es in driven.values() for e in es for t in e.trajectory.tracks)
 
@@ -86,7 +86,7 @@ def decided(episode: Episode, one: str, other: str) -> set[str]:
 
 
 @pytest.mark.parametrize("name", EPISODES)
-def test_nobody_overtakes_the_order(name: str, four: Environment, driven: dict[str, list[Episode]]) -> None:
+def test_no_vehicle_overtakes_the_order(name: str, four: Environment, driven: dict[str, list[Episode]]) -> None:
     checked = 0
     road_map = four.road_map
     for episode in driven[name]:
@@ -132,7 +132,7 @@ def test_those_whose_ways_do_not_meet_do_not_wait(junction: Junction) -> None:
 
 
 @pytest.mark.parametrize(("name", "cavs", "seeds"), [("fcfs", 8, 2), ("idfst", 8, 1), ("mcts", 8, 1), ("fcfs", 6, 1)])
-def test_nobody_waits_for_ever(name: str, cavs: int, seeds: int, configured: Make) -> None:
+def test_no_vehicle_waits_for_ever(name: str, cavs: int, seeds: int, configured: Make) -> None:
     environment = configured("scenario=intersection", f"scenario.cavs={cavs}", ALONE, "scenario.time_limit=60")
     for seed in range(FIRST_SEED, FIRST_SEED + seeds):
         outcome = drive(environment, method(name), seed).outcome
@@ -148,7 +148,9 @@ def test_it_goes_on_in_every_scenario(scenario: str, configured: Make) -> None:
     assert outcome.ending is Ending.SUCCESS, outcome
 
 
-def test_the_layered_executor_brings_everybody_there_later(four: Environment, driven: dict[str, list[Episode]]) -> None:
+def test_the_layered_executor_brings_every_vehicle_there_later(
+    four: Environment, driven: dict[str, list[Episode]]
+) -> None:
     slow = [drive(four, method("fcfs", "executor=layered"), FIRST_SEED + k).outcome for k in range(3)]
     fast = [e.outcome for e in driven["fcfs"][:3]]
     assert all(o is not None and o.ending is Ending.SUCCESS for o in slow)

@@ -93,7 +93,7 @@ def test_more_time_or_room_is_never_kept_for_longer(
 
 @settings(deadline=None)
 @given(pairs, places, paces, places, paces, lags, pads)
-def test_whoever_touches_the_other_from_behind_passes_too_early(
+def test_a_vehicle_that_touches_the_other_from_behind_passes_too_early(
     junction: Junction,
     pair: tuple[str, str],
     mine: float,
@@ -115,7 +115,7 @@ def test_whoever_touches_the_other_from_behind_passes_too_early(
 
 @settings(deadline=None)
 @given(pairs, paces, lags, pads)
-def test_far_from_the_zone_nobody_comes_too_close(
+def test_far_from_the_zone_no_vehicle_comes_too_close(
     junction: Junction, pair: tuple[str, str], paces: list[float], lag: int, pad: float
 ) -> None:
     zone = zone_of(junction, pair)
@@ -203,7 +203,7 @@ def test_bodies_that_touch_already_leave_no_plan(junction: Junction) -> None:
     assert m.steps(straight(0.0, 9.0), straight(0.0)[0]).tolist() == [0, 0]
 
 
-def test_nobody_is_minded_for_longer_than_asked(junction: Junction) -> None:
+def test_no_vehicle_is_minded_for_longer_than_asked(junction: Junction) -> None:
     (zone,) = junction.road_map.zones(*ROUTES)
     place, there = zone.entry_i - 9.0, (zone.entry_j + zone.exit_j) / 2
     travels, stands = straight(9.0), straight(0.0)[0]
@@ -264,7 +264,7 @@ def test_a_driver_who_stands_in_a_zone_is_never_run_into(
         assert show.places["CAV1"].max() > zone.entry_i - 40.0, "it comes near all the same"
 
 
-def test_nobody_runs_into_a_driver_who_stands_ahead(junction: Junction) -> None:
+def test_no_vehicle_runs_into_a_driver_who_stands_ahead(junction: Junction) -> None:
     me, human = car("CAV1", "south-north", 50.0, 9.0), car("HDV1", "south-north", 85.0, 0.0)
     show = puppets(junction, ordered(junction), [me, human], 15.0)
     assert 60.0 < show.places["CAV1"].max() < 79.5
@@ -298,7 +298,7 @@ def test_a_driver_who_goes_on_is_let_through(junction: Junction) -> None:
         assert (entered - left) * junction.model.step > 1.0, "there is time between the two"
 
 
-def test_whoever_drives_behind_minds_the_cav_and_not_the_other_way_round(junction: Junction) -> None:
+def test_a_vehicle_that_drives_behind_minds_the_cav_and_not_the_other_way_round(junction: Junction) -> None:
     me, behind = car("CAV1", "south-north", 60.0, 6.0), car("HDV1", "south-north", 53.0, 9.0)
     moment = moment_of(junction.thoughts(me, behind))
     drive = planned().drive(moment, ordering_of("CAV1"))

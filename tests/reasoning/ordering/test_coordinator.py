@@ -47,7 +47,7 @@ def check_order(thoughts: Thoughts, order: PassingOrder) -> None:
 
 @settings(max_examples=30, deadline=None)
 @given(cavs, humans)
-def test_an_order_has_no_cycles_wherever_everybody_is(
+def test_an_order_has_no_cycles_wherever_every_vehicle_is(
     junction: Junction, some: list[tuple[str, float, float]], others: list[tuple[str, float, float]]
 ) -> None:
     cars = [car(f"CAV{k}", *c) for k, c in enumerate(some)] + [car(f"HDV{k}", *c) for k, c in enumerate(others)]
@@ -93,7 +93,7 @@ def test_who_cannot_stop_any_more_or_drives_ahead_goes_first_whatever_is_saved(
 
 @pytest.mark.parametrize("turning", ["CAV1", "CAV2"])
 @pytest.mark.parametrize(("place", "yields"), [(56.0, True), (57.0, True), (59.0, False)])
-def test_turning_yields_to_straight_unless_everybody_together_would_wait_longer(
+def test_turning_yields_to_straight_unless_all_together_would_wait_longer(
     place: float, yields: bool, turning: str, junction: Junction
 ) -> None:
     # From 56.3 m on the turning CAV could be there a little earlier; from 58 m on its waiting would cost too much.
@@ -154,12 +154,12 @@ def test_the_order_stays_while_nothing_changes(junction: Junction) -> None:
         assert ahead(-5 * gain).negotiate(coordinator).first_of("CAV1", "CAV2") != first
 
 
-def test_nobody_in_conflict_gives_an_empty_order(junction: Junction) -> None:
+def test_no_vehicle_in_conflict_gives_an_empty_order(junction: Junction) -> None:
     order = negotiated(junction, car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "north-south", 60.0, 8.0))
     assert order.sequence == order.precedences == ()
 
 
-def test_everybody_gets_the_same_order_and_is_told_if_it_binds(junction: Junction) -> None:
+def test_every_vehicle_gets_the_same_order_and_is_told_if_it_binds(junction: Junction) -> None:
     thoughts = junction.thoughts(car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "west-east", 55.0, 8.0))
     for binding in (False, True):
         agreed = AgreedOrder(RuleCoordinator(binding))

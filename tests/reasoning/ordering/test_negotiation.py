@@ -108,7 +108,7 @@ def test_human_drivers_go_first_unless_the_cav_is_through_before(reading: OwnOrd
 
 
 @pytest.mark.parametrize("reading", READINGS)
-def test_nobody_to_mind_gives_an_empty_order(reading: OwnOrder, junction: Junction) -> None:
+def test_no_vehicle_to_mind_gives_an_empty_order(reading: OwnOrder, junction: Junction) -> None:
     assert orders(junction.thoughts(car("CAV1", "south-north", 60.0, 8.0)), reading)["CAV1"] == PassingOrder((), ())
 
 
@@ -136,7 +136,7 @@ def test_the_sequence_is_that_of_the_order(reading: OwnOrder, junction: Junction
     ),
     st.sampled_from(READINGS),
 )
-def test_an_own_order_leaves_nobody_out_since_every_pair_has_the_cav_in_it(
+def test_an_own_order_leaves_no_vehicle_out_since_every_pair_has_the_cav_in_it(
     junction: Junction, some: list[tuple[str, float]], reading: OwnOrder
 ) -> None:
     thoughts = junction.thoughts(*[car(f"CAV{k}", route, place, 7.0) for k, (route, place) in enumerate(some)])

@@ -48,7 +48,7 @@ def test_premise_is_about_human_drivers_and_who_can_stop() -> None:
     assert held.still_holds(later(("A", "B"), A=3.0, B=3.5))
 
 
-def test_human_drivers_count_only_where_they_hold_somebody_up() -> None:
+def test_human_drivers_count_only_where_they_hold_a_cav_up() -> None:
     world = instance(A=3.0, B=3.5)
     world.vehicles["A"].windows.append((1.0, 4.0))
     world.vehicles["B"].windows.append((4.0, 9.0))
@@ -60,7 +60,7 @@ def test_pairs_that_are_fixed_even_by_way_of_others_are_not_open() -> None:
     assert open_pairs(world, [("A", "B"), ("A", "C"), ("C", "A"), ("C", "D")]) == [("C", "D")]
 
 
-def test_circle_is_found_with_everybody_before_the_next() -> None:
+def test_circle_is_found_with_every_vehicle_before_the_next() -> None:
     pairs = {("A", "B"), ("B", "C"), ("C", "A"), ("C", "D")}
     circle = find_circle(pairs)
     assert circle is not None

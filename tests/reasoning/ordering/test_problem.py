@@ -51,7 +51,7 @@ def test_how_far_apart_two_must_be(routes: tuple[str, str], gap: float, junction
     assert problem.conflict("CAV1", "CAV2")
 
 
-def test_whoever_passes_that_much_later_does_not_touch_the_first(junction: Junction) -> None:
+def test_a_vehicle_that_passes_that_much_later_does_not_touch_the_first(junction: Junction) -> None:
     problem = posed(junction, car("CAV1", "south-north", 60.0, 9.0), car("CAV2", "west-east", 60.0, 9.0), gap=0.0)
     (zone,) = junction.road_map.zones("south-north", "west-east")
     apart, top = problem.instance.separation["CAV1", "CAV2"], junction.model.target_speeds[-1]
@@ -107,7 +107,7 @@ def test_who_cannot_stop_any_more_goes_first(before: float, committed: bool, jun
     assert ("CAV2", "CAV1") not in problem.before
 
 
-def test_whoever_drives_ahead_is_the_leader_and_goes_first(junction: Junction) -> None:
+def test_a_vehicle_that_drives_ahead_is_the_leader_and_goes_first(junction: Junction) -> None:
     problem = posed(
         junction,
         car("CAV1", "south-north", 60.0, 8.0),

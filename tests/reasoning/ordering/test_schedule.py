@@ -65,7 +65,7 @@ def test_every_pair_in_conflict_has_a_reason_that_names_both(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", RULES)
-def test_nobody_to_order_is_an_empty_order(name: str) -> None:
+def test_no_vehicle_to_order_is_an_empty_order(name: str) -> None:
     assert RULES[name]().order(instance({}), NoPlanner()).sequence == ()
 
 
@@ -88,7 +88,7 @@ def test_fixed_pairs_in_a_circle_still_get_an_order(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", RULES)
-def test_whoever_waits_for_ever_is_no_obstacle_to_others(name: str) -> None:
+def test_a_vehicle_that_waits_for_ever_is_no_obstacle_to_others(name: str) -> None:
     problem = instance({"a": 1.0, "b": 2.0, "c": 3.0}, both("b", "c", 1.0), a={"windows": [(0.0, inf)]})
     answer = RULES[name]().order(problem, NoPlanner())
     assert answer.times["a"] == inf

@@ -15,7 +15,7 @@ OTHERS = st.sampled_from(["west-east", "west-north", "east-south", "north-east"]
 
 @settings(max_examples=60, deadline=None)
 @given(OTHERS, PLACES, PLACES, SPEEDS, SPEEDS, st.integers(0, 4))
-def test_whoever_stays_behind_or_ahead_does_not_overlap(
+def test_a_vehicle_that_stays_behind_or_ahead_does_not_overlap(
     junction: Junction, other: str, s: float, t: float, v: float, w: float, lag: int
 ) -> None:
     mine, theirs = (s + v * TIMES)[None], t + w * TIMES

@@ -67,7 +67,7 @@ def test_human_drivers_are_expected_to_go_on_at_their_speed_on_each_route(juncti
         assert motion.places[-1] - motion.places[0] == pytest.approx(6.0 * thoughts.forecast.times[-1])
 
 
-def test_a_human_driver_who_goes_second_holds_nobody_up(junction: Junction) -> None:
+def test_a_human_driver_who_goes_second_holds_no_vehicle_up(junction: Junction) -> None:
     thoughts = junction.thoughts(car("CAV1", "south-north", 88.0, 6.0), car("HDV1", "west-east", 108.0, 2.0))
     assert len(thoughts.scenes["CAV1"].neighbours[0].routes) == 1
     held, free = (expected(thoughts, order_of(pair))["CAV1"][0] for pair in ("HDV1 CAV1", "CAV1 HDV1"))
@@ -125,7 +125,7 @@ def test_who_follows_a_vehicle_that_changes_onto_its_lane_minds_it(highway: Junc
         assert expected(thoughts, PassingOrder((), ()))["CAV1"][0].free is not minded
 
 
-def test_who_detects_no_conflicts_minds_those_ahead_and_nobody_else(junction: Junction) -> None:
+def test_who_detects_no_conflicts_minds_those_ahead_and_no_others(junction: Junction) -> None:
     me = car("CAV1", "south-north", 80.0, 6.0)
     crossing, ahead = car("CAV2", "west-east", 104.0, 2.0), car("CAV2", "south-north", 95.0, 3.0, 0.0)
     for other, free in ((crossing, True), (ahead, False)):

@@ -27,7 +27,7 @@ def test_constant_speed_lies_between_the_bounds(speed: float, limit: float) -> N
 
 
 @given(SPEEDS, SPEEDS)
-def test_nobody_drives_backwards_or_beyond_the_limit(speed: float, limit: float) -> None:
+def test_no_vehicle_drives_backwards_or_beyond_the_limit(speed: float, limit: float) -> None:
     least, most = slowest(speed, TIMES), fastest(speed, TIMES, limit)
     assert least[0] == most[0] == 0.0
     assert (np.diff(least) >= -1e-9).all()

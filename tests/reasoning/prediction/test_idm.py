@@ -49,7 +49,7 @@ def test_a_desired_gap_worked_out_by_hand() -> None:
     assert DRIVER.accelerate(10.0, 20.0, 30.0, 6.0) == pytest.approx(0.7833, abs=1e-3)
 
 
-def test_whoever_touches_the_one_ahead_brakes_as_hard_as_it_can() -> None:
+def test_a_vehicle_that_touches_the_one_ahead_brakes_as_hard_as_it_can() -> None:
     for gap in (0.0, -3.0):
         assert DRIVER.accelerate(5.0, 9.0, gap, 0.0) == -DRIVER.hardest
     assert DRIVER.accelerate(0.0, 0.0) > -DRIVER.hardest, "nothing is divided by zero"

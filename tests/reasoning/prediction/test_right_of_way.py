@@ -68,7 +68,7 @@ def test_a_cav_in_the_junction_is_waited_for(junction: Junction) -> None:
     assert not reason(junction, inside, car("HDV1", "east-west", 95.0, 8.0))
 
 
-def test_a_cav_in_the_zone_is_waited_for_by_whoever_can_stop_before_it(junction: Junction) -> None:
+def test_a_cav_in_the_zone_is_waited_for_by_drivers_who_can_stop_before_it(junction: Junction) -> None:
     inside = car("CAV1", "south-north", 108.0, 5.0)
     assert "already" in reason(junction, inside, car("HDV1", "west-east", 70.0, 8.0))
     assert not reason(junction, inside, car("HDV1", "west-east", 106.0, 8.0))
@@ -106,5 +106,5 @@ def test_who_has_to_leave_a_lane_that_ends_gives_way_while_it_can_stop(merge: Ju
     assert reason(merge, main, car("HDV1", "ramp", 309.0, 5.0))
 
 
-def test_nobody_gives_way_to_who_has_to_leave_the_lane_itself(merge: Junction) -> None:
+def test_no_vehicle_gives_way_to_who_has_to_leave_the_lane_itself(merge: Junction) -> None:
     assert not reason(merge, car("CAV1", "ramp", 235.0, 15.0), car("HDV1", "main-1", 230.0, 15.0))

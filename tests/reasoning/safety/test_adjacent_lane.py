@@ -56,7 +56,7 @@ def test_a_free_gap_stays_allowed(place: float, highway: Junction) -> None:
     assert check_adjacent(among(highway, human(0, place))) == {}
 
 
-def test_a_lane_change_is_a_way_out_behind_somebody_who_stands(highway: Junction) -> None:
+def test_a_lane_change_is_a_way_out_behind_a_vehicle_that_stands(highway: Junction) -> None:
     given = among(highway, human(1, 340.0, 0.0), speed=18.0)
     assert set(check_ahead(given)) >= {Action.IDLE, Action.FASTER}
     assert check_adjacent(given) == {}
@@ -100,7 +100,7 @@ def test_a_vehicle_whose_lane_is_not_known_counts(highway: Junction) -> None:
     SPEED,
     SPEED,
 )
-def test_no_lane_change_that_touches_anybody_within_two_seconds(
+def test_no_lane_change_that_touches_any_vehicle_within_two_seconds(
     highway: Junction, name: str, lane: int, offset: float, apart: float, mine: float, theirs: float
 ) -> None:
     assume(0 <= LANE * lane + offset <= 3 * LANE)

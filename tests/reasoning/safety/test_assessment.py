@@ -115,7 +115,7 @@ def test_three_guesses_of_what_others_do_decide_what_is_least_dangerous(
     assert least_dangerous(given) is least
 
 
-def test_a_lane_change_gets_farther_than_staying_behind_somebody_slow(highway: Junction) -> None:
+def test_a_lane_change_gets_farther_than_staying_behind_a_slow_vehicle(highway: Junction) -> None:
     given = highway.safety_input(
         car("CAV1", "lane-1", 300.0, 20.0), car("HDV1", "lane-1", 335.0, 15.0), car("HDV2", "lane-2", 335.0, 15.0)
     )
@@ -133,7 +133,7 @@ def test_a_lane_change_gets_farther_than_staying_behind_somebody_slow(highway: J
     assert found[Action.LANE_LEFT].safe
 
 
-def test_behind_somebody_on_the_lane_that_it_leaves_a_change_gets_less_far_the_nearer_that_one_is(
+def test_behind_a_vehicle_on_the_lane_that_it_leaves_a_change_gets_less_far_the_nearer_that_one_is(
     highway: Junction,
 ) -> None:
     def gains(place: float) -> float | None:

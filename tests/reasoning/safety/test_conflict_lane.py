@@ -83,7 +83,7 @@ def test_advice_may_be_overtaken_by_events_but_an_instruction_not(junction: Junc
     assert Action.FASTER in removed(bound)
 
 
-def test_nobody_is_bound_to_human_drivers(junction: Junction) -> None:
+def test_no_cav_is_bound_to_human_drivers(junction: Junction) -> None:
     far = 66.0
     advised = crossing(junction, 101.0, far, 6.0, "HDV1 CAV1", who="HDV1")
     bound = crossing(junction, 101.0, far, 6.0, "HDV1 CAV1", who="HDV1", binding=True)
@@ -151,7 +151,7 @@ def test_a_cav_does_not_enter_the_way_of_a_human_driver_in_which_it_might_have_t
     assert not in_the_way(among_cavs)
 
 
-def test_where_ways_merge_nobody_is_caught_in_between(junction: Junction) -> None:
+def test_where_ways_merge_no_vehicle_is_caught_in_between(junction: Junction) -> None:
     given = junction.safety_input(
         car("CAV1", "south-north", 103.0, 6.0),
         car("HDV1", "west-north", 113.0, 8.0),

@@ -78,7 +78,7 @@ def test_a_vehicle_that_has_merged_ahead_counts_although_it_came_from_elsewhere(
     assert Action.FASTER in check_ahead(given)
 
 
-def test_whoever_is_not_known_to_drive_across_is_ahead(junction: Junction) -> None:
+def test_a_vehicle_that_is_not_known_to_drive_across_is_ahead(junction: Junction) -> None:
     world = junction.world(car("CAV1", "south-north", 97.0, 8.0), car("CAV2", "west-east", 113.0, 0.0))
     for sharing, leads in ((SharedStates(), False), (SensedStates(), True)):
         given = junction.think(world, sharing).safety_input("CAV1")

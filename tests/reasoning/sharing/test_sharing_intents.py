@@ -19,7 +19,7 @@ def test_hidden_intents_leave_nothing_and_no_conflicts(junction: Junction) -> No
     assert SHARED_INTENTS.finds_conflicts
 
 
-def test_whoever_is_on_its_own_hears_nothing_and_still_finds_conflicts(junction: Junction) -> None:
+def test_a_vehicle_that_is_on_its_own_hears_nothing_and_still_finds_conflicts(junction: Junction) -> None:
     world = junction.world(car("CAV1", "south-west", 40.0, 7.0), car("CAV2", "west-east", 40.0, 7.0))
     assert dict(GUESSED_INTENTS.intents(world)) == {}
     assert GUESSED_INTENTS.finds_conflicts

@@ -22,7 +22,7 @@ def test_a_vehicle_is_on_every_lane_that_its_body_reaches_onto(highway: Junction
     assert [m.target for m in found.values()] == [25.0, 15.0, 16.0]
 
 
-def test_whoever_shares_no_intent_is_no_cav_and_keeps_its_speed(highway: Junction) -> None:
+def test_a_vehicle_that_shares_no_intent_is_no_cav_and_keeps_its_speed(highway: Junction) -> None:
     world = highway.world(car("CAV1", "lane-0", 300.0, 20.0), car("HDV1", "lane-0", 340.0, 16.0, pedal=-2.0))
     human = highway.think(world, SensedStates()).scenes["CAV1"].vehicles()["HDV1"]
     assert (human.is_cav, human.target, human.acceleration) == (False, 16.0, None)
