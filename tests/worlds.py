@@ -193,7 +193,7 @@ class Junction:
     def drive(self, *starts: Start) -> Environment:
         """An environment in which given vehicles start."""
         e = self.environment
-        return Environment(ByHand(e, starts), e.control, e.drivers, e.corrections)
+        return Environment(ByHand(e, starts), e.control, e.drivers, e.corrections, e.limits)
 
 
 def standing(given: SafetyInput, name: str, time: float) -> SafetyInput:

@@ -35,6 +35,7 @@ PLURALS = {
     "memories": "memory",
     "metrics": "metrics",
     "launchers": "launcher",
+    "limits": "limits",
     "experiments": EXPERIMENTS,
     "trainings": TRAININGS,
 }

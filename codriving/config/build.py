@@ -21,6 +21,7 @@ from codriving.datatypes import (
     OrderExecutor,
     Scenario,
     Simulator,
+    VehicleLimits,
 )
 from codriving.errors import ConfigError
 
@@ -237,7 +238,13 @@ def _part(value: object, wanted: object, phrase: str) -> object:
 
 
 EXPECTED: dict[str, type] = {"scenario": Scenario, "executor": OrderExecutor, "cda": Cooperation, "llm": Model}
-EXPECTED |= {"memory": CaseMemory, "metrics": Metric, "launcher": EpisodeLauncher, "environment": Simulator}
+EXPECTED |= {
+    "memory": CaseMemory,
+    "metrics": Metric,
+    "launcher": EpisodeLauncher,
+    "environment": Simulator,
+    "limits": VehicleLimits,
+}
 """What each node has to be, known before its class is called: a file chooses no other code than a part of its kind."""
 
 

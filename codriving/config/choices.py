@@ -33,6 +33,7 @@ FIRST = {
     "scenario": ("intersection", "roundabout", "highway", "merge"),
     "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
     "llm": ("offline",),
+    "limits": ("none", "road"),
     "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),
 }

@@ -10,11 +10,11 @@ from typing import Any
 from codriving.errors import ConfigError
 
 # The choices that the command line names; one YAML a choice.
-GROUPS = ("scenario", "method", "executor", "cda", "llm", "memory", "metrics", "launcher")
+GROUPS = ("scenario", "method", "executor", "cda", "llm", "memory", "metrics", "launcher", "limits")
 
 NODES = (*GROUPS, "environment")  # The keys of the root that hold a constructor call
 
-OPTIONAL = ("memory",)  # Those of them that may be null
+OPTIONAL = ("memory", "limits")  # Those of them that may be null
 
 LARGEST_SEED = 2**31 - 1  # Seeds beyond this are refused by some of the generators below us
 

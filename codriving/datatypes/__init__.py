@@ -1,6 +1,7 @@
 """The nouns: frozen dataclasses that every room speaks in."""
 
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Memory, Verdict
+from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.order import (
     ApproachingVehicle,
     Conflict,
@@ -73,6 +74,6 @@ __all__ = [
     "LaneId", "LaneShape", "Line", "Memory", "Method", "Metric", "Model", "NamedNumber", "OrderExecutor", "Outcome",
     "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence", "ReasonedDeliberation", "Relation", "Road",
     "Role", "Route", "RuleModel", "Scenario", "Scene", "SceneDescription", "Score", "Severity", "Simulator", "Sine",
-    "Situation", "Start", "Straight", "Track", "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleState",
-    "Verdict", "WorldState", "beside",
+    "Situation", "Start", "Straight", "Track", "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleLimits",
+    "VehicleState", "Verdict", "WorldState", "beside",
 ]  # fmt: skip

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.road import LaneId
 
 
@@ -58,6 +59,7 @@ class DrivingModel:
     step: float  # Simulation step [s]
     decision_interval: float  # Time between two decisions, a multiple of the step [s]
     detection_range: float  # Radius within which a CAV perceives other vehicles [m]
+    limits: VehicleLimits | None = None  # What a vehicle can do; None if it can do anything
 
     @property
     def top_speed(self) -> float:

@@ -14,6 +14,7 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
     """A vehicle that takes one of the five actions a decision (paper Section II and Eq. 1)."""
 
     kind = Kind.CAV
+    reckoned: float  # Where it was at the last decision, and how far it has driven since [m]
 
     @classmethod
     def start(
@@ -36,13 +37,22 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
             super().act(action)
             if self.corrections.route_lane:
                 self.follow_target_lane()
+            self.reckoned = self.s
             return
+        if action is not None:
+            self.reckoned = self.s
         if action in (Action.FASTER, Action.SLOWER):
             # From the speed at which it drives, not from the target that it had; so does highway-env's MDPVehicle.
             self.speed_index = self.speed_to_index(self.speed) + (1 if action == Action.FASTER else -1)
             self.speed_index = min(max(self.speed_index, 0), len(self.target_speeds) - 1)
             self.target_speed = float(self.target_speeds[self.speed_index])
         self.action = {"steering": self.keep_lane(), "acceleration": self.speed_control(self.target_speed)}
+
+    def odometer(self, dt: float) -> float:
+        """Return its place on the route, reckoned from the last decision on: so it is predicted exactly [m]."""
+        place = self.reckoned
+        self.reckoned += self.speed * dt
+        return place
 
     def speed_to_index(self, speed: float) -> int:
         """Return the number of the target speed that is closest to a speed [m/s]; target speeds are evenly spaced."""

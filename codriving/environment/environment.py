@@ -4,7 +4,18 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from codriving.datatypes import Action, DrivingModel, Kind, Outcome, Scenario, Scene, Simulator, Trajectory, WorldState
+from codriving.datatypes import (
+    Action,
+    DrivingModel,
+    Kind,
+    Outcome,
+    Scenario,
+    Scene,
+    Simulator,
+    Trajectory,
+    VehicleLimits,
+    WorldState,
+)
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.network import build_network
 from codriving.environment.recorder import Recorder, snapshot
@@ -25,15 +36,26 @@ class Environment(Simulator):
     """
 
     def __init__(
-        self, scenario: Scenario, control: ControlGains, drivers: DriverProfile, corrections: Corrections
+        self,
+        scenario: Scenario,
+        control: ControlGains,
+        drivers: DriverProfile,
+        corrections: Corrections,
+        limits: VehicleLimits | None = None,
     ) -> None:
         self.scenario, self.control, self.drivers, self.corrections = scenario, control, drivers, corrections
+        self.limits = limits
         pace = scenario.pace
         step, interval = 1 / pace.simulation_frequency, 1 / pace.decision_frequency
-        self.driving_model = DrivingModel(pace.target_speeds, control.speed, step, interval, pace.detection_range)
+        self.driving_model = DrivingModel(
+            pace.target_speeds, control.speed, step, interval, pace.detection_range, limits
+        )
         self.road_map = road_map(scenario.road)
+        profiles = self.road_map.speed_profiles(self.driving_model)
         self._network = build_network(scenario.road)
-        self._route_paths = {route.id: route_path(self.road_map, route.id) for route in scenario.road.routes}
+        self._route_paths = {
+            route.id: route_path(self.road_map, route.id, profiles.get(route.id)) for route in scenario.road.routes
+        }
         self._world: WorldState | None = None
         self._outcome: Outcome | None = None
 
@@ -48,6 +70,7 @@ class Environment(Simulator):
         rng = np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(1,)))
         self._traffic = Traffic(self._network, rng, self.road_map, self.corrections)
         spawn(self._traffic, scene, self._route_paths, self.driving_model.target_speeds, self.control, self.drivers)
+        limit(self._traffic, self.limits)
         cavs = [start.id for start in scene.starts if start.kind is Kind.CAV]
         self._termination = Termination(cavs, self.scenario.pace.time_limit, self.driving_model.step)
         self._steps = self._decisions = 0
@@ -130,3 +153,12 @@ def spawn(
             if start.kind is Kind.CAV
             else HumanDriver.start(traffic, start, route_paths, drivers, corrections)
         )
+
+
+def limit(traffic: Traffic, limits: VehicleLimits | None) -> None:
+    """Give all vehicles the limits, and with them the gains with which they change lanes."""
+    if limits is None:
+        return
+    gains = limits.change_gains(traffic.road_map.widest)
+    for vehicle in traffic.vehicles:
+        vehicle.limits, vehicle.change_gains = limits, gains

@@ -7,12 +7,14 @@ import numpy as np
 from highway_env.road.lane import AbstractLane
 from numpy.typing import NDArray
 
-from codriving.datatypes import LaneId
+from codriving.datatypes import LaneId, VehicleLimits
 
 if TYPE_CHECKING:
     from highway_env.vehicle.controller import ControlledVehicle as _Base
 else:
     _Base = object
+
+CHANGED = 0.25  # A vehicle this close to the centre of a lane has finished changing to it [m]
 
 STANDSTILL = 1e-2  # Speeds are taken at least this large where something is divided by them, as highway-env does [m/s]
 
@@ -25,7 +27,11 @@ class PlainMotion(_Base):
 
     speed: float
     heading: float
+    action: dict[str, float]
     impact: NDArray[np.float64] | None
+    limits: VehicleLimits | None = None
+    change_gains: tuple[float, float]  # Gains of heading and lateral offset while it changes lanes [1/s]
+    changes: bool = False  # Whether it steers for a lane beside its own
 
     def steering_control(self, target_lane_index: LaneId) -> float:
         """Return the angle of the front wheels [rad] (paper Eq. 1: delta = arcsin(K_h (phi_r - phi) l / 2v))."""
@@ -43,9 +49,15 @@ class PlainMotion(_Base):
 
     def _steer(self, lane: AbstractLane, s: float, lateral: float) -> float:
         speed = self.speed if abs(self.speed) > STANDSTILL else math.copysign(STANDSTILL, self.speed + 0.0)
-        sideways = float(np.arcsin(clip(-self.KP_LATERAL * float(lateral) / speed, 1.0)))
-        turn = float(lane.heading_at(s + self.speed * self.TAU_PURSUIT)) + clip(sideways, math.pi / 4) - self.heading
-        rate = self.KP_HEADING * (((turn + math.pi) % (2 * math.pi)) - math.pi)
+        heading_gain, lateral_gain, look_ahead = self.KP_HEADING, self.KP_LATERAL, self.TAU_PURSUIT
+        if self.limits is not None:
+            self.changes = abs(lateral) > (CHANGED if self.changes else lane.width / 2)
+            if self.changes:
+                heading_gain, lateral_gain = self.change_gains
+                look_ahead = 1 / heading_gain
+        sideways = float(np.arcsin(clip(-lateral_gain * float(lateral) / speed, 1.0)))
+        turn = float(lane.heading_at(s + self.speed * look_ahead)) + clip(sideways, math.pi / 4) - self.heading
+        rate = heading_gain * (((turn + math.pi) % (2 * math.pi)) - math.pi)
         slip = np.arcsin(clip(self.LENGTH / 2 / speed * rate, 1.0))
         return clip(float(np.arctan(2 * float(np.tan(slip)))), self.MAX_STEERING_ANGLE)
 
@@ -63,6 +75,20 @@ class PlainMotion(_Base):
         self.heading += self.speed * float(np.sin(beta)) / (self.LENGTH / 2) * dt
         self.speed += self.action["acceleration"] * dt
         self.on_state_update()
+
+    def hold(self, most: float, dt: float) -> None:
+        """Keep what was commanded within the limits, and the acceleration below a bound [m/s2].
+
+        The tyres hold at both ends of a simulation step [s]: v times the yaw rate v sin(beta) / (l / 2).
+        """
+        if self.limits is None:
+            return
+        pedal = min(max(min(float(self.action["acceleration"]), most), -self.limits.braking), self.limits.acceleration)
+        squared = self.speed * max(self.speed, self.speed + pedal * dt)
+        steering = float(self.action["steering"])
+        if squared > (held := self.limits.lateral * self.LENGTH / 2):
+            steering = clip(steering, math.atan(2 * math.tan(math.asin(held / squared))))
+        self.action = {"steering": steering, "acceleration": pedal}
 
 
 def clip(value: float, most: float) -> float:

@@ -5,9 +5,10 @@ from codriving.geometry.curve import FloatArray
 from codriving.geometry.lane_path import lane_path, lane_starts
 from codriving.geometry.path import Path, progress
 from codriving.geometry.road_map import RoadMap, road_map
+from codriving.geometry.speed_profile import SpeedProfile
 from codriving.geometry.zone import ConflictZone
 
 __all__ = [
-    "PLANNING", "TRUE", "ConflictZone", "FloatArray", "Footprint", "Path", "RoadMap", "corners", "lane_path",
-    "lane_starts", "overlap", "progress", "road_map",
+    "PLANNING", "TRUE", "ConflictZone", "FloatArray", "Footprint", "Path", "RoadMap", "SpeedProfile", "corners",
+    "lane_path", "lane_starts", "overlap", "progress", "road_map",
 ]  # fmt: skip

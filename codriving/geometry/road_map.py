@@ -5,14 +5,16 @@ from functools import lru_cache
 
 import numpy as np
 
-from codriving.datatypes import Lane, LaneId, Road, Route
+from codriving.datatypes import DrivingModel, Lane, LaneId, Road, Route
 from codriving.geometry.box import PLANNING, Footprint
+from codriving.geometry.curve import FloatArray
 from codriving.geometry.find_zones import find_zones
 from codriving.geometry.lane_changes import LaneChanges
 from codriving.geometry.lane_path import lane_starts, route_path
 from codriving.geometry.nearby import Nearby
 from codriving.geometry.path import Path
 from codriving.geometry.road_check import check_road
+from codriving.geometry.speed_profile import SpeedProfile, route_curvature, speed_profile
 from codriving.geometry.zone import ConflictZone, following_zone
 
 _REMEMBERED = 10_000  # Projections that are remembered; many vehicles need the same ones within a decision step
@@ -44,6 +46,12 @@ class RoadMap:
         self._projected: dict[tuple[str, float, float], tuple[float, float]] = {}
         self._zones: dict[Footprint, dict[tuple[str, str], tuple[ConflictZone, ...]]] = {}
         self._planning = self._zones[PLANNING] = {}
+        self._profiles: dict[DrivingModel, dict[str, SpeedProfile]] = {}
+
+    @property
+    def widest(self) -> float:
+        """Width of its widest lane [m]."""
+        return max(lane.width for lane in self.lanes.values())
 
     def project(self, route_id: str, x: float, y: float) -> tuple[float, float]:
         """Return arc length and lateral offset of a place on a route [m], each worked out once."""
@@ -84,6 +92,20 @@ class RoadMap:
         if found is None:
             found = known[route_i, route_j] = self._find(route_i, route_j, footprint)
         return found
+
+    def speed_profiles(self, model: DrivingModel) -> Mapping[str, SpeedProfile]:
+        """Return the speed profile of each route, worked out once; none at all where vehicles have no limits."""
+        if model.limits is None:
+            return {}
+        if model not in self._profiles:
+            self._profiles[model] = {
+                name: speed_profile(path, self._curvature(name), model, model.limits)
+                for name, path in self.paths.items()
+            }
+        return self._profiles[model]
+
+    def _curvature(self, route_id: str) -> FloatArray:
+        return route_curvature(self.routes[route_id], self.paths[route_id], self.lanes, self._starts)
 
     def _find(self, route_i: str, route_j: str, footprint: Footprint) -> tuple[ConflictZone, ...]:
         if route_i == route_j:

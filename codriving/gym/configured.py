@@ -13,7 +13,7 @@ from codriving.environment import Environment
 from codriving.errors import ConfigError
 from codriving.reasoning import CdaLevel
 
-READ = ("scenario", "environment", "cda", "plugins")  # Keys of the root that make a difference here
+READ = ("scenario", "environment", "limits", "cda", "plugins")  # Keys of the root that make a difference here
 
 CHOSEN = ("scenario", "cda")  # Groups that are chosen by an argument, and not by an override
 

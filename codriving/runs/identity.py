@@ -36,11 +36,13 @@ HOW_A_MODEL_IS_ASKED = (
 # Groups whose choice stands for a class; all choices of ``cda`` are one class, so that their values tell them.
 CHOICES = ("scenario", "method", "executor", "llm", "memory")
 
+LIMITS = "limits"  # Without limits a world is that of a run whose config did not know them yet
+
 MEMORY = "memory"
 SNAPSHOT, AUTO = "snapshot", "auto"  # Where a memory's snapshot is told by its contents, its file may lie anywhere
 
 # Nodes of the root to which other nodes refer, and which therefore stand in these once more.
-_COPIED = (*CHOICES, "cda")
+_COPIED = (*CHOICES, "cda", LIMITS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +78,8 @@ class CellEntry:
 def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out of a resolved config what does not change what is driven, the names of classes, and repetitions."""
     values = {key: _plain(node, resolved) for key, node in resolved.items() if key not in WITHOUT_EFFECT}
+    if values.get(LIMITS) is None:
+        values.pop(LIMITS, None)
     dropped: dict[str, Sequence[str]] = {"llm": HOW_A_MODEL_IS_ASKED}
     if snapshot_of(resolved):
         dropped[MEMORY] = (SNAPSHOT, "file", "embedding_deadline")

@@ -104,6 +104,7 @@ def test_list_without_a_group_shows_all_groups() -> None:
         "memories",
         "metrics",
         "launchers",
+        "limits",
         "experiments",
         "trainings",
     ]

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Road
 from codriving.datatypes.world import Scene, Start
@@ -94,10 +95,12 @@ def by_hand() -> Drive:
         target_speeds: tuple[float, ...] = (0.0, 3.0, 6.0, 9.0),
         time_limit: float = 30.0,
         drivers: dict[str, float] | None = None,
+        limits: VehicleLimits | None = None,
     ) -> Environment:
         road = road or Intersection(**INTERSECTION).road
         scenario = ByHand(road, Pace(10.0, 2.0, time_limit, target_speeds, 50.0), tuple(starts))
-        return Environment(scenario, GAINS, DriverProfile(**{**DRIVERS, **(drivers or {})}), corrections(*off))
+        profile = DriverProfile(**{**DRIVERS, **(drivers or {})})
+        return Environment(scenario, GAINS, profile, corrections(*off), limits)
 
     return build
 

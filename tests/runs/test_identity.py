@@ -46,6 +46,17 @@ def test_names_and_values_tell(override: str) -> None:
     assert told(override) != told()
 
 
+def test_a_config_that_does_not_know_limits_is_one_without_them() -> None:
+    resolved = compose(["limits=none"])
+    before = {key: value for key, value in resolved.items() if key != "limits"}
+    before["environment"] = {key: value for key, value in before["environment"].items() if key != "limits"}
+    assert fingerprint(NAMES, {}, resolved, ()) == fingerprint(NAMES, {}, before, ())
+    assert driving_values(resolved) == driving_values(before)
+    assert settings_of(resolved) == settings_of(before)
+    assert settings_of(compose(["limits=road"])).items() >= {"limits.braking": "8.0", "limits.lateral": "4.0"}.items()
+    assert told("limits=road") != told("limits=none") != told("limits=road", "limits.braking=7")
+
+
 def test_labels_and_files_tell() -> None:
     assert told(names=("merge", *NAMES[1:])) != told()
     assert told(files=(DECIDE,)) != told()

@@ -17,7 +17,7 @@ from codriving.datatypes import Kind, LaneId, Route, Start, beside
 from codriving.environment.motion import PlainMotion
 from codriving.environment.settings import Corrections
 from codriving.errors import ScenarioError
-from codriving.geometry import Path, RoadMap
+from codriving.geometry import Path, RoadMap, SpeedProfile
 
 SINK_MARGIN = 8.0  # A vehicle leaves the road this far before the end of its route [m]
 
@@ -41,6 +41,7 @@ class RoutePath:
     cells: frozenset[tuple[int, int]]
     lane_end: float = math.inf  # Arc length at which a lane ends that has to be left before [m]; inf if there is none
     ending: LaneId | None = None  # That lane, or None
+    profile: SpeedProfile | None = None  # How fast it can be driven, or None if vehicles have no limits
 
     @property
     def end(self) -> float:
@@ -84,7 +85,7 @@ def _square(point: tuple[float, float], x: float, y: float) -> float:
     return dx * dx + dy * dy
 
 
-def route_path(road_map: RoadMap, route: str) -> RoutePath:
+def route_path(road_map: RoadMap, route: str, profile: SpeedProfile | None = None) -> RoutePath:
     """Lay a route out on its road."""
     found, path = road_map.routes[route], road_map.paths[route]
     if found.goal > path.length - SINK_MARGIN:
@@ -96,8 +97,10 @@ def route_path(road_map: RoadMap, route: str) -> RoutePath:
     x, y = path.points.T.copy()
     points, headings = tuple(zip(x.tolist(), y.tolist(), strict=True)), tuple(path.headings.tolist())
     changes = zip(pairwise(found.lanes), starts[1:], strict=True)
-    left = next(((s + found.taper / 2, lane) for (lane, other), s in changes if beside(lane, other)), (math.inf, None))
-    return RoutePath(found, path, starts, x, y, points, headings, path.spacing, _cells(x, y), *left)
+    left: tuple[float, LaneId | None] = next(
+        ((s + found.taper / 2, lane) for (lane, other), s in changes if beside(lane, other)), (math.inf, None)
+    )
+    return RoutePath(found, path, starts, x, y, points, headings, path.spacing, _cells(x, y), left[0], left[1], profile)
 
 
 def _cells(x: NDArray[np.float64], y: NDArray[np.float64]) -> frozenset[tuple[int, int]]:
@@ -204,10 +207,16 @@ class RouteFollower(PlainMotion):
         self.lane = lanes[index]
 
     def step(self, dt: float) -> None:
-        """Move by one simulation step [s], never backwards if that is corrected."""
+        """Move by one simulation step [s], within the limits, and never backwards if that is corrected."""
+        if self.route_path.profile is not None:
+            self.hold(self.route_path.profile.acceleration(self.odometer(dt), self.speed), dt)
         self.move(dt)
         if self.corrections.no_reverse and self.speed < 0:
             self.speed = 0.0
+
+    def odometer(self, dt: float) -> float:
+        """Return the arc length of which the vehicle thinks that it is there [m], at the beginning of a step [s]."""
+        return self.s
 
     def lane_distance_to(self, other: RoadObject | None, lane: AbstractLane | None = None) -> float:
         """Return the distance to another vehicle, positive if it is ahead [m]; along the route if corrected."""
