@@ -41,8 +41,8 @@ def run_check(overrides: Sequence[str], config_dir: Path | None = None) -> int:
         raise ConfigError("this method asks no language model; leave method= out, or choose method=codriving")
     if (client := model.chat()) is None:
         others = ", ".join(name for name in choices("llm", config_dir) if name != "offline")
-        print("No model is asked: with this llm the built-in rules reason, without network and key.")
-        print(f"Models: {others or 'none'}. Check one with: codriving check llm=NAME")
+        print("No model is asked: with this llm the built-in rules reason.")
+        print(f"Models: {others or 'none'}\nCheck one with: codriving check llm=NAME")
         return 0
     try:
         client.preflight()

@@ -20,6 +20,7 @@ from codriving.config import (
     written,
 )
 from codriving.errors import ConfigError
+from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.cells import Cell
 from codriving.experiment.drive import Driven, Outputs, drive
 from codriving.experiment.plan import make_plan
@@ -35,6 +36,7 @@ from codriving.reports import (
     load_table,
     markdown_text,
     print_comparison,
+    print_each_load,
     print_loads,
     print_pairs,
     read_paper,
@@ -149,11 +151,11 @@ def make_loads(driven: Driven) -> Outputs:
     rows = load_rows(cells, taking_part(LOAD))
     swept = tuple(dict.fromkeys(key for _, results in cells for key in results.swept))
     table = load_table(rows, loads, swept)
-    kept, printed = (print_loads(rows, loads, driven.metrics, swept, screen) for screen in (False, True))
+    kept, printed = print_loads(rows, loads, driven.metrics, swept), print_each_load(rows, loads, driven.metrics, swept)
     files = {"load.csv": table.csv().encode(), "load.md": markdown_text(kept).encode()}
     figures = load_figure(rows, loads, driven.metrics, styles())
     files |= {f"figures/{name}": content for name, content in figures.items()}
-    return Outputs(files, (printed,), (table,))
+    return Outputs(files, printed, (table,))
 
 
 def _results(driven: Driven, without: str = "") -> Iterator[tuple[Cell, CellResults]]:
@@ -162,7 +164,7 @@ def _results(driven: Driven, without: str = "") -> Iterator[tuple[Cell, CellResu
         dropped.add(METHOD_CHOICE)
     for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True):
         swept = {key: value for key, value in cell.swept.items() if key not in dropped}
-        yield cell, CellResults(records, swept, cpu=cpu_per_decision(timings), metric=cell.score_name)
+        yield cell, results_of(cell, records, swept, cpu_per_decision(timings))
 
 
 def _row(cell: Cell) -> tuple[object, ...]:

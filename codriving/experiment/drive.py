@@ -7,12 +7,12 @@ from contextlib import closing
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from signal import SIGINT
 from typing import Any
 
 from codriving.config import experiments_dir, show
 from codriving.datatypes import Ending, EpisodeRecord
 from codriving.errors import DamagedEpisodeError, ModelError, ModelUnavailableError
+from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell, with_metrics
 from codriving.experiment.film import FilmEpisode
@@ -23,18 +23,15 @@ from codriving.experiment.processes import Processes
 from codriving.experiment.progress import show_progress
 from codriving.experiment.remembering import growing, learns
 from codriving.experiment.scoring import scored
-from codriving.experiment.stopping import StopSignal, stopped_by_signals
 from codriving.experiment.threads import Threads
 from codriving.experiment.worker import Job, Objects, Report, SaveEpisode, Unit
 from codriving.reports import (
-    CellResults,
     PrintedTable,
     RunTables,
     Table,
     TimedEpisode,
     read_paper,
     run_tables,
-    seconds_per_decision,
     table,
     timing_columns,
 )
@@ -61,11 +58,11 @@ from codriving.runs import (
 
 
 class Interrupted(KeyboardInterrupt):
-    """Raised when the user or the system stops a batch, after everything has been put in order."""
+    """Raised when the user stops a batch, after everything has been put in order."""
 
-    def __init__(self, folder: Path, finished: int, planned: int, signal: int = SIGINT) -> None:
+    def __init__(self, folder: Path, finished: int, planned: int) -> None:
         super().__init__(f"stopped with {finished} of {planned} episodes finished")
-        self.folder, self.finished, self.planned, self.signal = folder, finished, planned, int(signal)
+        self.folder, self.finished, self.planned = folder, finished, planned
 
 
 class HaltedError(ModelError):
@@ -170,8 +167,7 @@ def drive(
         failed: list[Report] = []
         todo = missing + unfilmed
         try:
-            usage = models.usage if models.models else None
-            with stopped_by_signals(), show_progress(Counter(unit.cell for unit in todo), usage) as update:
+            with show_progress(Counter(unit.cell for unit in todo), models.usage if models.models else None) as update:
                 for part, launcher, workers in _places(missing, unfilmed, plan, models):
                     failures = FailuresInARow(models.names, models.patience)
                     with closing(launcher.launch(part, job, workers, preload)) as reports:
@@ -184,8 +180,7 @@ def drive(
             finished = len(_records(folder, cells, plan.seeds, records, damaged=[]))
             if isinstance(stop, ModelError):
                 raise HaltedError(stop, folder.path, finished, len(units)) from stop
-            number = stop.number if isinstance(stop, StopSignal) else SIGINT
-            raise Interrupted(folder.path, finished, len(units), number) from None
+            raise Interrupted(folder.path, finished, len(units)) from None
         finally:
             folder.clean()
         everything = _records(folder, cells, plan.seeds, records, errors=True)
@@ -328,10 +323,7 @@ def _again(damaged: Sequence[DamagedEpisodeError]) -> str:
 def _write(plan: Plan, driven: Driven, outputs: Outputs) -> RunTables:
     """Write the tables of every run, and what the command adds."""
     each = list(zip(driven.cells, driven.records, driven.timings, strict=True))
-    results = [
-        CellResults(records, cell.swept, seconds_per_decision(timings), metric=cell.score_name)
-        for cell, records, timings in each
-    ]
+    results = [results_of(cell, records, cell.swept) for cell, records, _ in each]
     tables = run_tables(results, read_paper(experiments_dir()), driven.metrics, plan.notes)
     # What was driven once has cost time once, by however many metrics it was scored.
     once = {cell.folder: (cell, records, timings) for cell, records, timings in each}

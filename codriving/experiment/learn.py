@@ -8,13 +8,13 @@ from pathlib import Path
 
 from codriving.config import Point, expand, experiments_dir, parse, written
 from codriving.errors import ConfigError
+from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.drive import Driven, HaltedError, Interrupted, Outputs, drive
 from codriving.experiment.memory_build import FIRST_SEED, MOST, count_of, refuse_forgetful, split_interactions
 from codriving.experiment.plan import make_plan
 from codriving.experiment.remembering import memory_file
 from codriving.experiment.run import print_configs, report, resume_command, stopped
 from codriving.reports import (
-    CellResults,
     LearningRow,
     learning_figure,
     learning_rows,
@@ -109,8 +109,8 @@ def learned(driven: Driven, settings: int) -> Outputs:
     paper, each = read_learning(experiments_dir()), len(driven.cells) // settings
     cells = []
     for index, (cell, records) in enumerate(zip(driven.cells, driven.records, strict=True)):
-        other = {key: value for key, value in cell.swept.items() if key not in (KEY, "scenario", "cda")}
-        results, memory = CellResults(records, other, metric=cell.score_name), cell.resolved["memory"]
+        other = {key: value for key, value in cell.swept.items() if key != KEY}
+        results, memory = results_of(cell, records, other), cell.resolved["memory"]
         cells.append(LearningRow(results, int(memory["interactions"]), index // each, int(memory["shots"])))
     rows = learning_rows(cells, paper)
     swept = tuple(dict.fromkeys(key for row in rows for key in row.cell.swept))

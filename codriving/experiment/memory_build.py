@@ -6,6 +6,7 @@ from pathlib import Path
 
 from codriving.config import Point, expand, parse, written
 from codriving.errors import ConfigError
+from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.drive import Driven, Outputs
 from codriving.experiment.plan import Plan
 from codriving.experiment.remembering import learns, memory_file
@@ -67,12 +68,12 @@ def count_of(text: str) -> int | None:
 def built(driven: Driven) -> Outputs:
     """Say what was learnt."""
     rows = []
-    for cell in driven.cells:
+    for cell, records in zip(driven.cells, driven.records, strict=True):
         named = (cell.resolved.get("memory") or {}).get("file")
         reading = read_memory(memory_file(driven.folder, cell.folder) if named is None else Path(named))
         labels = cell.labels
         name = f"{labels.method} {labels.variant}".strip()
-        rows.append(BuiltMemory(labels.scenario, name, labels.reasoner, cell.swept, reading))
+        rows.append(BuiltMemory(labels.scenario, name, labels.reasoner, reading, results_of(cell, records, cell.swept)))
     display = print_built(rows)
     return Outputs({"memory.md": markdown_text(display).encode()}, (display,))
 

@@ -9,7 +9,7 @@ from codriving.datatypes import Interaction
 from codriving.errors import ConfigError, MemoryFileError
 from codriving.memory import Reading, StoredExperience, merge, own_embedder, read_memory, search
 
-WIDTH = 110
+WIDTH = 78  # Characters of a line: within the narrowest usual terminal
 
 
 def show_page(file: Path | None, most: int) -> str:

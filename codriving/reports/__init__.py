@@ -9,10 +9,11 @@ from codriving.reports.comparison import (
     load_rows,
     load_table,
     print_comparison,
+    print_each_load,
     print_loads,
     print_pairs,
 )
-from codriving.reports.episodes import TimedEpisode, cpu_per_decision, seconds_per_decision, timing_columns
+from codriving.reports.episodes import TimedEpisode, cpu_per_decision, timing_columns
 from codriving.reports.figures import learning_figure, load_figure
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
 from codriving.reports.paper import read_learning, read_paper
@@ -24,6 +25,6 @@ __all__ = [
     "METHOD_CHOICE", "BuiltMemory", "CellResults", "LearningRow", "PrintedTable", "RunTables", "Table",
     "TimedEpisode", "comparison_rows", "comparison_table", "cpu_per_decision", "learning_figure", "learning_rows",
     "learning_table", "load_figure", "load_rows", "load_table", "markdown_text", "print_built", "print_comparison",
-    "print_learning", "print_loads", "print_pairs", "print_table", "read_learning", "read_paper", "run_tables",
-    "seconds_per_decision", "table", "timing_columns",
+    "print_each_load", "print_learning", "print_loads", "print_pairs", "print_table", "read_learning", "read_paper",
+    "run_tables", "table", "timing_columns",
 ]  # fmt: skip

@@ -35,6 +35,8 @@ class Column(Generic[T]):
     csv: bool = True  # Whether it is in the CSV
     page: bool = True  # Whether it is in Markdown; what differs from run to run is on the screen alone
     sparse: bool = False  # Whether it is shown only where a row has a value other than 0
+    rank: int = 0  # When it gives way on a narrow terminal: the highest first, 0 never
+    brief: tuple[str, str] | None = None  # Head of its short form there, and the text before which a cell is cut then
     swept: bool = False  # Whether it is of a swept key, which may take numbers as well as words
 
     def of(self, part: Callable[[Any], T | None], key: str = "", head: str = "") -> "Column[Any]":

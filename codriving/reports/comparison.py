@@ -96,13 +96,18 @@ def status_columns(scenario: bool) -> list[Column[Any]]:
     ]
 
 
-REASONER: Column[Any] = Column(
-    "reasoning",
-    lambda r: reasoner_text(r.cell.first.reasoner) if r.status == DRIVEN else r.status,
-    "reasoner",
-    words=True,
-    csv=False,
-)
+def reasoner_column(rows: Sequence[Any]) -> Column[Any]:
+    """Give the column of what reasons; on a narrow terminal it gives way unless it tells rows apart."""
+    named = {(row.scenario, row.name, *row.swept.items()) for row in rows if row.status == DRIVEN}
+    return Column(
+        "reasoning",
+        lambda r: reasoner_text(r.cell.first.reasoner) if r.status == DRIVEN else r.status,
+        "reasoner",
+        words=True,
+        csv=False,
+        rank=5 if len(named) == sum(row.status == DRIVEN for row in rows) else 0,
+        brief=("reasoner", " ("),
+    )
 
 
 def comparison_table(rows: Sequence[Compared], swept: Sequence[str] = ()) -> Table:
@@ -111,11 +116,11 @@ def comparison_table(rows: Sequence[Compared], swept: Sequence[str] = ()) -> Tab
     columns: list[Column[Any]] = [
         *status_columns(len({row.scenario for row in rows}) > 1),
         *swept_columns(swept),
-        REASONER,
+        reasoner_column(rows),
         *(column.of(lambda row: row.cell) for column in MEASURED if column.key not in rates),
         *(column.of(lambda row: row.cell) for column in number_columns(named_numbers(_cells(rows)), MEASURED)),
         *([FALLBACKS.of(lambda row: row.cell)] if any(row.cell and row.cell.asked for row in rows) else []),
-        Column("cpu", lambda r: milliseconds(r.cell.cpu) if r.cell else "", CPU, csv=False, page=False),
+        Column("cpu", lambda r: milliseconds(r.cell.cpu) if r.cell else "", CPU, csv=False, page=False, rank=7),
         *(replace(column, head="").of(lambda r: r.pairs) for column in PAIRED if column.csv),
         *map(_quoted, QUOTED),
     ]
@@ -134,6 +139,8 @@ def comparison_rows(block: Sequence[CellResults], methods: Sequence[str], paper:
     """
     reference = next((cell for cell in block if cell.first.method == REFERENCE), None)
     scenario, setting = block[0].first.scenario, setting_of(block[0].swept)
+    # Its numbers do not stand below another number of vehicles or of seeds.
+    paper = paper if block[0].as_in_paper else Paper()
 
     def driven(cell: CellResults) -> Compared:
         quoted = paper.row(cell.first.scenario, cell.first.method, cell.first.variant)
@@ -281,22 +288,26 @@ def _in_order(rows: Sequence[LoadRow], methods: Sequence[str]) -> list[LoadRow]:
     return [*ordered, *(row for row in rows if takes_place_of(row.cell, row.method) not in methods)]
 
 
-def load_table(rows: Sequence[LoadRow], loads: Sequence[int], swept: Sequence[str] = ()) -> Table:
-    """Make the table of loads."""
-    at_each: list[Column[CellResults]] = [
-        *(replace(BY_KEY[key], head="") for key in AT_EACH),
+def _measured(rows: Sequence[LoadRow]) -> list[Column[CellResults]]:
+    """What people read at each number of CAVs."""
+    return [
         Column("success", _success, "success (95 %)", csv=False),
         Column("velocity", lambda c: two_digits(BY_KEY["velocity_mean"].value(c)) or "-", "velocity [m/s]", csv=False),
         *([FALLBACKS] if any(cell.asked for row in rows for cell in row.at.values()) else []),
         Column("cpu", lambda c: milliseconds(c.cpu), CPU, csv=False, page=False),
     ]
-    columns: list[Column[Any]] = [
-        *status_columns(scenario=True),
-        *swept_columns(swept),
-        REASONER,
-        Column("episodes", lambda row: len(row.cell.records) if row.cell else None, "episodes"),
-    ]
-    return table([*columns, *(_at(cavs, column) for column in at_each for cavs in loads)], rows)
+
+
+def _of_method(rows: Sequence[LoadRow], swept: Sequence[str]) -> list[Column[Any]]:
+    return [*status_columns(scenario=True), *swept_columns(swept), reasoner_column(rows)]
+
+
+def load_table(rows: Sequence[LoadRow], loads: Sequence[int], swept: Sequence[str] = ()) -> Table:
+    """Make the table of loads."""
+    at_each = [*(replace(BY_KEY[key], head="") for key in AT_EACH), *_measured(rows)]
+    episodes = Column[LoadRow]("episodes", lambda row: len(row.cell.records) if row.cell else None, "episodes")
+    columns = [_at(cavs, column) for column in at_each for cavs in loads]
+    return table([*_of_method(rows, swept), episodes, *columns], rows)
 
 
 def _at(cavs: int, column: Column[CellResults]) -> Column[LoadRow]:
@@ -304,18 +315,33 @@ def _at(cavs: int, column: Column[CellResults]) -> Column[LoadRow]:
     return column.of(lambda row: row.at.get(cavs), f"{column.key}_{cavs}", head)
 
 
-def print_loads(
-    rows: Sequence[LoadRow], loads: Sequence[int], metrics: str, swept: Sequence[str] = (), screen: bool = False
-) -> PrintedTable:
-    """Prepare the table of loads for people.
+def print_loads(rows: Sequence[LoadRow], loads: Sequence[int], metrics: str, swept: Sequence[str] = ()) -> PrintedTable:
+    """Prepare the table of loads as a page has it."""
+    notes = (LOAD_NOTE, *_load_notes(rows, screen=False))
+    return printed(load_title(rows, metrics), load_table(rows, loads, swept), _load_blocks(rows), notes)
 
-    Args:
-        screen: Whether it is for the screen, which shows computing times, too.
-    """
-    blocks = [(row.scenario, *setting_of(row.swept).items()) for row in rows]
-    labels = [(row.method, row.status, cell) for row in rows for cell in row.at.values() or [None]]
-    notes = (LOAD_NOTE, *notes_of(labels, screen))
-    return printed(load_title(rows, metrics), load_table(rows, loads, swept), blocks, notes, screen=screen)
+
+def print_each_load(
+    rows: Sequence[LoadRow], loads: Sequence[int], metrics: str, swept: Sequence[str] = ()
+) -> tuple[PrintedTable, ...]:
+    """Prepare the tables of loads as a screen has them: one a quantity, computing times included."""
+    notes = (LOAD_NOTE, *_load_notes(rows, screen=True))
+    measured, heading = _measured(rows), load_title(rows, metrics)
+    made = []
+    for number, column in enumerate(measured, 1):
+        columns = [replace(_at(cavs, column), head=f"{cavs} CAVs", brief=(f"{cavs} CAVs", " (")) for cavs in loads]
+        found = table([*_of_method(rows, swept), *columns], rows)
+        what = column.head if number > 1 else f"{heading} - {column.head}"
+        made.append(printed(what, found, _load_blocks(rows), notes if number == len(measured) else (), screen=True))
+    return tuple(made)
+
+
+def _load_blocks(rows: Sequence[LoadRow]) -> list[tuple[object, ...]]:
+    return [(row.scenario, *setting_of(row.swept).items()) for row in rows]
+
+
+def _load_notes(rows: Sequence[LoadRow], screen: bool) -> list[str]:
+    return notes_of([(row.method, row.status, cell) for row in rows for cell in row.at.values() or [None]], screen)
 
 
 def load_title(rows: Sequence[LoadRow], metrics: str) -> str:

@@ -58,7 +58,7 @@ def number_columns(numbers: Iterable[NamedNumber], known: Iterable[Column[Any]])
     def column(number: NamedNumber) -> Column[Any]:
         key = f"metric_{number.name}" if number.name in taken else number.name
         head = number_head(number) if number.shown else ""
-        return Column(key, lambda item: item.numbers.get(number.name), head, two_digits)
+        return Column(key, lambda item: item.numbers.get(number.name), head, two_digits, rank=5)
 
     return [column(number) for number in numbers]
 
@@ -98,11 +98,6 @@ def timing_columns(swept: Iterable[str] = ()) -> list[Column[Any]]:
         Column("decision_cpu_max", lambda e: e.timing.decision_cpu_max if e.timing else None),
     ]
     return [*labels, *swept_columns(swept), *measured]
-
-
-def seconds_per_decision(timings: Iterable[Timing | None]) -> float | None:
-    """Give the wall-clock time of a decision [s], over all decisions of a cell; None where nothing was measured."""
-    return _mean([(t.decisions, t.decision_mean) for t in timings if t and t.decision_mean is not None])
 
 
 def cpu_per_decision(timings: Iterable[Timing | None]) -> float | None:

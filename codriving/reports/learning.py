@@ -52,7 +52,9 @@ def learning_rows(cells: Sequence[LearningRow], paper: Sequence[LearningStatemen
             row,
             fewest=None if row.cell is fewest[row.setting] else fewest[row.setting],
             # The paper tests the full framework alone.
-            claim=claims.get((row.cell.first.scenario, row.interactions)) if row.cell.first.variant == "full" else None,
+            claim=claims.get((row.cell.first.scenario, row.interactions))
+            if row.cell.first.variant == "full" and row.cell.papers_setting
+            else None,
         )
         for row in cells
     ]
@@ -65,22 +67,25 @@ def learning_table(rows: Sequence[LearningRow], swept: Sequence[str] = ()) -> Ta
         return [BY_KEY[key].of(lambda row: row.cell) for key in keys]
 
     def counted(name: str) -> Column[Any]:
-        return Column(name, lambda row: row.cell.counters.get(name), name, lambda value: str(value or 0))
+        return Column(name, lambda row: row.cell.counters.get(name), name, lambda value: str(value or 0), rank=8)
 
     def gain(key: str, value: Any) -> Column[Any]:  # noqa: ANN401 - of the pairs
         return Column(key, lambda row: value(row.pairs) if row.pairs else None)
 
     columns: list[Column[Any]] = [
-        *(column.of(lambda row: row.cell) for column in (*labels(scenario=True), *swept_columns(swept))),
+        *(
+            column.of(lambda row: row.cell)
+            for column in (*labels([row.cell for row in rows], scenario=True), *swept_columns(swept))
+        ),
         Column("interactions", lambda row: row.interactions, "interactions"),
         Column("shots", lambda row: row.shots),
         *(replace(column, head="") for column in cell("memory")),
         *cell("episodes", "completed", "count", "success_rate", "success_low", "success_high", "interval"),
-        Column("gain", lambda row: row.gain, "gain [points] (p)", csv=False),
+        Column("gain", lambda row: row.gain, "gain [points] (p)", csv=False, rank=1, brief=("gain [points]", " (")),
         *cell("collision_rate", "timeout_rate"),
-        replace(*cell("pet_mean"), head="PET mean [s]", text=fixed),
+        replace(*cell("pet_mean"), head="PET mean [s]", text=fixed, rank=5),
         *cell("pet_below_1_5"),
-        replace(*cell("velocity_mean"), head="velocity [m/s]", text=two_digits),
+        replace(*cell("velocity_mean"), head="velocity [m/s]", text=two_digits, rank=4),
         counted("recalled"),
         counted("reconsidered"),
         gain("success_gain", lambda pairs: pairs.success),
@@ -90,7 +95,7 @@ def learning_table(rows: Sequence[LearningRow], swept: Sequence[str] = ()) -> Ta
         gain("velocity_gain", lambda pairs: pairs.velocity.mean),
         gain("velocity_gain_low", lambda pairs: pairs.velocity.low),
         gain("velocity_gain_high", lambda pairs: pairs.velocity.high),
-        Column("paper", lambda row: row.claim, CLAIM, words=True),
+        Column("paper", lambda row: row.claim, CLAIM, words=True, rank=3),
     ]
     return table(columns, rows)
 

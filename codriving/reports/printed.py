@@ -4,13 +4,16 @@ import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Literal, TextIO
+from typing import TextIO, TypeAlias
 
 from codriving.reports.columns import Row, Table
+from codriving.reports.fitting import Drawn, Fitted, fit, record, upright
 
 _PIPE_WIDTH = 1000  # Columns of a pipe: wide enough that nothing wraps
 
-_GAP = 2  # Characters between two columns on a terminal
+LEFT_OUT = "Left out at this width: {}; the files of the run folder have them."
+
+_Line: TypeAlias = tuple[str, str]  # A line and its style
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +34,22 @@ class PrintedTable:
     words: frozenset[str]  # Heads of the columns that stand left
     rows: tuple[PrintedRow, ...]
     notes: tuple[str, ...]
+    ranks: tuple[int, ...]  # When each column gives way on a narrow terminal
+    briefs: tuple[tuple[str, str] | None, ...]  # The short form of each there
+
+    @property
+    def shapes(self) -> tuple[Drawn, ...]:
+        """The columns as a terminal draws them."""
+        return tuple(
+            Drawn(
+                head,
+                tuple(" ".join(row.cells[index].split()) for row in self.rows),
+                head in self.words,
+                self.ranks[index],
+                self.briefs[index],
+            )
+            for index, head in enumerate(self.columns)
+        )
 
 
 def printed(
@@ -56,7 +75,8 @@ def printed(
         for values in [row, theirs[index]] if index in theirs else [row]:
             made.append(PrintedRow(tuple(column.text(values.get(column.key)) for column in shown), values is row))
     words = frozenset(column.head for column in shown if column.words)
-    return PrintedTable(title, tuple(column.head for column in shown), words, tuple(made), tuple(notes))
+    heads, ranks, briefs = (tuple(getattr(column, name) for column in shown) for name in ("head", "rank", "brief"))
+    return PrintedTable(title, heads, words, tuple(made), tuple(notes), ranks, briefs)
 
 
 def markdown_text(table: PrintedTable, level: int = 1) -> str:
@@ -74,46 +94,46 @@ def _markdown_row(cells: Iterable[str]) -> str:
 
 
 def print_table(table: PrintedTable, stream: TextIO | None = None) -> None:
-    """Print a table."""
-    from rich import box
+    """Print a table: whole in a pipe, within the width of a terminal."""
     from rich.console import Console
-    from rich.table import Table
     from rich.text import Text
 
     stream = stream or sys.stdout
     terminal = stream.isatty()
     console = Console(file=stream, highlight=False, width=None if terminal else _PIPE_WIDTH)
-    drawn = Table(
-        box=box.SIMPLE_HEAD if terminal else None,
-        pad_edge=False,
-        padding=(0, 1) if terminal else (0, 2, 0, 0),
-        collapse_padding=terminal,
-    )
-    widths = _widths(table, console.width - _GAP * len(table.columns))
-    for head, width in zip(table.columns, widths, strict=True):
-        justify: Literal["left", "right"] = "left" if head in table.words else "right"
-        drawn.add_column(Text(head), justify=justify, width=width if terminal else None)
-    for row in table.rows:
-        drawn.add_row(*map(Text, row.cells), style=None if row.ours else "dim", end_section=row.last)
-    # What the terminal breaks can be read, what is cut cannot.
-    console.width = max(console.width, sum(widths) + _GAP * len(widths))
-    # Not as the table's own title, which would be padded to its width and wrapped to it.
+    lines, left_out = _terminal_lines(table, console.width) if terminal else (_pipe_lines(table), ())
     console.print(Text(table.title, style="bold"))
-    console.print(drawn)
-    for note in table.notes:
+    for text, style in lines:
+        console.print(Text(text, style=style, no_wrap=True, overflow="ignore"), crop=False)
+    for note in [*table.notes, *([LEFT_OUT.format(", ".join(left_out))] if left_out else [])]:
         console.print(Text(note, style="dim"))
 
 
-def _widths(table: PrintedTable, room: int) -> list[int]:
-    """Share a terminal's width among the columns: numbers may go into several lines, no word is broken."""
-    columns = [[head, *(row.cells[index] for row in table.rows)] for index, head in enumerate(table.columns)]
-    widths = [max(map(len, texts)) for texts in columns]
-    least = [max(len(word) for text in texts for word in text.split() or [""]) for texts in columns]
-    # What tells the rows apart stays whole.
-    first_number = next((i for i, head in enumerate(table.columns) if head not in table.words), 0)
-    labels = table.columns.index("episodes") if "episodes" in table.columns else first_number
-    least[:labels] = widths[:labels]
-    while sum(widths) > room and widths != least:
-        widest = max(range(len(widths)), key=lambda i: widths[i] - least[i])
-        widths[widest] -= 1
-    return widths
+def _pipe_lines(table: PrintedTable) -> list[_Line]:
+    shapes = table.shapes
+    whole = Fitted(shapes, tuple(max(map(len, (shape.head, *shape.cells))) for shape in shapes))
+    lines = [*whole.head(), *(line for index in range(len(table.rows)) for line in whole.row(index))]
+    return [(line, "") for line in lines]
+
+
+def _terminal_lines(table: PrintedTable, room: int) -> tuple[list[_Line], tuple[str, ...]]:
+    """Draw a table for a terminal; gives the lines with their styles, and the heads of the columns left out."""
+    fitted = fit(table.shapes, room)
+    changed = fitted is None or fitted.left_out or fitted.columns != table.shapes
+    if changed and sum(row.ours for row in table.rows) == 1 and (turned := upright(table.shapes, room)):
+        body = [line for index in range(len(turned.columns[0].cells)) for line in turned.row(index)]
+        return [("", ""), *((line, "bold") for line in turned.head()), *((line, "") for line in body), ("", "")], ()
+    lines: list[_Line] = [("", "")]
+    if fitted is None:
+        for index, row in enumerate(table.rows):
+            lines += [*((line, _style(row)) for line in record(table.shapes, index, room)), ("", "")]
+        return lines, ()
+    lines += [*((line, "bold") for line in fitted.head()), ("\u2500" * fitted.width, "")]
+    for index, row in enumerate(table.rows):
+        lines += [(line, _style(row)) for line in fitted.row(index)]
+        lines += [("", "")] if row.last or index == len(table.rows) - 1 else []
+    return lines, fitted.left_out
+
+
+def _style(row: PrintedRow) -> str:
+    return "" if row.ours else "dim"

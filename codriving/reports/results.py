@@ -51,10 +51,12 @@ class CellResults:
 
     records: Sequence[EpisodeRecord]
     swept: Mapping[str, str] = field(default_factory=dict)
-    seconds: float | None = None  # Wall-clock time of a decision step [s], or None where that is lost
     # CPU time of a decision [s], or None where that is lost; it goes into no file that has to repeat.
     cpu: float | None = None
     metric: str = "standard"  # Name of the metric whose scores are shown
+    # Whether the scenario is driven with the paper's vehicles, and whether also on as many seeds as its rows.
+    papers_setting: bool = True
+    as_in_paper: bool = True
 
     @property
     def first(self) -> EpisodeRecord:

@@ -2,7 +2,7 @@
 
 import math
 import statistics
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,10 +10,11 @@ from typing import Any
 from codriving.datatypes import Ending
 from codriving.reports.columns import Column, Row, Table, Value, mean, share, swept_columns, table
 from codriving.reports.episodes import counter_columns, episode_columns, number_columns, number_head
+from codriving.reports.fitting import METHOD, PAPER
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.printed import PrintedTable, markdown_text, printed
-from codriving.reports.results import ASKED, COST, LABELS, CellResults, named_numbers, success_interval
-from codriving.reports.wording import interval_text, percent, stand_in_notes, three, title, two_digits
+from codriving.reports.results import ASKED, COST, LABELS, SECONDS, CellResults, named_numbers, success_interval
+from codriving.reports.wording import interval_text, percent, short_names, stand_in_notes, three, title, two_digits
 from codriving.runs import write_text
 
 SEVERE_PET = 1.5  # Below this a PET counts as severe in the paper [s]
@@ -27,36 +28,55 @@ FALLBACK_NOTE = (
     "Fallbacks: share of questions without a usable answer; an order is then made by the rules, a decision is the "
     "slowest safe action."
 )
-STEP_NOTE = "Step: wall-clock time of one decision step, all CAVs and all questions together; see timing.csv."
+STEP = "step [s]"
+STEP_NOTE = "Step: time that a decision step waited for the model, on average; step_seconds in the CSV."
 
 CLAIM = "the paper says"  # Head of the column of the paper's statements
 
-NAME: Column[CellResults] = Column("name", lambda c: c.name, "method", words=True, csv=False)
+NAME: Column[CellResults] = Column("name", lambda c: c.name, METHOD, words=True, csv=False)
 
 # With the labels, the columns that users rely on, in their fixed order.
 MEASURED: tuple[Column[CellResults], ...] = (
     Column("episodes", lambda c: len(c.records)),
     Column("completed", lambda c: len(c.completed)),
-    Column("count", lambda c: _count(len(c.completed), len(c.records)), "episodes", csv=False),
+    Column("count", lambda c: _count(len(c.completed), len(c.records)), "episodes", csv=False, rank=6),
     Column("success_rate", lambda c: share(len(c.successes), len(c.completed)), "success", percent),
     Column("success_low", lambda c: c.interval[0]),
     Column("success_high", lambda c: c.interval[1]),
-    Column("interval", lambda c: interval_text(c.interval), "95 % interval", csv=False),
-    Column("collision_rate", lambda c: c.rate(Ending.COLLISION), "collision", percent),
-    Column("timeout_rate", lambda c: c.rate(Ending.TIMEOUT), "timeout", percent),
-    Column("off_road", lambda c: c.rate(Ending.OFF_ROAD), "off road", percent, csv=False, sparse=True),
+    Column("interval", lambda c: interval_text(c.interval), "95 % interval", csv=False, rank=2),
+    Column("collision_rate", lambda c: c.rate(Ending.COLLISION), "collision", percent, rank=7),
+    Column("timeout_rate", lambda c: c.rate(Ending.TIMEOUT), "timeout", percent, rank=9),
+    Column("off_road", lambda c: c.rate(Ending.OFF_ROAD), "off road", percent, csv=False, sparse=True, rank=9),
     Column(
-        "error_rate", lambda c: share(len(c.records) - len(c.completed), len(c.records)), "error", percent, sparse=True
+        "error_rate",
+        lambda c: share(len(c.records) - len(c.completed), len(c.records)),
+        "error",
+        percent,
+        sparse=True,
+        rank=1,
     ),
     Column("pet_mean", lambda c: mean(c.pets)),
     Column("pet_max", lambda c: max(c.pets, default=None)),
     Column("pet_min", lambda c: min(c.pets, default=None)),
-    Column("pet", lambda c: _three(c.pets), "PET mean / max / min [s]", csv=False),
-    Column("pet_below_1_5", lambda c: share(sum(p < SEVERE_PET for p in c.pets), len(c.pets)), "PET < 1.5 s", percent),
+    Column("pet", lambda c: _three(c.pets), "PET mean / max / min [s]", csv=False, rank=4, brief=("PET [s]", " / ")),
+    Column(
+        "pet_below_1_5",
+        lambda c: share(sum(p < SEVERE_PET for p in c.pets), len(c.pets)),
+        "PET < 1.5 s",
+        percent,
+        rank=8,
+    ),
     Column("velocity_mean", lambda c: mean(c.velocities)),
     Column("velocity_max", lambda c: max(c.velocities, default=None)),
     Column("velocity_min", lambda c: min(c.velocities, default=None)),
-    Column("velocity", lambda c: _three(c.velocities), "velocity mean / max / min [m/s]", csv=False),
+    Column(
+        "velocity",
+        lambda c: _three(c.velocities),
+        "velocity mean / max / min [m/s]",
+        csv=False,
+        rank=3,
+        brief=("velocity [m/s]", " / "),
+    ),
 )
 
 FURTHER: tuple[Column[CellResults], ...] = (
@@ -85,19 +105,19 @@ MEMORY: Column[CellResults] = Column(
     sparse=True,
 )
 
-FALLBACKS: Column[CellResults] = Column(FALLBACK_RATE, lambda c: c.fallback_rate, "fallbacks", percent)
+FALLBACKS: Column[CellResults] = Column(FALLBACK_RATE, lambda c: c.fallback_rate, "fallbacks", percent, rank=5)
 
 _LABELS = [column.of(lambda c: c.first) for column in LABELS]
 
 BY_KEY = {column.key: column for column in (*_LABELS, *MEASURED, *FURTHER, MEMORY, FALLBACKS)}
 
 # What a language model was asked, as people read it; nothing where none reasons.
-_ON_SCREEN: tuple[Column[CellResults], ...] = (
-    Column("calls", lambda c: _if_asked(c, _thousands(c.counters.get("model_calls"))), "calls", csv=False),
-    Column("tokens", lambda c: _if_asked(c, _tokens(c.counters)), "tokens prompt + completion", csv=False),
-    Column("cost", lambda c: _if_asked(c, _money(c.counters.get(COST))), "cost [USD]", csv=False),
-    Column("fallbacks_text", lambda c: _if_asked(c, percent(c.fallback_rate) or "-"), "fallbacks", csv=False),
-    Column("step", lambda c: _if_asked(c, two_digits(c.seconds) or "-"), "step [s]", csv=False, page=False),
+ASKED_COLUMNS: tuple[Column[CellResults], ...] = (
+    Column("calls", lambda c: _if_asked(c, _thousands(c.counters.get("model_calls"))), "calls", csv=False, rank=7),
+    Column("tokens", lambda c: _if_asked(c, _tokens(c.counters)), "tokens prompt + completion", csv=False, rank=9),
+    Column("cost", lambda c: _if_asked(c, _money(c.counters.get(COST))), "cost [USD]", csv=False, rank=6),
+    Column("fallbacks_text", lambda c: _if_asked(c, percent(c.fallback_rate) or "-"), "fallbacks", csv=False, rank=5),
+    Column("step", lambda c: _if_asked(c, two_digits(c.counters.get(SECONDS)) or "-"), STEP, csv=False, rank=8),
 )
 
 
@@ -108,7 +128,7 @@ def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Ta
     numeric = {key for key in swept if all(_is_number(cell.swept.get(key)) for cell in cells)}
     values = [replace(column, words=column.key not in numeric) for column in swept_columns(swept)]
     known: list[Column[Any]] = [
-        *labels(len({cell.first.scenario for cell in cells}) > 1),
+        *labels(cells, len({cell.first.scenario for cell in cells}) > 1),
         # The CSV has them after the columns that users rely on.
         *(replace(column, csv=False) for column in values),
         *MEASURED,
@@ -120,12 +140,23 @@ def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Ta
     counters = counter_columns(records, known)
     rate = len([column for column in counters if column.key in ASKED]) if model else 0
     rest = [*counters[:rate], *([replace(FALLBACKS, head="")] if model else []), *counters[rate:]]
-    return table([*known, *rest, *(_ON_SCREEN if model else ())], cells)
+    return table([*known, *rest, *(ASKED_COLUMNS if model else ())], cells)
 
 
-def labels(scenario: bool) -> list[Column[Any]]:
-    """Give the columns that tell rows apart."""
-    return [replace(_LABELS[0], head="scenario" if scenario else ""), *_LABELS[1:], NAME]
+def labels(cells: Sequence[CellResults], scenario: bool) -> list[Column[Any]]:
+    """Give the columns that tell rows apart: the reasoner where nothing else does."""
+    named = [(cell.first.scenario, cell.name, *cell.swept.items()) for cell in cells]
+    texts = short_names(cell.first.reasoner for cell in cells)
+    alike = len(set(named)) < len({(name, cell.first.reasoner) for name, cell in zip(named, cells, strict=True)})
+    reasoner: Column[CellResults] = Column(
+        "reasoning", lambda c: texts[c.first.reasoner], "reasoner", words=True, csv=False
+    )
+    return [
+        replace(_LABELS[0], head="scenario" if scenario else ""),
+        *_LABELS[1:],
+        NAME,
+        *([reasoner] if alike else []),
+    ]
 
 
 def print_summary(
@@ -138,14 +169,14 @@ def print_summary(
 ) -> PrintedTable:
     """Prepare the summary for people: rounded, in percent, the paper's row beside ours."""
     made = summary_table(cells, swept)
-    claims = [paper.statement(cell.first.scenario, cell.first.variant) for cell in cells]
+    claims = [paper.statement(cell.first.scenario, cell.first.variant) if cell.papers_setting else "" for cell in cells]
     # Where nothing has been removed there is nothing to compare the claim with.
     ablation = any(claim and cell.first.variant not in WHOLE for cell, claim in zip(cells, claims, strict=True))
-    claimed: list[Column[Any]] = [Column("claim", lambda _: None, CLAIM, words=True)] if ablation else []
+    claimed: list[Column[Any]] = [Column("claim", lambda _: None, CLAIM, words=True, rank=1)] if ablation else []
     rows = tuple({**row, "claim": claim} for row, claim in zip(made.rows, claims, strict=True))
     scenarios, reasoners = ([row[key] for row in rows] for key in ("scenario", "reasoner"))
     models = stand_in_notes((row["method"], row["reasoner"]) for row in rows)
-    said = (NOTE, *number_notes(cells), *models, *_model_notes(cells, screen), *notes)
+    said = (NOTE, *number_notes(cells), *models, *model_notes(cells), *notes)
     heading, shown = title("", scenarios, reasoners, metrics), Table((*made.columns, *claimed), rows)
     return printed(heading, shown, scenarios, said, _beside(cells, paper), screen)
 
@@ -165,13 +196,19 @@ def paper_row(paper: PaperRow) -> Row:
     numbers = paper.numbers
     return {
         "scenario": paper.scenario,
-        "name": f"paper: {paper.label}",
+        "name": f"{PAPER}{paper.label}",
         "count": "-" if paper.episodes is None else str(paper.episodes),
         "success_rate": numbers.get("success_rate"),
         "memory": "",
-        "pet": three(*map(numbers.get, ("pet_mean", "pet_max", "pet_min"))),
-        "velocity": three(*map(numbers.get, ("velocity_mean", "velocity_max", "velocity_min"))),
+        "pet": _quoted(numbers, "pet"),
+        "velocity": _quoted(numbers, "velocity"),
     }
+
+
+def _quoted(numbers: Mapping[str, float], what: str) -> str:
+    """Three numbers of the paper; nothing where it gives none."""
+    given = [numbers.get(f"{what}_{which}") for which in ("mean", "max", "min")]
+    return three(*given) if any(number is not None for number in given) else ""
 
 
 def _beside(cells: Sequence[CellResults], paper: Paper) -> dict[int, Row]:
@@ -179,12 +216,12 @@ def _beside(cells: Sequence[CellResults], paper: Paper) -> dict[int, Row]:
     last: dict[tuple[str, str], tuple[int, PaperRow]] = {}
     for index, cell in enumerate(cells):
         found = paper.row(cell.first.scenario, cell.first.method, cell.first.variant)
-        if found is not None:
+        if found is not None and cell.as_in_paper:
             last[found.scenario, found.method] = index, found
     return {index: paper_row(row) for index, row in last.values()}
 
 
-def _model_notes(cells: Sequence[CellResults], screen: bool) -> list[str]:
+def model_notes(cells: Sequence[CellResults]) -> list[str]:
     """Sum up what the models of all rows were asked."""
     found = [cell.counters for cell in cells if cell.asked]
     if not found:
@@ -199,7 +236,7 @@ def _model_notes(cells: Sequence[CellResults], screen: bool) -> list[str]:
         f"{price}; {total['re_asks']:,} asked again, {total['mended']:,} mended, {total['fallbacks']:,} fallbacks, "
         f"{total['repaired_orders']:,} repaired orders.",
         f"{FALLBACK_NOTE} Failed episodes count in all sums.",
-        *([STEP_NOTE] if screen else []),
+        STEP_NOTE,
     ]
 
 

@@ -39,7 +39,7 @@ def three(*numbers: Value) -> str:
 def interval_text(limits: Sequence[Value]) -> str:
     """Write the interval of a rate."""
     low, high = map(percent, limits)
-    return f"{low} to {high}" if low else ""
+    return f"{low.removesuffix(' %')} to {high}" if low else ""
 
 
 def milliseconds(seconds: float | None) -> str:
@@ -50,6 +50,14 @@ def milliseconds(seconds: float | None) -> str:
 def reasoner_text(reasoner: Value) -> str:
     """Name what reasons, so that rules are not taken for a model."""
     return f"{reasoner} (llm=offline)" if reasoner == "rules" else str(reasoner)
+
+
+def short_names(reasoners: Iterable[str]) -> dict[str, str]:
+    """Name reasoners in the rows of a table: without the provider that all models have in common."""
+    names = list(dict.fromkeys(reasoners))
+    models = [name for name in names if name not in ("rules", "none")]
+    common = {name.rpartition("/")[0] for name in models}
+    return {name: name.rpartition("/")[2] if len(common) == 1 and name in models else name for name in names}
 
 
 def title(what: str, scenarios: Iterable[Value], reasoners: Iterable[Value], metrics: str) -> str:

@@ -16,6 +16,7 @@ from codriving.reports.comparison import (
     load_rows,
     load_table,
     print_comparison,
+    print_each_load,
     print_loads,
     print_pairs,
 )
@@ -97,10 +98,15 @@ DILU = episodes(dict.fromkeys(range(8), Ending.COLLISION), method="dilu-rule", v
 MERGE = episodes({7: Ending.TIMEOUT}, scenario="merge", memory="frozen abc, 2 interactions", counts={"recalled": 5})
 
 
+SCREENS: list[PrintedTable] = []
+"""What has been printed."""
+
+
 def printed(*tables: PrintedTable | None) -> str:
     """What a pipe gets."""
     stream = io.StringIO()
     for shown in filter(None, tables):
+        SCREENS.append(shown)
         print_table(shown, stream)
     return stream.getvalue()
 
@@ -119,7 +125,7 @@ def tables() -> dict[str, str]:
             [replace(cell, swept=swept) for cell, swept in zip((full, degraded, fcfs), values, strict=True)],
             {"metrics": "authors", "notes": ["A note."]},
         ),
-        "model": ([CellResults(MODEL, seconds=1.234), CellResults(PRICED), full, dilu], {}),
+        "model": ([CellResults(MODEL), CellResults(PRICED), full, dilu], {}),
     }
     for name, (cells, more) in runs.items():
         made = run_tables(cells, paper, **more)
@@ -136,7 +142,7 @@ def tables() -> dict[str, str]:
     swept = ["environment.x"]
     found["load.csv"] = load_table(rows, (4, 8), swept).csv()
     found["load.md"] = markdown_text(print_loads(rows, (4, 8), "standard", swept))
-    found["load-printed.txt"] = printed(print_loads(rows, (4, 8), "standard", swept, screen=True))
+    found["load-printed.txt"] = printed(*print_each_load(rows, (4, 8), "standard", swept))
     found |= _learning()
     timings = [timing_of(2.0, [0.25, 0.75], [0.125, 0.375]), None, timing_of(1.0, [], [])]
     timed = [TimedEpisode(r, timing, {"scenario.cavs": "8"}) for r, timing in zip(FULL, timings, strict=False)]
@@ -148,8 +154,15 @@ def tables() -> dict[str, str]:
         interactions=(1, 2),
         path=Path("outputs/memory/a.sqlite"),
     )
-    built = [BuiltMemory("merge", "codriving full", "rules", {"cda.x": x}, cast(Any, reading)) for x in ("1", "2")]
+    built = [
+        BuiltMemory("merge", "codriving full", "rules", cast(Any, reading), CellResults(FULL, {"cda.x": x}))
+        for x in ("1", "2")
+    ]
+    asked = BuiltMemory(
+        "merge", "codriving full", "gpt-4o-mini", cast(Any, reading), CellResults(MODEL, {"cda.x": "1"})
+    )
     found["memory.md"] = markdown_text(print_built(built))
+    found["memory-printed.txt"] = printed(print_built([*built, asked]))
     return found
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from codriving.config.choices import styles
 from codriving.datatypes.record import Ending, EpisodeRecord
-from codriving.reports.comparison import LoadRow, load_rows, load_table, print_loads
+from codriving.reports.comparison import LoadRow, load_rows, load_table, print_each_load, print_loads
 from codriving.reports.figures import load_figure
 from codriving.reports.results import CellResults
 from tests.reports.making import column_of
@@ -61,15 +61,24 @@ def test_a_row_is_a_method_at_a_scenario_missing_ones_included(rows: list[LoadRo
 
 
 def test_the_table_has_a_column_for_each_load(rows: list[LoadRow]) -> None:
-    table = print_loads(rows, LOADS, "standard", screen=True)
+    table = print_loads(rows, LOADS, "standard")
     assert table.title == "load - intersection, roundabout - reasoner: none, rules (llm=offline)"
     shown = dict(zip(table.columns, table.rows[0].cells, strict=True))
     assert shown["success (95 %), 8 CAVs"] == "75 % (30.1 to 95.4)"
     assert shown["velocity [m/s], 4 CAVs"] == "8.00"
-    assert shown["CPU [ms], 8 CAVs"] == "8.0"
     assert [row.last for row in table.rows] == [False, False, True, False, False, False]
     assert "not there yet" in table.rows[1].cells
-    assert not any("CPU" in text for text in (*print_loads(rows, LOADS, "standard").columns, *table.notes[:1]))
+    assert not any("CPU" in text for text in (*table.columns, *table.notes))
+
+
+def test_on_the_screen_each_quantity_has_a_table(rows: list[LoadRow]) -> None:
+    success, velocity, cpu = print_each_load(rows, LOADS, "standard")
+    assert success.title == "load - intersection, roundabout - reasoner: none, rules (llm=offline) - success (95 %)"
+    assert [table.title for table in (velocity, cpu)] == ["velocity [m/s]", "CPU [ms]"]
+    for table, told in ((success, "75 % (30.1 to 95.4)"), (velocity, "7.00"), (cpu, "8.0")):
+        assert dict(zip(table.columns, table.rows[0].cells, strict=True))["8 CAVs"] == told
+    assert (success.notes, velocity.notes) == ((), ())
+    assert any(note.startswith("CPU") for note in cpu.notes)
 
 
 def test_a_load_that_was_not_driven_is_empty(make: Make) -> None:

@@ -14,12 +14,10 @@ from codriving.reports.comparison import (
     print_comparison,
     print_loads,
 )
-from codriving.reports.episodes import seconds_per_decision
 from codriving.reports.paper import Paper
 from codriving.reports.printed import markdown_text
 from codriving.reports.results import CellResults
 from codriving.reports.summary import run_tables
-from codriving.runs.episode_folder import timing_of
 from tests.reports.making import column_of, episodes_of, print_cells, summary_of, summary_row
 
 Make = Callable[..., EpisodeRecord]
@@ -57,7 +55,7 @@ def test_tables_without_a_model_are_as_they_were(make: Make) -> None:
     for columns in (episodes_of(records).keys, summary_of(records).keys):
         assert not {*ASKED, "fallback_rate"} & set(columns)
         assert columns[-1] == "nodes"
-    tables = run_tables([CellResults(records, seconds=0.5)], Paper())
+    tables = run_tables([CellResults(records)], Paper())
     assert tables.printed == tables.page
     assert "tokens" not in markdown_text(tables.page)
 
@@ -104,11 +102,11 @@ def test_people_read_calls_tokens_cost_and_fallbacks_and_their_sums(make: Make, 
     cells = [CellResults([asked(0), asked(1)]), CellResults([make(0)])]
     table = run_tables(cells, Paper(), notes=["told"]).page
     assert table.title == "intersection - reasoner: gpt-4o-mini, rules (llm=offline)"
-    heads = ("calls", "tokens prompt + completion", "cost [USD]", "fallbacks")
-    assert table.columns[-4:] == heads
-    assert table.rows[0].cells[-4:] == ("2,400", "800,000 + 40,000", "0.2000", "1 %")
-    assert table.rows[1].cells[-4:] == ("", "", "", "")
-    sums, meaning, told = table.notes[1:]
+    heads = ("calls", "tokens prompt + completion", "cost [USD]", "fallbacks", "step [s]")
+    assert table.columns[-5:] == heads
+    assert table.rows[0].cells[-5:-1] == ("2,400", "800,000 + 40,000", "0.2000", "1 %")
+    assert table.rows[1].cells[-5:] == ("", "", "", "", "")
+    sums, meaning, _, told = table.notes[1:]
     assert sums == (
         "In all: 2,400 calls, 800,000 + 40,000 tokens, 0.2000 USD; 380 asked again, 0 mended, "
         "20 fallbacks, 0 repaired orders."
@@ -118,17 +116,14 @@ def test_people_read_calls_tokens_cost_and_fallbacks_and_their_sums(make: Make, 
     assert markdown_text(table).count("2,400") == 2
 
 
-def test_the_time_of_a_step_is_printed_and_in_no_file(asked: Make) -> None:
-    tables = run_tables([CellResults([asked(0)], seconds=1.234), CellResults([asked(1)])], Paper())
-    assert "step [s]" not in tables.page.columns
-    assert [line.cells[-1] for line in tables.printed.rows] == ["1.23", "-"]
-    assert tables.printed.columns[-1] == "step [s]"
-    assert "timing.csv" in tables.printed.notes[-1]
-
-
-def test_the_time_of_a_step_is_over_all_steps() -> None:
-    assert seconds_per_decision([timing_of(9.0, [1.0, 1.0, 1.0]), None, timing_of(9.0, [3.0])]) == 1.5
-    assert seconds_per_decision([None, timing_of(9.0, [])]) is None
+def test_the_time_of_a_step_is_one_number_on_the_screen_and_in_the_files(make: Make, asked: Make) -> None:
+    tables = run_tables([CellResults([asked(0)]), CellResults([make(1)])], Paper())
+    seconds = tables.summary.rows[0]["step_seconds"]
+    assert isinstance(seconds, float)
+    for table in (tables.printed, tables.page):
+        assert table.columns[-1] == "step [s]"
+        assert [line.cells[-1] for line in table.rows] == [f"{seconds:.2f}", ""]
+        assert "step_seconds in the CSV" in table.notes[-1]
 
 
 def test_comparisons_show_the_share_of_fallbacks(make: Make, asked: Make) -> None:

