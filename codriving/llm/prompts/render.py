@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 OURS = Path(__file__).parent
 ROLES = ("system", "user")
-PURPOSES = ("negotiate", "decide", "reflect", "dilu", "dilu_reflect")
+PURPOSES = tuple(EXAMPLES)
 FILES = tuple(f"{purpose}.{role}.md.j2" for purpose in PURPOSES for role in ROLES)  # The templates that there are
 
 _FILTERS: dict[str, Callable[[float], str]] = {
