@@ -42,7 +42,7 @@ class Ours:
 
 
 class Stock:
-    """highway-env's intersection with several agents, at the same frequencies; nobody is added on the way."""
+    """highway-env's intersection with several agents, at the same frequencies; no vehicle is added on the way."""
 
     def __init__(self) -> None:
         agents = {"type": "MultiAgentAction", "action_config": {"type": "DiscreteMetaAction", "lateral": False}}
@@ -60,7 +60,7 @@ class Stock:
         )
 
     def reset(self, seed: int) -> None:
-        """Begin the episode of a seed, then take away and add nobody: only the numbers of vehicles are evened out."""
+        """Begin the episode of a seed, then take away and add no vehicle: only the numbers of vehicles are evened out."""
         self.environment.reset(seed=seed)
         road = self.environment.road
         surplus = len(road.vehicles) - CAVS - HDVS

@@ -102,6 +102,6 @@ def main(arguments: list[str]) -> None:
     for name, row in found.items():
         print(
             f"  {name:14}{row['calls']:5.2f} calls ({row['calls_share']:4.0%}){row['tokens']:6} prompt tokens "
-            f"({row['tokens_share']:4.0%}); if everybody is asked{row['full_step_tokens']:6} tokens "
+            f"({row['tokens_share']:4.0%}); if all are asked{row['full_step_tokens']:6} tokens "
             f"({row['full_step_share']:4.0%})"
         )

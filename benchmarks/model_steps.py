@@ -16,7 +16,7 @@ from codriving.methods.codriving import CoDriving
 CAVS = 4
 FIRST_SEED = 10_000
 DECISIONS = 2
-"""Decisions of each episode; at its beginning nothing is agreed on, so that everybody is asked."""
+"""Decisions of each episode; at its beginning nothing is agreed on, so that all are asked."""
 STEPS = {1.0: 9, 0.2: 25}
 """Steps to measure, by latency [s]."""
 GOALS = {1.0: 1.05, 0.2: 1.15}

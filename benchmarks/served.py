@@ -11,7 +11,7 @@ SERVER = Path(__file__).resolve().parents[1] / "tests" / "llm" / "loopback.py"
 
 @contextmanager
 def served(latency: float) -> Iterator[list[str]]:
-    """Serve while the ``with`` block lasts; it shares no interpreter with whoever is measured.
+    """Serve while the ``with`` block lasts; it shares no interpreter with the process that is measured.
 
     Args:
         latency: How long every answer takes [s].

@@ -1,4 +1,4 @@
-"""A passing order of one's own: whoever is nearest to its first conflict zone goes first."""
+"""A passing order of one's own: the vehicle nearest to its first conflict zone goes first."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,7 @@ from codriving.ordering import Instance, JointPlanner, Ordering, OrderRule, Requ
 
 
 class NearestFirst(OrderRule):
-    """Whoever is nearest goes first; within a step of the same distance, whoever is faster.
+    """The nearest goes first; within a step of the same distance, the faster one.
 
     Args:
         step: Distances that differ by less count as the same [m].
