@@ -46,14 +46,14 @@ def everybody(names: Sequence[str]) -> list[Pair]:
 
 
 class Scheduled:
-    """A planner by which everybody drives evenly up to its scheduled time, and then at top speed."""
+    """A planner by which each vehicle drives evenly up to its scheduled time, and then at top speed."""
 
     def __init__(self, problem: Instance, works: Callable[[tuple[str, ...]], bool] = lambda order: True) -> None:
         self.problem, self.works = problem, works
         self.asked: list[tuple[str, ...]] = []
 
     def plan(self, order: Sequence[str]) -> JointPlan:
-        """Everybody's motion; whether it works is for the test to say."""
+        """Each vehicle's motion; whether it works is for the test to say."""
         self.asked.append(tuple(order))
         feasible = schedule(self.problem, order) is not None and self.works(tuple(order))
         times = np.arange(STEPS + 1) * SAMPLE

@@ -67,7 +67,7 @@ class Episode:
 
     @property
     def actions(self) -> list[dict[str, Action]]:
-        """What everybody did at each decision."""
+        """What each vehicle did at each decision."""
         return [step.actions for step in self.steps]
 
 
@@ -100,7 +100,7 @@ def obey(junction: Junction, car: Car, action: Action) -> tuple[Car, np.ndarray]
 
 @dataclass(frozen=True)
 class Show:
-    """How puppets moved: the arc length of everybody at every simulation step, by id; who has left counts as inf."""
+    """How puppets moved: the arc length of each vehicle at every simulation step, by id; who has left counts as inf."""
 
     places: dict[str, np.ndarray]
     steps: tuple[ReasonedDeliberation, ...]

@@ -142,5 +142,5 @@ def crossing_way(
 
 
 def without_conflicts(way: DecisionHistory) -> DecisionHistory:
-    """The same way, but nobody is met on it."""
+    """The same way, but no vehicle is met on it."""
     return replace(way, steps=tuple(replace(m, conflicts=()) for m in way.steps))

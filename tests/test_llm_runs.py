@@ -22,7 +22,7 @@ def call(*args: str) -> Result:
 
 
 def toy(server: Loopback, *more: str) -> list[str]:
-    """A model that nobody has to pay for, in short episodes."""
+    """A model that costs nothing, in short episodes."""
     return ["llm=custom", "llm.model=openai/toy", f"llm.api_base={server.url}", "llm.attempts=1", *more]
 
 

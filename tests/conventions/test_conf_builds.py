@@ -24,7 +24,7 @@ CHOICES = [(group, name) for group in GROUPS for name in choices(group)]
 
 @pytest.mark.parametrize(("group", "name"), CHOICES)
 def test_choice_builds(group: str, name: str, tmp_path: Path) -> None:
-    # A snapshot is named by whoever recalls from it.
+    # A snapshot is named by the user who recalls from it.
     needs = [f"memory.file={filled(tmp_path / 'm.sqlite', [experience()])}"] if (group, name) == SNAPSHOT else []
     node = compose([f"{group}={name}", *needs])[group]
     if node is None:

@@ -77,7 +77,7 @@ def test_without_the_correction_the_route_stays_what_it_was(by_hand: Build, high
     [
         ("main-0", 50.0, False, True),
         ("main-1", 50.0, True, False),
-        ("main-1", 250.0, True, False),  # beside the ramp, onto which nobody may change
+        ("main-1", 250.0, True, False),  # beside the ramp, onto which no vehicle may change
         ("main-1", 400.0, True, False),
         ("ramp", 50.0, False, False),
         ("ramp", 200.0, False, False),  # still coming closer

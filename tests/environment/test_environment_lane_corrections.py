@@ -98,7 +98,7 @@ def test_driver_at_the_end_of_a_ramp_starts_into_a_gap(off: tuple[str, ...], by_
     while env.outcome is None and world.time < 59:
         action = {cav.id: Action.FASTER if cav.x > 105 else Action.SLOWER for cav in world.cavs}
         world = env.step(action)
-    assert env.outcome is None, "the last cars of the queue wait, nobody crashed"
+    assert env.outcome is None, "the last cars of the queue wait, no vehicle crashed"
     track = next(track for track in env.trajectory().tracks if track.id == "HDV1")
     assert (track.x[-1] > 250.0) == (not off)
     assert (abs(track.y).min() < 0.5) == (not off)

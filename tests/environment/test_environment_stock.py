@@ -1,4 +1,4 @@
-"""With every correction off, everybody moves as in highway-env, bit for bit."""
+"""With every correction off, each vehicle moves as in highway-env, bit for bit."""
 
 from collections.abc import Callable
 from dataclasses import fields

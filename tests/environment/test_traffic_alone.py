@@ -1,4 +1,4 @@
-"""Human drivers among themselves: all get through, nobody backs up, nobody hits anybody, on every road."""
+"""Human drivers among themselves: all get through, none backs up, none hits another, on every road."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -118,7 +118,7 @@ def put_at_the_end(env: Environment, away: float, name: str = "HDV1") -> RouteFo
 
 
 def queue_beside_the_end() -> list[Start]:
-    """Standing CAVs on the main lane, so near to each other that nobody fits between them."""
+    """Standing CAVs on the main lane, so near to each other that no vehicle fits between them."""
     return [Start(f"CAV{k + 1}", CAV, "main-1", ENDS + 20.0 - 7.0 * k, 0.0) for k in range(9)]
 
 
@@ -209,7 +209,7 @@ def test_neighbours_are_found_where_the_ramp_lane_goes_on(off: tuple[str, ...], 
     if not off:
         assert found == {"HDV1": ["CAV1", "CAV3"], "HDV2": ["CAV4", None]}
         return
-    assert found == {"HDV1": [None, "CAV3"], "HDV2": [None, None]}, "nobody past the end of the lane"
+    assert found == {"HDV1": [None, "CAV3"], "HDV2": [None, None]}, "no vehicle past the end of the lane"
     # What highway-env offers against it goes by the number of the lane: the ramp goes on as the leftmost main lane.
     env._traffic.neighbour_vehicles_connected_lanes = True
     assert StockRoad.neighbour_vehicles(env._traffic, road["HDV1"])[0].id == "CAV5"

@@ -16,7 +16,7 @@ COMMANDS = re.findall(r"^    codriving (.*)$", PAGE, flags=re.MULTILINE)
 PYTHON, *SHOWN = re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.MULTILINE | re.DOTALL)
 
 SHORT = "scenario.time_limit=1"
-"""Nobody arrives, but everything is gone through."""
+"""No vehicle arrives, but everything is gone through."""
 
 
 @pytest.fixture(scope="module")

@@ -74,7 +74,7 @@ def test_the_bytes_do_not_depend_on_how_many_are_side_by_side(
     barrier = threading.Barrier(at_once)
 
     def meet(seed: int, step: int) -> None:
-        # Nobody passes the first step of the first episodes unless all of them are under way.
+        # No episode passes the first step of the first episodes unless all of them are under way.
         if step == 0 and seed < at_once:
             barrier.wait(20)
 

@@ -1,4 +1,4 @@
-"""Real processes stopped in the middle: what was finished stays, nobody is left behind, the bytes are the same."""
+"""Real processes stopped in the middle: what was finished stays, no process is left behind, the bytes are the same."""
 
 import os
 import signal

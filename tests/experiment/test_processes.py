@@ -1,4 +1,4 @@
-"""Several processes: same results, dead workers replaced, nobody left behind."""
+"""Several processes: same results, dead workers replaced, none left behind."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

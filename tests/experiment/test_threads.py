@@ -79,7 +79,7 @@ def test_episodes_are_driven_side_by_side_with_objects_of_their_own() -> None:
     barrier, made, inside = Barrier(3), list[Acting](), dict[int, int]()
 
     def meet(method: Acting, world: WorldState) -> None:
-        # Nobody passes unless three are here at the same time.
+        # No thread passes unless three are here at the same time.
         if world.step == 0:
             barrier.wait(PATIENCE)
         assert inside.setdefault(id(method), get_ident()) == get_ident()

@@ -141,7 +141,7 @@ class ToyMethod(Method):
             os.kill(os.getpid(), 9)
         if self.seed >= self.waits_from and (gate / "fifo").exists():
             (gate / f"waiting-{os.getpid()}").touch()
-            # Opening a pipe that nobody writes to blocks for ever, without a clock.
+            # Opening a pipe that no process writes to blocks for ever, without a clock.
             (gate / "fifo").open().close()
 
 

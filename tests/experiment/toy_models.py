@@ -114,7 +114,7 @@ class Asking(ToyMethod):
 
 
 class Computing(ToyMethod):
-    """Asks nobody."""
+    """Asks nothing."""
 
     def __init__(self) -> None:
         super().__init__()

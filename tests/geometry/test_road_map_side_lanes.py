@@ -23,7 +23,7 @@ LANES = (*(_lane("a", "b", k, 0.0, 100.0) for k in range(3)), *(_lane("b", "c", 
 
 @pytest.fixture(scope="module")
 def road() -> RoadMap:
-    """Three lanes, of which the right one ends after 100 m; whoever is on it changes on its last 40 m."""
+    """Three lanes, of which the right one ends after 100 m; the vehicle that is on it changes on its last 40 m."""
     routes = (_route("left", A[0], B[0]), _route("middle", A[1], B[1]), _route("ending", A[2], A[1], B[1]))
     return RoadMap(Road("narrowing", LANES, routes))
 

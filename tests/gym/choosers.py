@@ -16,7 +16,7 @@ Chooser = Callable[[ParallelDriving, Mapping[str, Any]], dict[str, int]]
 
 
 def always(*numbers: int) -> Chooser:
-    """Everybody takes the first of these actions that is allowed."""
+    """Each vehicle takes the first of these actions that is allowed."""
 
     def choose(env: ParallelDriving, infos: Mapping[str, Any]) -> dict[str, int]:
         return {agent: next(n for n in numbers if infos[agent]["action_mask"][n]) for agent in env.agents}
@@ -25,7 +25,7 @@ def always(*numbers: int) -> Chooser:
 
 
 def at_random(seed: int) -> Chooser:
-    """Everybody draws one of the allowed actions."""
+    """Each vehicle draws one of the allowed actions."""
     rng = np.random.default_rng(seed)
 
     def choose(env: ParallelDriving, infos: Mapping[str, Any]) -> dict[str, int]:

@@ -81,7 +81,7 @@ def test_relative_places_are_seen_from_the_ego_vehicle(junction: Junction, see: 
     np.testing.assert_array_equal(relative[0], absolute[0])
     np.testing.assert_allclose(relative[1:3, :2], absolute[1:3, :2] - absolute[0, :2], rtol=1e-5)
     np.testing.assert_array_equal(relative[:, 2:], absolute[:, 2:])
-    assert not relative[3:].any(), "nobody is not somebody far away"
+    assert not relative[3:].any(), "no vehicle is not a vehicle far away"
 
 
 @pytest.mark.parametrize("coordinates", ["absolute", "relative"])
@@ -117,7 +117,7 @@ def test_without_intent_sharing_no_intention_of_others(junction: Junction, see: 
 def test_without_state_sharing_only_place_and_speed_within_range(junction: Junction, see: See) -> None:
     world = junction.world(*cars())
     seen = see(world, state_sharing=False)
-    assert not seen["CAV1"][1:].any(), "nobody within 50 m"
+    assert not seen["CAV1"][1:].any(), "no vehicle within 50 m"
     hdv = next(v for v in world.vehicles if v.id == "HDV1")
     np.testing.assert_allclose(seen["CAV2"][1], (hdv.x, hdv.y, hdv.speed, 0, 0, 0), rtol=1e-5)
     assert not seen["CAV2"][2:].any()

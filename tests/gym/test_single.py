@@ -1,4 +1,4 @@
-"""One CAV that learns: the same scenes as ever, with everybody else a human driver."""
+"""One CAV that learns: the same scenes as ever, with all others human drivers."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ SLOWER, IDLE, FASTER, LANE_LEFT = range(4)
 
 
 class Speedometer:
-    """Sees the speeds of everybody, as far as there is room."""
+    """Sees the speeds of each vehicle, as far as there is room."""
 
     def __init__(self, environment: Environment) -> None:
         self.seen = 0

@@ -109,7 +109,7 @@ def test_keeps_count_of_what_happens_at_once() -> None:
         ThreadPoolExecutor(8) as pool,
     ):
         list(pool.map(lambda k: client.post(f"{server.url}/chat/completions", json=body()), range(8)))
-    # Only once it is closed: whoever has its answer may be quicker than the server's own accounts.
+    # Only once it is closed: a client that has its answer may be quicker than the server's own accounts.
     assert 2 <= server.high_water <= 8
     assert server.in_flight == 0
     assert server.connections <= 8

@@ -1,4 +1,4 @@
-"""The store: one file is the truth, whatever happens to whoever writes it."""
+"""The store: one file is the truth, whatever happens to its writer."""
 
 import os
 import signal

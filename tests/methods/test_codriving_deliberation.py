@@ -17,7 +17,7 @@ Make = Callable[..., CoDriving]
 
 @pytest.fixture(scope="module")
 def step(method: Make, junction: Junction) -> ReasonedDeliberation:
-    """A step in which somebody stands in the way, so that a clear time is infinite, and actions are removed."""
+    """A step in which a vehicle stands in the way, so that a clear time is infinite, and actions are removed."""
     world = junction.world(
         car("CAV1", "south-north", 93.0, 6.0),
         car("CAV2", "west-north", 90.0, 6.0),

@@ -83,11 +83,11 @@ def test_who_finds_no_gap_stops_before_its_lane_ends(configured: Callable[..., E
     merge = Junction(configured("scenario=merge", "scenario.lanes=1", "scenario.parallel=60"))
     change = merge.road_map.changes.ahead("ramp", 0.0)
     assert change is not None
-    # A queue on the lane beside crawls past, bumper to bumper; nobody lets the CAV in.
+    # A queue on the lane beside crawls past, bumper to bumper; no vehicle lets the CAV in.
     queue = [Start(f"HDV{k}", Kind.HDV, "main-0", 205.0 + 7.5 * k, 0.2) for k in range(14)]
     environment = merge.drive(Start("CAV1", Kind.CAV, "ramp", 150.0, 15.0), *queue)
     steps = drive(environment, method(merge), decisions=40)
-    assert environment.outcome is None, "nobody has been hit"
+    assert environment.outcome is None, "no vehicle has been hit"
     world, _ = steps[-1]
     (cav,) = world.cavs
     s, _ = merge.road_map.project("ramp", cav.x, cav.y)

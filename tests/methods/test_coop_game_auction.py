@@ -33,7 +33,7 @@ def test_highest_bid_goes_first() -> None:
 
 
 def test_waiting_counts_from_the_moment_of_standing() -> None:
-    """Whoever stands farther away overtakes in the end the one who stands nearer, since it has waited longer."""
+    """A vehicle farther away overtakes a nearer one in the end, since it has waited longer."""
     auction = Auction(0.0)
     firsts = []
     for step in range(40):

@@ -49,7 +49,7 @@ def test_tickets_do_not_change_when_arrivals_do() -> None:
 def test_a_vehicle_that_comes_later_gets_a_ticket_within_the_radius() -> None:
     rule, separation = FirstComeFirstServed(control_radius=50.0), both("a", "b", 2.0)
     rule.order(instance({"a": 9.0}, a={"distance": 80.0}), NoPlanner())
-    assert "a" in rule.tickets.held, "at the first step everybody gets one"
+    assert "a" in rule.tickets.held, "at the first step each vehicle gets one"
     far = instance({"a": 9.0, "b": 1.0}, separation, time=1.0, b={"distance": 50.1})
     answer = rule.order(far, NoPlanner())
     assert answer.sequence == ("a", "b")
@@ -111,7 +111,7 @@ def test_waiting_for_conflicts_alone_costs_no_more_than_waiting_for_all(seed: in
 
 
 def test_global_mode_lets_one_group_through_at_a_time() -> None:
-    # a and b pass together; c meets a, d meets nobody but belongs to the group of c, and so does e, which meets a.
+    # a and b pass together; c meets a, d meets none but belongs to the group of c, and so does e, which meets a.
     problem = instance({"a": 1.0, "b": 1.1, "c": 1.2, "d": 1.3, "e": 1.4}, both("a", "c", 0.5) | both("a", "e", 0.5))
     answer = FirstComeFirstServed(mode="global").order(problem, NoPlanner())
     assert answer.times == pytest.approx({"a": 1.0, "b": 1.1, "c": 3.1, "d": 3.1, "e": 3.1})

@@ -1,4 +1,4 @@
-"""MADQN: trained weights that drive in all four scenarios, see what they may see, and judge as anybody would."""
+"""MADQN: trained weights that drive in all four scenarios, see what they may see, and judge soundly."""
 
 import json
 import re

@@ -156,7 +156,7 @@ def test_fixed_pairs_of_vehicles_that_are_gone_do_not_matter() -> None:
 
 
 def test_the_exploration_finds_what_the_rule_of_thumb_misses() -> None:
-    # Whoever can pass first goes first, which is a: but all others wait for it for long, while it could wait shortly.
+    # What can pass first goes first, which is a: but all others wait for it for long, while it could wait shortly.
     separation = {}
     for other in ("b", "c", "d"):
         separation |= {("a", other): 5.0, (other, "a"): 0.3}

@@ -136,7 +136,7 @@ def test_what_is_agreed_is_the_order_of_the_rule_and_respects_what_is_fixed(
     assert all(ranked.index(a) < ranked.index(b) for a, b in between)
     for one, other in instance.before:
         if (other, one) not in instance.before and set(between) & {(one, other), (other, one)}:
-            # Where what is fixed forms a circle, as only vehicles that collide anyway can, somebody has to go first.
+            # Where what is fixed forms a circle, as only vehicles that collide anyway can, a vehicle has to go first.
             assert (one, other) in between or len(instance.before) > 2
     assert deliberation.counts["tried"] == 1
 

@@ -29,7 +29,7 @@ def roundabout(**change: Any) -> Roundabout:
 
 
 def circling(scene: Scene, of: Roundabout) -> dict[str, float]:
-    """Angle of everybody on the ring, by id; the ring is driven with falling angles [rad]."""
+    """Angle of each vehicle on the ring, by id; the ring is driven with falling angles [rad]."""
     paths, found = road_map(of.road).paths, {}
     for start in scene.starts:
         x, y = paths[start.route].position(start.position)

@@ -37,7 +37,7 @@ def test_a_driver_stops_before_a_zone_that_a_vehicle_is_in(by_hand: Build) -> No
     (zone,) = env.road_map.zones("south-north", "west-east")
     assert zone.entry_j < 113.0 < zone.exit_j
     assert occupied_ahead(env.road_map, road["HDV1"], road.values()) == zone.entry_i
-    # Nobody in it, too late to stop, and far away: nothing to wait for.
+    # No vehicle in it, too late to stop, and far away: nothing to wait for.
     for other, place, speed in ((60.0, 92.0, 6.0), (113.0, zone.entry_i - 1.0, 9.0), (113.0, 40.0, 6.0)):
         env, road = placed(
             by_hand, Start("CAV1", CAV, "west-east", other, 0.0), Start("HDV1", HDV, "south-north", place, speed)

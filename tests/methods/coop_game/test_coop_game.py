@@ -55,7 +55,7 @@ def test_two_gain_together_what_they_would_alone_or_more(objective: Goal, etas: 
 
 
 def test_agreeing_can_be_worth_more_than_coming_first() -> None:
-    """Whoever comes a little later but is much nearer to its destination goes first."""
+    """The vehicle that comes a little later but is much nearer to its destination goes first."""
     problem = crossing(vehicle("a", 3.0, remaining=200.0), vehicle("b", 3.1, remaining=40.0))
     ordering = game().order(problem, Scheduled(problem))
     assert first_come(problem) == ("a", "b")
@@ -71,7 +71,7 @@ def test_turning_yields_to_straight_where_drivers_would_be_indifferent() -> None
         vehicle("b", 4.0, remaining=straight),
     )
     assert game().order(crossing(*cars), Scheduled(crossing(*cars))).sequence == ("b", "a")
-    # Without a common scale the shorter way would win, whoever turns.
+    # Without a common scale the shorter way would win, whichever vehicle turns.
     cars = (vehicle("a", 4.0, turning=True, remaining=90.0), vehicle("b", 4.0, remaining=90.5))
     problem = crossing(*cars)
     assert game(scale="none").order(problem, Scheduled(problem)).sequence == ("a", "b")
@@ -117,11 +117,11 @@ class Gap:
         self.gap = gap
 
     def plan(self, order: Any) -> JointPlan:
-        """Nobody asks."""
+        """It is not asked."""
         raise AssertionError
 
     def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
-        """The gap, whoever is meant."""
+        """The gap, whichever vehicle is meant."""
         return self.gap
 
 

@@ -1,4 +1,4 @@
-"""On which joint action everybody settles."""
+"""On which joint action the vehicles settle."""
 
 from itertools import combinations, product
 
@@ -142,7 +142,7 @@ def test_who_adds_nothing_to_any_vehicle_gets_its_own_worth(game: tuple[list[str
 
 
 def test_one_left_and_two_right_gloves() -> None:
-    """A pair is worth 1: whoever has the left glove, which is scarce, gets two thirds of it."""
+    """A pair is worth 1: the player with the left glove, which is scarce, gets two thirds of it."""
     shares = shapley(["left", "right", "other"], lambda c: float("left" in c and len(c) > 1))
     assert shares == pytest.approx({"left": 2 / 3, "right": 1 / 6, "other": 1 / 6})
 

@@ -20,7 +20,7 @@ from codriving.llm.scripted import ScriptedChat
 from codriving.methods.dilu.dilu import DiLu
 
 NEARER = {"intersection": 20.0, "roundabout": 20.0}
-"""How much farther everybody is than on the other pages, since a vehicle on its own sees 50 m [m]."""
+"""How much farther each vehicle is than on the other pages, since a vehicle on its own sees 50 m [m]."""
 
 
 class Book:
@@ -32,7 +32,7 @@ class Book:
         """Nothing depends on the seed."""
 
     def recall(self, situations: object) -> list[tuple[Memory, ...]]:
-        """The same for everybody."""
+        """The same for each vehicle."""
         return [(Memory(1, "At 8.0 m/s: FASTER. No mistake.", Action.FASTER, Verdict.EASED, 0.97, 1),)] * len(
             list(situations)  # type: ignore[call-overload]
         )

@@ -24,7 +24,7 @@ THREE = (
     car("CAV2", "west-east", 62, 8, 9),
     car("CAV3", "east-south", 62, 8, 9),
 )
-"""Everybody crosses everybody's way, and nobody is committed."""
+"""Each vehicle crosses every other one's way, and none is committed."""
 
 
 def coordinator(thoughts: Thoughts, script: Script) -> tuple[ModelCoordinator, ScriptedChat, Ledger]:

@@ -1,4 +1,4 @@
-"""Features of learned drivers: the same from every side, nothing that nobody can know, and zeros where nobody is."""
+"""Features of learned drivers: the same from every side, only what can be known, zeros where no vehicle is."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Whoever was expected to brake and does not is not expected to any more, until it does."""
+"""The vehicle that was expected to brake and does not is not expected to any more, until it does."""
 
 from seeing import game, seen_each
 from worlds import Junction, car

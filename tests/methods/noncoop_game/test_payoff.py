@@ -1,4 +1,4 @@
-"""Equilibria: nobody gains by changing alone, symmetric games of passing have two, and there may be none."""
+"""Equilibria: no vehicle gains by changing alone, symmetric games of passing have two, and there may be none."""
 
 import numpy as np
 from hypothesis import given

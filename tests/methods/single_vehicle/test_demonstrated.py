@@ -1,4 +1,4 @@
-"""The demonstrated rule: FASTER, then IDLE, then SLOWER, and the first that keeps clear of everybody."""
+"""The demonstrated rule: FASTER, then IDLE, then SLOWER, and the first that keeps clear of each vehicle."""
 
 import pytest
 from dilu_driven import rule

@@ -1,4 +1,4 @@
-"""Who goes first: never both by the same way, ties are resolved, and whoever cannot wait any more does not."""
+"""Who goes first: never both by the same way, ties are resolved, and the vehicle that cannot wait any more does not."""
 
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
@@ -66,7 +66,7 @@ def test_who_is_there_earlier_goes_first(
 
 
 def test_at_once_who_comes_from_the_right_goes_first(junction: Junction) -> None:
-    # Whoever comes from the south has whoever comes from the east on its right.
+    # The vehicle from the south has the one from the east on its right.
     found = first(junction, car("CAV1", "south-north", 84.0, 7.0), car("CAV2", "east-west", 80.0, 7.0))
     assert found["CAV1"] == (False, "CAV2 comes from the right")
     assert found["CAV2"] == (True, "CAV1 comes from the left")

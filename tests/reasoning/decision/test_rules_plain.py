@@ -1,4 +1,4 @@
-"""When nobody has to be asked: nobody to consider, and nothing to weigh up."""
+"""When the model need not be asked: no vehicle to consider, and nothing to weigh up."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""In which order everybody is planned."""
+"""In which order each vehicle is planned."""
 
 from driven import moment_of
 from hypothesis import given
@@ -53,7 +53,7 @@ def test_a_vehicle_that_drives_ahead_is_planned_before_those_behind(
     order = planning_order(sequence, some, ahead)
     assert sorted(order) == sorted(some)
     assert all(order.index(a) < order.index(b) for a, b in ahead)
-    # Nobody is drawn forward for nothing: whoever goes before an earlier one has someone behind who waits for it.
+    # No vehicle is drawn forward for nothing: what goes before an earlier one is waited for by one behind.
     free = [n for n in sequence if all(n not in pair for pair in ahead)]
     assert [n for n in order if n in free] == free
 

@@ -59,7 +59,7 @@ def test_those_behind_count_for_less_than_oneself(highway: Junction) -> None:
     assert held_up < free, "a fast one behind on the lane beside would have to brake"
     assert set_free != alone, "and one behind on its own lane gets a new leader"
     assert POLITENESS < 1
-    # The loss of whoever is behind counts with the weight of politeness: no more than the hardest braking.
+    # The loss of the vehicle that is behind counts with the weight of politeness: no more than the hardest braking.
     assert free - held_up <= POLITENESS * (8.0 + 2.0) + 1e-9
 
 

@@ -1,4 +1,4 @@
-"""The reference executor: the first group accelerates, everybody else waits for its turn."""
+"""The reference executor: the first group accelerates, all others wait for their turn."""
 
 from dataclasses import replace
 from typing import Any

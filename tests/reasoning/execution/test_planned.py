@@ -137,7 +137,7 @@ def body(junction: Junction, route: str, s: float) -> np.ndarray:
 @settings(max_examples=8, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(ROUTES), st.floats(30.0, 80.0)), min_size=4, max_size=4))
 def test_cavs_on_their_routes_never_touch_and_all_arrive(junction: Junction, some: list[tuple[str, float]]) -> None:
-    # One on each leg, so that nobody starts on top of another; all of them as fast as they may.
+    # One on each leg, so that no vehicle starts on top of another; all of them as fast as they may.
     cars = [
         car(f"CAV{k}", f"{leg}-{_to(leg, route)}", place, 9.0)
         for k, (leg, (route, place)) in enumerate(zip(LEGS, some, strict=True), 1)

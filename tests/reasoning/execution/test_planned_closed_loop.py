@@ -1,4 +1,4 @@
-"""CAVs among themselves, driven to the end: nobody is hit, nobody waits for ever, nobody overtakes the order."""
+"""CAVs among themselves, driven to the end: none is hit, none waits for ever, none overtakes the order."""
 
 from collections.abc import Callable
 from itertools import combinations

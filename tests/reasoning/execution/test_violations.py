@@ -1,4 +1,4 @@
-"""When two motions come too close: one after the other, or onto a stretch where somebody may be."""
+"""When two motions come too close: one after the other, or onto a stretch where a vehicle may be."""
 
 from dataclasses import replace
 
@@ -87,7 +87,7 @@ def test_more_time_or_room_is_never_kept_for_longer(
     for more in ((lag + later, pad), (lag, pad + wider)):
         assert meets(zone, ego, low, high, *more)[0] <= meets(zone, ego, low, high, lag, pad)[0]
         assert passes_too_early(zone, ego, low, *more)[0] <= passes_too_early(zone, ego, low, lag, pad)[0]
-    # The less is known of somebody, the more is blocked.
+    # The less is known of a vehicle, the more is blocked.
     assert meets(zone, ego, low - wider, high + wider, lag, pad)[0] <= meets(zone, ego, low, high, lag, pad)[0]
 
 
@@ -137,7 +137,7 @@ def test_the_step_is_the_first_one_of_each_plan(junction: Junction) -> None:
 
 @pytest.mark.parametrize("lag", [0, 3, 5, 6, 40])
 def test_a_short_look_may_be_shorter_than_the_time_between_the_two(lag: int, junction: Junction) -> None:
-    # Whoever changes lanes minds the one that it leaves for less time than there is to lie between two vehicles.
+    # After a lane change the vehicle that is left is minded for less time than there is to lie between two vehicles.
     zone = zone_of(junction, ("south-north", "south-north"))
     ego, first = motion(60.0, [1.5] * 4)[None], motion(68.0, [1.5] * (N - 1))
     behind = np.concatenate([np.full(lag, first[0]), first])[:5]
@@ -272,7 +272,7 @@ def test_no_vehicle_runs_into_a_driver_who_stands_ahead(junction: Junction) -> N
 
 @pytest.mark.parametrize("make", [planned, layered])
 def test_a_driver_who_waits_does_not_hold_up_the_cavs(make: type[Executor], junction: Junction) -> None:
-    # Two CAVs cross, and a driver right before the zone lets everybody pass, though nobody can tell that at first.
+    # Two CAVs cross, and a driver right before the zone lets all pass, though no CAV can tell that at first.
     (zone,) = junction.road_map.zones("south-north", "west-east")
     for before in (2.0, 6.0):
         cars = [

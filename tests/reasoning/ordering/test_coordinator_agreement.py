@@ -1,4 +1,4 @@
-"""From a schedule to the passing order that everybody is told."""
+"""From a schedule to the passing order that each vehicle is told."""
 
 from collections.abc import Callable
 from graphlib import TopologicalSorter

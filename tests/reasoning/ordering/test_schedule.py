@@ -167,4 +167,4 @@ def test_joined_windows_block_the_same_times(windows: list[tuple[int, int]], ear
 
 def test_windows_that_touch_are_all_left() -> None:
     assert after_windows(2.5, [(4.0, 6.0), (2.0, 5.0)]) == 6.0
-    assert after_windows(2.0, [(2.0, 5.0)]) == 2.0, "windows are open: at its edge nobody is in it"
+    assert after_windows(2.0, [(2.0, 5.0)]) == 2.0, "windows are open: at its edge no vehicle is in it"

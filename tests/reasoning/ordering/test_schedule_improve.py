@@ -1,4 +1,4 @@
-"""A better order by local search: it keeps what it must, costs nobody anything, and stays as it is."""
+"""A better order by local search: it keeps what it must, costs no vehicle anything, and stays as it is."""
 
 from itertools import permutations
 
@@ -47,7 +47,7 @@ def schedule(order: tuple[str, ...], slots: dict[str, ApproachingVehicle], separ
 def first(
     slots: dict[str, ApproachingVehicle], separation: Separation, fixed: set[tuple[str, str]]
 ) -> dict[str, float]:
-    """A schedule to begin with: whoever may go and can go first."""
+    """A schedule to begin with: the vehicle that may go and can go first."""
     times: dict[str, float] = {}
     while len(times) < len(slots):
         ready = [n for n in slots if n not in times and all(a in times for a, b in fixed if b == n)]
@@ -69,7 +69,7 @@ def test_it_keeps_fixed_pairs_and_never_costs_more(
     times = improve(begin, Instance(0.0, slots, separation, fixed), previous)
     assert set(times) == set(slots)
     rank = {name: k for k, name in enumerate(times)}
-    assert all(rank[a] < rank[b] for a, b in fixed), "whoever cannot be overtaken stays ahead"
+    assert all(rank[a] < rank[b] for a, b in fixed), "the vehicle that cannot be overtaken stays ahead"
     assert times == schedule(tuple(times), slots, separation), "these are the times of that order"
     in_turn = schedule(tuple(sorted(begin, key=lambda name: (begin[name], name))), slots, separation)
     if all(list(in_turn).index(a) < list(in_turn).index(b) for a, b in fixed):
@@ -79,14 +79,14 @@ def test_it_keeps_fixed_pairs_and_never_costs_more(
         )
     else:
         assert times == begin
-    # Nobody passes before it can be there, or while a human driver does.
+    # No vehicle passes before it can be there, or while a human driver does.
     for name, time in times.items():
         assert time >= slots[name].eta
         assert all(not begin < time < end for begin, end in slots[name].windows)
 
 
 def two(lead: float, saving: float) -> tuple[dict[str, ApproachingVehicle], Separation]:
-    """Two vehicles, of which a comes earlier; b before a would save everybody together some time."""
+    """Two vehicles, of which a comes earlier; b before a would save all together some time."""
     return {"a": slot("a", 5.0), "b": slot("b", 5.0 + lead)}, {("a", "b"): 2.0 + lead + saving, ("b", "a"): 2.0 - lead}
 
 

@@ -82,7 +82,7 @@ def test_the_separations_tell_who_is_in_the_zone_first(
         ("ABC", {"B": 2.0, "C": 3.0}, [], "BC"),
         ("AC", {"A": 1.0, "B": 2.5, "C": 9.0}, [], "ABC"),
         ("AC", {"A": 1.0, "B": 12.0, "C": 9.0}, [], "ACB"),
-        # Nobody of the order is left, or one pair of two has become impossible.
+        # No vehicle of the order is left, or one pair of two has become impossible.
         ("AB", {"C": 1.0}, [], None),
         ("ABC", {"A": 1.0, "B": 2.0, "C": 3.0}, [("B", "A")], None),
         ("ABC", {"A": 1.0, "B": 2.0, "C": 3.0}, [("B", "C")], "ABC"),

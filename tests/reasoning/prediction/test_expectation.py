@@ -108,7 +108,7 @@ def test_who_changes_lanes_is_expected_on_both_of_them(highway: Junction) -> Non
 
 @pytest.mark.parametrize(("gap", "minded"), [(14.0, True), (60.0, False)])
 def test_the_lane_that_is_left_counts_until_the_body_is_off_it(gap: float, minded: bool, highway: Junction) -> None:
-    # Somebody slow ahead on the lane that is left: it matters only if it is reached before the body is off that lane.
+    # A slow vehicle ahead on the lane that is left: it matters only if it is reached before the body is off that lane.
     thoughts = highway.thoughts(
         car("CAV1", "lane-0", 300.0, 20.0, 25.0, offset=2.5), car("HDV1", "lane-1", 300.0 + gap, 14.0)
     )
@@ -162,8 +162,8 @@ def test_no_progress_where_the_order_cannot_be_kept(junction: Junction) -> None:
 def test_plans_are_each_something_now_then_waiting_or_rolling_then_going_or_holding() -> None:
     slower, idle, faster = Action.SLOWER, Action.IDLE, Action.FASTER
     assert len(set(PLANS)) == len(PLANS)
-    assert PLANS[0] == (faster, faster), "whoever is best off with it is held up by nobody"
-    assert PLANS[-1] == (slower, slower), "what is expected of whoever cannot keep the order"
+    assert PLANS[0] == (faster, faster), "the vehicle that is best off with it is held up by none"
+    assert PLANS[-1] == (slower, slower), "what is expected of the vehicle that cannot keep the order"
     assert sorted(k for indices in STARTS_WITH.values() for k in indices) == list(range(len(PLANS)))
     for action, indices in STARTS_WITH.items():
         mine = {PLANS[k] for k in indices}

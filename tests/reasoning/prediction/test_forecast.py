@@ -1,4 +1,4 @@
-"""Bounds and expectations of how far everybody comes."""
+"""Bounds and expectations of how far each vehicle comes."""
 
 import math
 

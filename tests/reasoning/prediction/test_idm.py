@@ -1,4 +1,4 @@
-"""The yardstick of lane changes: how hard somebody would accelerate behind somebody else."""
+"""The yardstick of lane changes: how hard a vehicle would accelerate behind another one."""
 
 import pytest
 from hypothesis import given

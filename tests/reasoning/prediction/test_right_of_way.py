@@ -20,7 +20,7 @@ def reason(
     road: RoadMap | None = None,
 ) -> str:
     """What is said of a human driver on exactly the route that it drives; empty if it is not relied on."""
-    # Far from one another nobody is perceived: a second CAV beside the driver tells of it.
+    # Far from one another no vehicle is perceived: a second CAV beside the driver tells of it.
     witness = car("CAV2", human.route, max(human.place - 20.0, 0.0), 0.0)
     thoughts = junction.thoughts(cav, witness, human)
     mover = replace(thoughts.scenes["CAV1"].vehicles()["HDV1"], standing=standing, acceleration=pedal)

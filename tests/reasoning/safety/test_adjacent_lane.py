@@ -114,7 +114,7 @@ def test_no_lane_change_that_touches_any_vehicle_within_two_seconds(
 
     removed = check_adjacent(given)
     for action, side in SIDES.items():
-        # On the lane that it leaves, the CAV is responsible for whoever is ahead, until its body is off it.
+        # On the lane that it leaves, the CAV is responsible for the vehicle that is ahead, until its body is off it.
         left = on(1) and apart > LENGTH and bool(touches[times <= 1.6].any())
         if left or (on(side) and touches.any()):
             assert action in removed

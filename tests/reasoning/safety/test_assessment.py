@@ -43,7 +43,7 @@ def test_something_always_stays_and_every_removal_has_reasons(
 
 
 def test_if_nothing_is_safe_the_least_dangerous_is_kept_and_says_so(junction: Junction) -> None:
-    # Nose to tail with somebody who stands: nothing is safe any more.
+    # Nose to tail with a vehicle that stands: nothing is safe any more.
     given = junction.safety_input(car("CAV1", "south-north", 60.0, 9.0), car("HDV1", "south-north", 68.0, 0.0))
     found = by_action(ThreeLayers().assess(given))
     assert [a for a in found if found[a].safe] == [Action.SLOWER] == [least_dangerous(given)]
@@ -52,7 +52,7 @@ def test_if_nothing_is_safe_the_least_dangerous_is_kept_and_says_so(junction: Ju
 
 
 def test_going_on_may_be_the_least_dangerous(junction: Junction) -> None:
-    # It is leaving the crossing in front of somebody who does not brake; if it slows down, it is hit.
+    # It is leaving the crossing in front of a vehicle that does not brake; if it slows down, it is hit.
     given = junction.safety_input(
         car("CAV1", "south-north", 110.0, 6.0), car("HDV1", "west-east", 104.0, 9.0), order=order_of("HDV1 CAV1")
     )
@@ -101,10 +101,10 @@ def test_a_lane_change_keeps_the_speed(change: Action, junction: Junction) -> No
 @pytest.mark.parametrize(
     ("mine", "human", "least"),
     [
-        # It goes on in front of somebody who may accelerate, and of somebody who may not brake.
+        # It goes on in front of a vehicle that may accelerate, and of a vehicle that may not brake.
         ((109.0, 6.0), ("west-east", 100.0, 4.0), Action.FASTER),
         ((110.0, 3.0), ("east-west", 98.0, 4.0), Action.FASTER),
-        # It does not brake in front of somebody who may brake as well.
+        # It does not brake in front of a vehicle that may brake as well.
         ((107.0, 9.0), ("east-west", 101.0, 6.0), Action.IDLE),
     ],
 )

@@ -28,7 +28,7 @@ def crossing(
     who: str = "CAV2",
     binding: bool = False,
 ) -> SafetyInput:
-    """CAV1 from the south and somebody from the west who are at the crossing at 104 and 108 m."""
+    """CAV1 from the south and a vehicle from the west who are at the crossing at 104 and 108 m."""
     told = order_of(*(order or (f"{who} CAV1",)), binding=binding)
     return junction.safety_input(
         car("CAV1", "south-north", mine, speed), car(who, "west-east", theirs, speed), order=told
@@ -140,7 +140,7 @@ def test_a_human_driver_too_far_to_come_in_time_is_passed(speed: float, junction
 
 
 def in_the_way(given: SafetyInput) -> set[str]:
-    """Reasons that speak of stopping in somebody's way."""
+    """Reasons that speak of stopping in another vehicle's way."""
     return {r for reasons in check_conflicts(given).values() for r in reasons if "stop in the way of" in r}
 
 

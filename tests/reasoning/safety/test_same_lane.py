@@ -1,4 +1,4 @@
-"""First layer: nobody on the ego lane is run into, or made to brake abruptly."""
+"""First layer: no vehicle on the ego lane is run into, or made to brake abruptly."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -15,12 +15,12 @@ from codriving.reasoning.sharing.sharing import SensedStates, SharedStates
 
 
 def follower(junction: Junction, gap: float, speed: float, leader: float, who: str = "HDV1") -> SafetyInput:
-    """CAV1 follows somebody with a free distance."""
+    """CAV1 follows a vehicle with a free distance."""
     return junction.safety_input(car("CAV1", "south-north", 60.0, speed), car(who, "south-north", 65.0 + gap, leader))
 
 
 def followed(junction: Junction, gap: float, speed: float, behind: float, ahead: float | None = None) -> SafetyInput:
-    """Somebody follows CAV1; and if asked for, somebody stands ahead of it at a free distance."""
+    """A vehicle follows CAV1; and if asked for, a vehicle stands ahead of it at a free distance."""
     cars = [car("CAV1", "south-north", 60.0, speed), car("HDV1", "south-north", 55.0 - gap, behind)]
     if ahead is not None:
         cars.append(car("HDV2", "south-north", 65.0 + ahead, 0.0))

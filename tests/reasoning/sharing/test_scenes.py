@@ -53,7 +53,7 @@ def test_a_vehicle_that_drives_across_the_ego_lane_does_not_lead(junction: Junct
     cars = car("CAV1", "south-north", 90.0, 8.0), car("CAV2", "west-east", 113.0, 8.0)
     scene = junction.thoughts(*cars).scenes["CAV1"]
     assert roles(scene) == {"CAV2": Role.CONFLICT}
-    # Whoever does not know its heading cannot tell.
+    # The vehicle that does not know its heading cannot tell.
     sensed = junction.think(junction.world(*cars), SensedStates()).scenes["CAV1"]
     assert roles(sensed) == {"CAV2": Role.LEADING}
 

@@ -68,7 +68,7 @@ def test_the_length_of_a_vehicle_is_shared_but_not_sensed(junction: Junction) ->
     longer = replace(world, vehicles=tuple(replace(v, length=12.0) for v in world.vehicles))
     assert {g.length for g in SharedStates().detections(longer, junction.model)["CAV2"]} == {12.0}
     assert {g.length for g in SensedStates().detections(longer, junction.model)["CAV2"]} == {USUAL_LENGTH}
-    # As long as everybody is as long as is assumed, that changes nothing.
+    # As long as each vehicle is as long as is assumed, that changes nothing.
     assert {v.length for v in junction.environment.reset(0).vehicles} == {USUAL_LENGTH}
 
 
