@@ -60,7 +60,7 @@ class Stock:
         )
 
     def reset(self, seed: int) -> None:
-        """Begin the episode of a seed, then take away and add no vehicle: only the numbers of vehicles are evened out."""
+        """Begin the episode of a seed, then take away vehicles to even out their number; none is added."""
         self.environment.reset(seed=seed)
         road = self.environment.road
         surplus = len(road.vehicles) - CAVS - HDVS
