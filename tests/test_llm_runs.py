@@ -2,6 +2,7 @@
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,8 @@ from typer.testing import CliRunner, Result
 
 sys.path.insert(0, str(Path(__file__).with_name("llm")))
 
-from loopback import Loopback
+from faults import FAULTS, Fault
+from loopback import Loopback, Request
 
 from codriving.cli.app import app
 
@@ -118,6 +120,81 @@ def test_check_says_when_a_fallback_was_needed() -> None:
         result = call("check", *toy(server))
     assert result.exit_code == 1, result.output
     assert result.stdout.splitlines()[-1] == "No usable answer for the decision: a fallback was needed."
+
+
+@pytest.mark.parametrize("fault", ["missing_ids", "cyclic", "duplicate_ids"])
+def test_check_wants_an_order_for_every_pair(fault: str) -> None:
+    with Loopback(lambda request: fault) as server:
+        result = call("check", *toy(server))
+    assert result.exit_code == (0 if fault == "duplicate_ids" else 1), result.output
+
+
+def test_check_says_each_retry_and_what_the_server_calls_its_model() -> None:
+    def plan(request: Request) -> Fault:
+        fault = FAULTS["429"] if request.number == 1 else FAULTS["ok"]
+        return replace(fault, wrap=lambda body: {**body, "model": "qwen.gguf"})
+
+    with Loopback(plan) as server:
+        result = call("check", *toy(server), "llm.attempts=2", "llm.label=ours")
+    assert result.exit_code == 0, result.output
+    assert result.stdout.startswith("ours, which its server calls qwen.gguf, on intersection")
+    assert result.stderr.startswith("ours takes no more requests for now (429: Rate limit reached); attempt 2 of 2 in ")
+    assert result.stderr.count("\n") == 1
+
+
+def test_a_label_and_the_servers_name_are_in_table_manifest_and_transcript(tmp_path: Path) -> None:
+    def plan(request: Request) -> Fault:
+        return Fault(wrap=lambda body: {**body, "model": "qwen.gguf"})
+
+    with Loopback(plan) as server:
+        assert run(server, tmp_path, "llm.label=ours", "episodes=1").exit_code == 0
+        again = run(server, tmp_path, "llm.label=ours", "episodes=2")
+        assert (again.exit_code, "other versions" in again.stdout) == (0, False), again.output
+        server.plan = ()
+        changed = run(server, tmp_path, "llm.label=ours", "episodes=3")
+    assert "model ours qwen.gguf -> toy" in changed.stdout
+    folder = tmp_path / "run" / "mine"
+    assert json.loads((folder / "manifest.json").read_text())["versions"]["model ours"] == "qwen.gguf"
+    record, transcript = (
+        next(folder.glob("episodes/*/*/record.json")),
+        next(folder.glob("episodes/*/*/transcript.jsonl")),
+    )
+    assert json.loads(record.read_text())["reasoner"] == "ours"
+    assert '"model": "qwen.gguf"' in transcript.read_text()
+    assert "ours" in (folder / "summary.md").read_text()
+
+
+@pytest.mark.parametrize("fault", ["empty_content", "thinking", "html"])
+def test_a_model_that_never_answers_stops_the_run(fault: str, tmp_path: Path) -> None:
+    thinking = replace(FAULTS["cut_off"], write=lambda content: "")
+
+    def plan(request: Request) -> Fault:
+        return FAULTS["ok"] if request.number == 0 else thinking if fault == "thinking" else FAULTS[fault]
+
+    with Loopback(plan) as server:
+        result = run(server, tmp_path, "llm.fallbacks_at_first=5", "workers=1")
+    assert (result.exit_code, result.stdout) == (2, ""), result.output
+    last = result.stderr.splitlines()[-1]
+    assert "gave no usable answer to the first " in last
+    assert "go on with: codriving run" in last
+    assert result.stderr.count("raise llm.max_tokens") == (2 if fault == "thinking" else 0)
+
+
+def test_no_credit_in_the_middle_stops_the_run_and_a_wait_does_not(tmp_path: Path) -> None:
+    def plan(request: Request) -> Fault:
+        busy = Fault(status=429, error="You exceeded your current quota; see billing. Try again in 1ms.", code="busy")
+        return busy if request.number % 5 == 2 else FAULTS["ok"]
+
+    with Loopback(plan) as server:
+        result = run(server, tmp_path / "busy", "llm.attempts=2", "scenario.time_limit=1")
+        assert result.exit_code == 0, result.output
+        assert result.stderr.count("takes no more requests for now") == sum(r.number % 5 == 2 for r in server.requests)
+        server.plan = lambda request: FAULTS["quota"] if request.number > len(before) + 3 else FAULTS["ok"]
+        before = list(server.requests)
+        result = run(server, tmp_path / "quota", "llm.attempts=2", "scenario.time_limit=1")
+    assert result.exit_code == 2
+    assert "has no credit left for this key" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
 
 
 def test_check_of_a_server_that_is_not_there_is_one_line(closed: Loopback) -> None:

@@ -1,5 +1,6 @@
 """The language models that a run asks: which cell asks which, whether they answer, and what they have cost so far."""
 
+import sys
 from collections.abc import Iterable
 
 from codriving.datatypes import Chat, Model
@@ -17,7 +18,7 @@ class Asked:
         self.models = {folder: model for folder, model in found.items() if model and model.chat()}
         self.retries = 0
         for client in _clients(self.models.values()):
-            client.on_retry = self._count_retry
+            client.on_retry, client.on_note = self._tell_retry, tell
 
     @property
     def names(self) -> dict[str, str]:
@@ -39,6 +40,11 @@ class Asked:
         for client in _clients(model for model in self.models.values() if model.cache != REPLAY):
             client.preflight()
 
+    @property
+    def served(self) -> dict[str, str]:
+        """What the servers call the models that have answered, for the manifest."""
+        return {f"model {client.name}": client.served for client in _clients(self.models.values()) if client.served}
+
     def usage(self) -> str:
         """Say in a few words what has been used up so far."""
         used = [client.spending.totals() for client in _clients(self.models.values())]
@@ -46,9 +52,15 @@ class Asked:
         money = f"{sum(costs):.4f} USD" if len(costs) == len(used) else "price unknown"
         return f"{sum(u.tokens for u in used):,} tokens, {money}, {self.retries} retries"
 
-    def _count_retry(self, retry: object) -> None:
+    def _tell_retry(self, retry: object) -> None:
         # All requests are sent on one loop, so that no two of these run at the same time.
         self.retries += 1
+        tell(retry)
+
+
+def tell(note: object) -> None:
+    """Say something about a model beside the results."""
+    print(note, file=sys.stderr, flush=True)
 
 
 def _clients(models: Iterable[Model]) -> list[Chat]:

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config import build, choices, compose, validate
-from codriving.datatypes import Model, RuleModel, Scenario
+from codriving.datatypes import Deliberation, Model, RuleModel, Scenario
 from codriving.errors import ConfigError, ModelError, ModelUnavailableError
-from codriving.experiment.asking import REPLAY
+from codriving.experiment.asking import REPLAY, tell
 from codriving.experiment.objects import make_objects, model_of
 
 SEED, STEP = 10_001, 4  # The scene: four CAVs and three human drivers before an intersection, most of them in conflict
@@ -28,7 +28,7 @@ def run_check(overrides: Sequence[str], config_dir: Path | None = None) -> int:
         overrides: ``key=value`` tokens.
 
     Returns:
-        Exit code: 0 if both were answered in form or no model reasons, 1 if a fallback was needed.
+        Exit code: 0 if both were answered whole and in form or no model reasons, 1 if not.
 
     Raises:
         ConfigError: If the config cannot be used, or its method asks no model.
@@ -44,13 +44,15 @@ def run_check(overrides: Sequence[str], config_dir: Path | None = None) -> int:
         print("No model is asked: with this llm the built-in rules reason.")
         print(f"Models: {others or 'none'}\nCheck one with: codriving check llm=NAME")
         return 0
+    client.on_retry = client.on_note = tell
     try:
         client.preflight()
-        scene, transcript = _ask(resolved, model)
+        scene, deliberation = _ask(resolved, model)
     except ModelUnavailableError as error:
         raise ModelError(str(error)) from error
-    print(f"{model.name} on {scene}\n")
-    code, lines = report(transcript)
+    served = f", which its server calls {client.served}," if client.served else ""
+    print(f"{model.name}{served} on {scene}\n")
+    code, lines = report(deliberation.transcript, deliberation.counts)
     print("\n".join(lines))
     return code
 
@@ -61,7 +63,7 @@ def _settings(llm: Mapping[str, Any]) -> dict[str, Any]:
     return {key: changed.get(key, value) for key, value in llm.items()}
 
 
-def _ask(resolved: Mapping[str, Any], model: Model) -> tuple[str, Sequence[Mapping[str, Any]]]:
+def _ask(resolved: Mapping[str, Any], model: Model) -> tuple[str, Deliberation]:
     """Drive to the scene by the rules, then ask the model; gives the scene in words and what was asked and answered."""
     by_rules, asked = make_objects(resolved, RuleModel()), make_objects(resolved, model)
     environment, driver = by_rules.environment, by_rules.method
@@ -74,7 +76,7 @@ def _ask(resolved: Mapping[str, Any], model: Model) -> tuple[str, Sequence[Mappi
         world = environment.step(deliberation.actions)
     asked.method.reset(environment.road_map, environment.driving_model, SEED)
     scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
-    return f"{scenario.name}, seed {SEED}, after {world.time:g} s", asked.method.ask_once(world).transcript
+    return f"{scenario.name}, seed {SEED}, after {world.time:g} s", asked.method.ask_once(world)
 
 
 def _is_open(line: Mapping[str, Any]) -> bool:
@@ -84,14 +86,16 @@ def _is_open(line: Mapping[str, Any]) -> bool:
     return any({p["first"], p["second"]} <= names for cav in cavs for p in cav["order"]["precedences"])
 
 
-def report(transcript: Sequence[Mapping[str, Any]]) -> tuple[int, list[str]]:
-    """Say what was answered, and whether it could be used."""
+def report(transcript: Sequence[Mapping[str, Any]], counts: Mapping[str, float] = {}) -> tuple[int, list[str]]:
+    """Say what was answered, and whether all of it could be used."""
     if not transcript:
         raise ModelError("the model was not asked anything in this scene; leave scenario= and cda= out")
     lines = [text for line in transcript for text in [*_answer(line), ""]]
     missing = [_NAMES.get(line["purpose"], line["purpose"]).lower() for line in transcript if line["value"] is None]
     if missing:
         return 1, [*lines, f"No usable answer for the {' and the '.join(missing)}: a fallback was needed."]
+    if counts.get("repaired_orders"):
+        return 1, [*lines, "The order leaves pairs out or goes in a circle: the rules had to complete it."]
     return 0, [*lines, "Answered in the form asked for."]
 
 

@@ -134,10 +134,11 @@ def drive(
 ) -> Finished:
     """Drive a plan, or what is missing of it, with a progress display; prints no table."""
     is_new = plan.run is None or not (plan.output / plan.experiment / plan.run / MANIFEST).exists()
+    found = Asked(plan.cells)
     if is_new:
         # Before the folder is made: a model that cannot be reached leaves nothing behind.
-        Asked(plan.cells).preflight()
-    asked = manifest_of(plan)
+        found.preflight()
+    asked = manifest_of(plan, found.served)
     path = plan.output / plan.experiment
     path = path / plan.run if plan.run else new_run_path(path, datetime.now())
     with RunFolder(path, asked, {cell.folder: show(redact(cell.resolved)) for cell in plan.driven}) as folder:
@@ -209,7 +210,7 @@ def drive(
             kept=kept,
             failed=tuple(sorted(failed, key=lambda report: (report.unit.cell, report.unit.seed))),
             left_out=folder.left_out(plan.seeds),
-            changed=changed_versions(folder.manifest, asked) if kept and missing else (),
+            changed=_changed(folder.manifest, asked, models.served) if kept and missing else (),
             filmed=sum(film.path(unit).exists() for unit in todo) if film else 0,
             unfilmed=tuple(unit for unit in units if film and film.lacks(unit)),
             outputs=outputs,
@@ -267,7 +268,7 @@ class FailuresInARow:
             )
 
 
-def manifest_of(plan: Plan) -> Manifest:
+def manifest_of(plan: Plan, served: dict[str, str]) -> Manifest:
     """Describe what is to be run, and with what."""
     return Manifest(
         format=FORMAT,
@@ -278,10 +279,17 @@ def manifest_of(plan: Plan) -> Manifest:
         episodes=plan.episodes,
         rows=tuple(cell.folder for cell in plan.driven),
         cells=tuple(cell.entry() for cell in plan.driven),
-        versions=versions(),
+        versions=versions() | served,
         commit=commit(),
         machine=machine(),
     )
+
+
+def _changed(there: Manifest, here: Manifest, served: Mapping[str, str]) -> tuple[str, ...]:
+    """Compare versions, and what servers call their models where that is known of both times."""
+    known = {name: served.get(name, was) for name, was in there.versions.items() if name.startswith("model ")}
+    own = {name: version for name, version in here.versions.items() if not name.startswith("model ")}
+    return changed_versions(there, replace(here, versions=own | known))
 
 
 def _records(

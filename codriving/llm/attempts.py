@@ -14,7 +14,8 @@ from codriving.llm.faults import CallError, FaultKind
 class ConcurrencyLimit:
     """Lets a number of requests through at once; halves it on 429 and lets it grow back by one a round of answers.
 
-    Used on one event loop, so it needs no lock.
+    After a time-out it grows back a sixteenth as fast: a server that works off one request after the other says nothing
+    else, and each time-out is an answer lost. Used on one event loop, so it needs no lock.
     """
 
     def __init__(self, limit: int) -> None:
@@ -23,6 +24,7 @@ class ConcurrencyLimit:
         self._inside = 0
         self._waiting: deque[asyncio.Future[None]] = deque()
         self._shrunk = 0
+        self._pace = 1.0  # Answers that count as one
 
     @property
     def limit(self) -> int:
@@ -39,15 +41,16 @@ class ConcurrencyLimit:
             self._inside -= 1
             self._wake()
 
-    def shrink(self, ticket: int) -> None:
+    def shrink(self, ticket: int, pace: float = 1.0) -> None:
         """Halve the number, once for all the requests that were under way together."""
         if ticket == self._shrunk:
             self._shrunk += 1
+            self._pace = max(pace, self._pace)
             self._limit = max(1.0, self._limit / 2)
 
     def grow(self) -> None:
         """Note an answer: after as many as may be under way, one more may be."""
-        self._limit = min(float(self._most), self._limit + 1 / self._limit)
+        self._limit = min(float(self._most), self._limit + 1 / (self._limit * self._pace))
         self._wake()
 
     async def _enter(self) -> None:
@@ -80,6 +83,8 @@ Sleep = Callable[[float], Awaitable[None]]
 _FIRST = 1.0  # Wait after the first attempt, before jitter; it doubles with every further one [s]
 
 _LONGEST = 30.0  # Longest wait of our own choice [s]
+
+SLOWLY = 16.0  # After a time-out so many answers count as one, for the number of requests at once
 
 PATIENCE = 120.0  # A server that asks for a longer wait than this is given up [s]
 

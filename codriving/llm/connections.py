@@ -1,15 +1,19 @@
 """Connections to servers: one client for all providers, which goes to no other origin and reads to a limit."""
 
+import json
 import zlib
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from dataclasses import dataclass, field
 from typing import Any
 from urllib.request import getproxies
 
 import httpx
 
+from codriving.llm.events import completion_of
 from codriving.llm.faults import CallError, FaultKind, fault_of_response, refusal_within
+from codriving.llm.request import LIMIT
 
 LARGEST = 2_000_000  # More of a response is not read, counted when it is unpacked [bytes]
 
@@ -39,6 +43,55 @@ def at_most(size: int) -> Iterator[None]:
         _largest.reset(token)
 
 
+@dataclass(frozen=True, slots=True)
+class Outgoing:
+    """What becomes of the requests of a task, whatever its provider's library makes of them."""
+
+    fields: Mapping[str, Any] = field(default_factory=dict)  # Of the body, at any depth; None takes one out
+    headers: Mapping[str, str] = field(default_factory=dict)
+    limit: str | None = LIMIT  # What the longest answer is called; None sends none
+    key_header: str | None = None  # Header that carries the key in the place of the provider's own
+
+    def apply(self, request: httpx.Request, content: bytes) -> httpx.Request:
+        """Change a request."""
+        body = json.loads(content)
+        if self.limit != LIMIT:
+            found = [body.pop(name) for name in (LIMIT, "max_completion_tokens") if name in body]
+            body |= {self.limit: found[0]} if found and self.limit else {}
+        merge(body, self.fields)
+        headers = request.headers.copy()
+        del headers["content-length"]
+        for name in ("authorization", "x-api-key", "x-goog-api-key", "api-key") if self.key_header else ():
+            headers.pop(name, None)
+        headers.update(dict(self.headers))
+        text = json.dumps(body, ensure_ascii=False, separators=(",", ":")).encode()
+        return httpx.Request(request.method, request.url, headers=headers, content=text, extensions=request.extensions)
+
+
+def merge(body: dict[str, Any], fields: Mapping[str, Any]) -> None:
+    """Put fields into a body; objects are merged, None takes a field out."""
+    for name, value in fields.items():
+        if isinstance(value, Mapping) and isinstance(body.get(name), dict):
+            merge(body[name], value)
+        elif value is None:
+            body.pop(name, None)
+        else:
+            body[name] = value
+
+
+_outgoing: ContextVar[Outgoing | None] = ContextVar("outgoing", default=None)
+
+
+@contextmanager
+def changed(outgoing: Outgoing) -> Iterator[None]:
+    """Change what this task sends."""
+    token = _outgoing.set(outgoing if outgoing != Outgoing() else None)
+    try:
+        yield
+    finally:
+        _outgoing.reset(token)
+
+
 def client(**settings: Any) -> httpx.AsyncClient:  # noqa: ANN401 - settings of httpx
     """Return a client for any number of requests at once; it has to be closed."""
     if getproxies():
@@ -59,6 +112,8 @@ class Client(httpx.AsyncClient):
         """See ``httpx``."""
         # Nothing is gained by packing a thousand characters, and a packed body may open to any size.
         request.headers["accept-encoding"] = "identity"
+        if outgoing := _outgoing.get():
+            request = outgoing.apply(request, await request.aread())
         others |= {"stream": True, "follow_redirects": False}
         response = await super().send(request, **others)
         for _ in range(_HOPS):
@@ -75,6 +130,8 @@ class Client(httpx.AsyncClient):
                 await response.aread()
                 raise fault_of_response(response.status_code, response.headers, response.text)
             if not stream:
+                if response.headers.get("content-type", "").startswith("text/event-stream"):
+                    response = _at_once(response, await response.aread())
                 if (bodies := _bodies.get()) is not None:
                     bodies.append(await response.aread())
                 if refused := refusal_within(await response.aread()):
@@ -83,6 +140,12 @@ class Client(httpx.AsyncClient):
             await response.aclose()
             raise
         return response
+
+
+def _at_once(response: httpx.Response, events: bytes) -> httpx.Response:
+    """Turn events into the response that would have been sent at once."""
+    body = completion_of(events.decode("utf-8", "replace"))
+    return httpx.Response(200, headers={"content-type": "application/json"}, content=body, request=response.request)
 
 
 def _origin(url: httpx.URL) -> tuple[str, str, int | None]:

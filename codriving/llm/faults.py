@@ -277,18 +277,39 @@ def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
         FaultKind.REDIRECT: "set llm.api_base to that address if it may have the prompts and the key",
         FaultKind.OVERSIZE: "check llm.api_base and llm.max_tokens",
         FaultKind.UNREADABLE: "set llm.api_base to the address of its API, which often ends in /v1",
-        FaultKind.TIMEOUT: "raise llm.deadline, or check llm.api_base",
+        FaultKind.TIMEOUT: f"{_SLOW}, or check llm.api_base",
         FaultKind.RATE: "try later, or raise llm.attempts",
         FaultKind.SERVER: "try later, or check llm.model and llm.api_base",
         FaultKind.DROPPED: "try later, or check llm.api_base",
-    }.get(fault.kind, "change the setting of llm that it complains about")
+    }.get(fault.kind) or _cure(fault.detail)
     return ModelError(f"{where} {fault.kind.value}{which}{said}; {cure}")
+
+
+_SLOW = "raise llm.deadline or lower llm.max_concurrency"
+
+# What a refusal may be about, and the setting of ours for it; the first that it names counts.
+_SETTINGS = {
+    "max_tokens|max_completion_tokens|max_output_tokens|num_predict": "llm.max_tokens_field, or lower llm.max_tokens",
+    "temperature|top_p|top_k": "llm.temperature=null",
+    "reasoning|effort|thinking|think\\b": "llm.extra, for instance llm.extra={reasoning_effort: low}",
+    "stream": "llm.stream=true",
+    "role|system|developer": "llm.system_role=user",
+    "api.?version|header": "llm.headers",
+}
+
+
+def _cure(detail: str) -> str:
+    for words, setting in _SETTINGS.items():
+        if re.search(f"(?i){words}", detail):
+            return f"set {setting}"
+    return "change the setting of llm that it complains about, or give the field that it wants in llm.extra"
 
 
 def unavailable(fault: CallError, settings: ModelSettings) -> ModelUnavailableError:
     """Say that a model did not answer this time."""
     times = "once" if fault.attempts == 1 else f"{fault.attempts} times"
-    return ModelUnavailableError(f"{settings.model}: {_server(settings)} {fault}, asked {times}")
+    cure = f"; {_SLOW}" if fault.kind is FaultKind.TIMEOUT else ""
+    return ModelUnavailableError(f"{settings.model}: {_server(settings)} {fault}, asked {times}{cure}")
 
 
 def _server(settings: ModelSettings) -> str:

@@ -1,5 +1,6 @@
 """The models that ``conf/llm/*.yaml`` build: none at all, or one through LiteLLM."""
 
+import json
 import os
 import threading
 from dataclasses import fields
@@ -22,21 +23,21 @@ class Offline(RuleModel):
 class LanguageModel(ModelSettings, Model):
     """A model through LiteLLM."""
 
-    _shared: ClassVar["dict[tuple[object, ...], ModelChat]"] = {}
+    _shared: ClassVar["dict[str, ModelChat]"] = {}
     _lock: ClassVar[threading.Lock] = threading.Lock()
 
     @property
     def name(self) -> str:  # type: ignore[override]
         """Name for tables."""
-        return self.model
+        return self.label or self.model
 
     def chat(self) -> "ModelChat":
         """Return the client for these settings; the whole process shares one."""
         from codriving.llm.cache import AnswerCache
         from codriving.llm.client import ModelChat
 
-        own = (getattr(self, field.name) for field in fields(self) if field.name not in _NOT_THE_CLIENTS)
-        key = (os.getpid(), *own)
+        own = [getattr(self, field.name) for field in fields(self) if field.name not in _NOT_THE_CLIENTS]
+        key = f"{os.getpid()} {json.dumps(own, sort_keys=True)}"
         with self._lock:
             if key not in self._shared:
                 cache = None if self.cache == "off" else AnswerCache(Path(self.cache_file), self.cache)

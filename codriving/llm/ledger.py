@@ -4,7 +4,7 @@ from collections import Counter
 from dataclasses import asdict
 from typing import Any
 
-from codriving.llm.question import Answer, Question
+from codriving.llm.question import Answer, Call, Question
 
 
 class Ledger:
@@ -62,5 +62,11 @@ def _line(question: Question, answer: Answer, time: float) -> dict[str, Any]:
         "problem": answer.problem,
         "mended": answer.mended,
         "shortened": answer.shortened,
-        "calls": [{key: value for key, value in asdict(call).items() if key != "cached"} for call in answer.calls],
+        "calls": [_told(call) for call in answer.calls],
     }
+
+
+def _told(call: Call) -> dict[str, Any]:
+    """What is kept of a call; a model that is called by its own name is not named again."""
+    left_out = ("cached",) if call.model else ("cached", "model")
+    return {key: value for key, value in asdict(call).items() if key not in left_out}

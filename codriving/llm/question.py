@@ -46,6 +46,7 @@ class Call:
     attempts: int
     cached: bool
     problem: str = ""
+    model: str = ""  # What the server calls the model, if that is another name than it was asked by
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,12 +11,12 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any, cast
 
-from codriving.llm.connections import client, keep_bodies
+from codriving.llm.connections import Outgoing, changed, client, keep_bodies
 from codriving.llm.faults import fault_of, without_key
 from codriving.llm.loop import loop
-from codriving.llm.parsing import clean
+from codriving.llm.parsing import clean, one_line
 from codriving.llm.places import places_of
-from codriving.llm.request import ChatRequest, Reply, response_format, worded
+from codriving.llm.request import ChatRequest, Reply, response_format, spoken, worded
 
 # Sent where no key is named; without it LiteLLM would take one from the environment and give it to a stranger.
 NO_KEY = "none"
@@ -31,24 +31,32 @@ class Sender:
         """Import LiteLLM, which takes seconds the first time, so that no deadline runs meanwhile."""
         await load_litellm()
 
-    async def send(self, request: ChatRequest, form: str, key: str | None, deadline: float) -> Reply:
+    async def send(
+        self, request: ChatRequest, form: str, key: str | None, deadline: float, key_header: str | None = None
+    ) -> Reply:
         """Send a request once."""
         optional = {"temperature": request.temperature, "response_format": response_format(form, request.schema)}
         bodies = keep_bodies()
+        messages = spoken(worded(request.messages, form, request.schema), request.system_role)
+        carried = {key_header: key} if key_header and key else {}
+        # LiteLLM is not told: what comes in events is put together before it sees it.
+        fields = {**({"stream": True} if request.stream else {}), **request.extra}
+        extra = Outgoing(fields, {**request.headers, **carried}, request.max_tokens_field, key_header)
         try:
-            response = await _loaded[0].acompletion(
-                model=request.model,
-                custom_llm_provider=provider_of(request.model, request.api_base),
-                messages=[asdict(message) for message in worded(request.messages, form, request.schema)],
-                api_base=request.api_base,
-                api_key=key or NO_KEY,
-                timeout=deadline,
-                max_retries=0,
-                num_retries=0,
-                stream=False,
-                max_tokens=request.max_tokens,
-                **{name: value for name, value in optional.items() if value is not None},
-            )
+            with changed(extra):
+                response = await _loaded[0].acompletion(
+                    model=request.model,
+                    custom_llm_provider=provider_of(request.model, request.api_base),
+                    messages=[asdict(message) for message in messages],
+                    api_base=request.api_base,
+                    api_key=NO_KEY if carried else key or NO_KEY,
+                    timeout=deadline,
+                    max_retries=0,
+                    num_retries=0,
+                    stream=False,
+                    max_tokens=request.max_tokens,
+                    **{name: value for name, value in optional.items() if value is not None},
+                )
             return reply_of(response.model_dump(), _completion(bodies), form, key)
         except Exception as err:
             fault = fault_of(err, key)
@@ -135,6 +143,13 @@ def _first(body: Mapping[str, Any]) -> dict[str, Any]:
     return choices[0] if isinstance(choices, list) and choices and isinstance(choices[0], dict) else {}
 
 
+def _number(usage: object, name: str) -> int:
+    """Read a count of tokens; 0 where there is none."""
+    with suppress(TypeError, ValueError, OverflowError):
+        return max(0, int(usage.get(name) or 0)) if isinstance(usage, Mapping) else 0
+    return 0
+
+
 def reply_of(
     response: Mapping[str, Any], body: Mapping[str, Any] | None = None, form: str = "", key: str | None = None
 ) -> Reply:
@@ -144,10 +159,10 @@ def reply_of(
         response: The response as LiteLLM understands it.
         body: The response as the server sent it, if that is known: LiteLLM merges some places of an answer.
     """
-    usage = response.get("usage") or {}
-    tokens: dict[str, Any] = {
-        name: max(0, int(usage.get(name) or 0)) for name in ("prompt_tokens", "completion_tokens")
-    }
+    names = ("prompt_tokens", "completion_tokens")
+    tokens: dict[str, Any] = {name: _number(response.get("usage"), name) for name in names}
+    served = (body or {}).get("model") or response.get("model") or ""
+    tokens["model"] = one_line(without_key(str(served), key), 200)
     if not _first(response):
         return Reply("", "", form=form, **tokens)
     said = {name: clean(without_key(text, key)) for name, text in places_of(_first(body or response)["message"])}

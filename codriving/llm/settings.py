@@ -1,8 +1,11 @@
 """The settings of a language model, checked, and its key, which is read when it is used and stored nowhere."""
 
+import json
 import os
 import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 from urllib.parse import urlsplit
 
 from codriving.errors import ConfigError, ModelError
@@ -18,7 +21,21 @@ _RANGES = {
     "attempts": (1, 20, ""),
     "max_concurrency": (1, 1000, ""),
     "failures_in_a_row": (1, 1000, ""),
+    "fallbacks_at_first": (1, 100_000, ""),
 }
+_HEADER = re.compile(r"[!#$%&'*+.^_`|~0-9A-Za-z-]+")
+_OURS = {"model": "llm.model", "messages": "prompts", "stream": "llm.stream"}  # Set elsewhere, not by ``extra``
+# Texts under such names, or of such a look, may be keys; numbers and switches are not.
+_KEY_NAME = re.compile(r"(?i)(.*[^a-z])?(api|access|auth|private)?[-_]?(key|token|secret|password|credential)s?")
+_KEY_HEADER = re.compile(r"(?i)(proxy-)?authorization|(set-)?cookie2?|(x-)?(goog-)?api-key|x-auth-token")
+_KEY_LOOK = re.compile(
+    r"(?i)\b(sk|pk|rk|gsk|hf|xai|ghp|glpat|nvapi|tgp|r8|pplx)[-_][\w*.-]{6,}|\bAIza[\w-]{20,}|"
+    r"\b(bearer|basic)\s+\S{6,}|\beyJ[\w-]{10,}\.[\w-]{10,}"
+)
+_LONG_LOOK = re.compile(
+    r"(?=\S*\d)(?=\S*[A-Za-z])[A-Za-z0-9+/=]{32,}|(?=\S*\d)(?=\S*[a-z])(?=\S*[A-Z])[\w+/=-]{32,}|"
+    r"[0-9a-fA-F]{8}(-[0-9a-fA-F]{4}){3}-[0-9a-fA-F]{12}"
+)
 
 
 @dataclass(frozen=True)
@@ -42,10 +59,20 @@ class ModelSettings:
     failures_in_a_row: int
     ask_plain: bool
     prompts: str | None  # Folder with templates that replace ours; None takes ours
+    label: str | None  # Name in tables; None takes the model's
+    model_prefix: str | None  # What the model's name has to begin with; None leaves it free
+    max_tokens_field: str | None  # What the server calls its limit of an answer; None sends none
+    system_role: str  # Role of the instructions: ``system``, ``developer``, or ``user``
+    stream: bool  # Whether the answer is asked for bit by bit, for servers that know nothing else
+    extra: Mapping[str, Any]  # Further fields of the request; null takes one out
+    headers: Mapping[str, str]  # Further headers of the request, none of them a key
+    api_key_header: str | None  # Header that carries the key, as it is; None takes the provider's own
+    fallbacks_at_first: int  # The batch stops if the first so many questions had no usable answer
 
     def __post_init__(self) -> None:
         prices = self.input_cost_per_token, self.output_cost_per_token
         _require(self.model.strip(), "model must be the name of a model, got an empty text")
+        self._check_request()
         check_address("api_base", self.api_base)
         _require(
             self.api_key_env is None or _VARIABLE.fullmatch(self.api_key_env),
@@ -66,6 +93,50 @@ class ModelSettings:
             prices.count(None) != 1,
             "input_cost_per_token must be given together with output_cost_per_token, got one of them alone",
         )
+
+    def _check_request(self) -> None:
+        prefix = self.model_prefix or ""
+        _require(
+            self.model.startswith(prefix),
+            f"model must begin with {prefix} here, or another protocol would be spoken, got {self.model}; set "
+            f"llm.model={prefix}{self.model.removeprefix(prefix.split('_')[0].rstrip('/') + '/')}, or llm=custom for a "
+            "server that speaks OpenAI's protocol",
+        )
+        _require(self.label is None or self.label.strip(), "label must be a name or null, got an empty text")
+        _require(
+            self.max_tokens_field is None or self.max_tokens_field.strip(),
+            "max_tokens_field must be the name of a field (max_completion_tokens) or null, got an empty text",
+        )
+        _require(
+            self.system_role in ("system", "developer", "user"),
+            f"system_role must be system, developer or user, got {self.system_role}",
+        )
+        for field in self.extra:
+            _require(field not in _OURS, f"extra must not hold {field}; it is set by {_OURS.get(field)}")
+        try:
+            json.dumps(self.extra, allow_nan=False)
+        except ValueError:
+            raise ConfigError("extra must hold what JSON can hold, got a number that is none") from None
+        for name, value in [*texts_of(self.extra, "extra"), *texts_of(self.headers, "headers")]:
+            last = name.rpartition(".")[2]
+            named = _KEY_HEADER.fullmatch(last) or (_KEY_NAME.fullmatch(last) and len(value) >= 8)
+            _require(
+                not named and not _KEY_LOOK.search(value) and not _LONG_LOOK.fullmatch(value),
+                f"{name.replace('.', '[', 1)}] must hold no key, which would be in the run folder; the value is not "
+                "shown: name its variable in llm.api_key_env, and a header of its own in llm.api_key_header",
+            )
+        for name, value in [*self.headers.items(), *([(self.api_key_header, "x")] if self.api_key_header else [])]:
+            where = "headers" if name in self.headers else "api_key_header"
+            _require(_HEADER.fullmatch(name), f"{where} must be names of headers, got {name!r}")
+            _require(value.isascii() and value.isprintable(), f"{where} must hold plain texts, got others under {name}")
+
+
+def texts_of(node: object, name: str) -> Iterator[tuple[str, str]]:
+    """List the texts of nested values, each by its dotted name."""
+    if isinstance(node, str):
+        yield name, node
+    for key, value in node.items() if isinstance(node, Mapping) else enumerate(node) if isinstance(node, list) else ():
+        yield from texts_of(value, f"{name}.{key}")
 
 
 def check_address(name: str, address: str | None) -> None:

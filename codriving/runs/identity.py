@@ -31,7 +31,15 @@ HOW_A_MODEL_IS_ASKED = (
     "max_concurrency",
     "max_cost",
     "max_tokens_total",
+    "api_key_header",
+    "fallbacks_at_first",
+    "model_prefix",
+    "stream",
 )
+
+# Settings of ``llm`` that came later, with the values that change nothing: runs of before are gone on with.
+_CAME_LATER: dict[str, Any] = {"label": None, "max_tokens_field": "max_tokens", "system_role": "system"}
+_CAME_LATER |= {"extra": {}, "headers": {}}
 
 # Groups whose choice stands for a class; all choices of ``cda`` are one class, so that their values tell them.
 CHOICES = ("scenario", "method", "executor", "llm", "memory")
@@ -86,6 +94,9 @@ def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     for key, names in dropped.items():
         if isinstance(node := values.get(key), Mapping):
             values[key] = {name: value for name, value in node.items() if name not in names}
+    if isinstance(llm := values.get("llm"), Mapping):
+        later = _CAME_LATER.items()
+        values["llm"] = {name: value for name, value in llm.items() if (name, value) not in later}
     return values
 
 

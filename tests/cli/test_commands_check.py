@@ -118,6 +118,12 @@ def test_a_fallback_is_exit_code_1_and_says_why() -> None:
     assert lines[-1] == "No usable answer for the decision: a fallback was needed."
 
 
+def test_an_order_with_pairs_missing_is_exit_code_1() -> None:
+    code, lines = report([asked("negotiate"), asked("decide")], {"repaired_orders": 1})
+    assert code == 1
+    assert lines[-1] == "The order leaves pairs out or goes in a circle: the rules had to complete it."
+
+
 def test_nothing_asked_is_no_success() -> None:
     with pytest.raises(ModelError, match="not asked anything"):
         report([])

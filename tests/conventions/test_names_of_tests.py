@@ -7,10 +7,8 @@ TESTS = REPOSITORY / "tests"
 OTHERS = {
     "config/test_nothing_from_data.py": "composing and building together",
     "gym/test_page.py": "a page of docs",
-    "llm/test_connections.py": "a whole client against a server on loopback",
     "llm/test_http.py": "a whole client against a server on loopback",
     "llm/test_loopback.py": "that server itself",
-    "llm/test_origin.py": "a whole client against a server on loopback",
     "methods/dilu/test_page.py": "a page of docs",
     "methods/single_vehicle/test_page.py": "a page of docs",
 }

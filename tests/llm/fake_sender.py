@@ -45,7 +45,9 @@ class FakeSender(Sender):
     async def load(self) -> None:
         """Nothing takes long here."""
 
-    async def send(self, request: ChatRequest, form: str, key: str | None, deadline: float) -> Reply:
+    async def send(
+        self, request: ChatRequest, form: str, key: str | None, deadline: float, key_header: str | None = None
+    ) -> Reply:
         """Note the request and reply to it."""
         self.sent.append((request, form, key))
         self.now += 1
@@ -96,6 +98,15 @@ SETTINGS = ModelSettings(
     failures_in_a_row=5,
     ask_plain=False,
     prompts=None,
+    label=None,
+    model_prefix=None,
+    max_tokens_field="max_tokens",
+    system_role="system",
+    stream=False,
+    extra={},
+    headers={},
+    api_key_header=None,
+    fallbacks_at_first=20,
 )
 
 

@@ -247,7 +247,10 @@ class Loopback:
             ],
             "usage": usage(request.length, len(content or "")),
         }
-        return fault.status, "application/json", json.dumps(fault.wrap(completion))
+        completion = fault.wrap(completion)
+        if request.body.get("stream"):
+            return fault.status, "text/event-stream", streamed(completion)
+        return fault.status, "application/json", json.dumps(completion)
 
     def _embedding_fault(self, request: Request) -> Fault:
         if not request.path.endswith("/embeddings"):
@@ -274,6 +277,26 @@ class Loopback:
             names = self.models if self.models is not None else ["any"]
             return 200, "application/json", json.dumps({"data": [{"id": name, "object": "model"} for name in names]})
         return 404, "application/json", json.dumps({"error": {"message": f"no {request.path} here"}})
+
+
+def streamed(completion: dict[str, Any]) -> str:
+    """Write a completion as events, its content in two parts.
+
+    Args:
+        completion: The body as it would be sent at once.
+    """
+    choice = completion["choices"][0]
+    content, half = choice["message"]["content"], len(choice["message"]["content"]) // 2
+    deltas = [({"role": "assistant", "content": content[:half]}, None), ({"content": content[half:]}, "stop")]
+    events = [
+        {
+            **completion,
+            "object": "chat.completion.chunk",
+            "choices": [{"index": 0, "delta": delta, "finish_reason": end}],
+        }
+        for delta, end in deltas
+    ]
+    return "".join(f"data: {json.dumps(event)}\n\n" for event in events) + "data: [DONE]\n\n"
 
 
 def vector(text: str) -> list[float]:

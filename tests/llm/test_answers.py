@@ -117,13 +117,18 @@ def server() -> Iterator[Loopback]:
         yield running
 
 
+def thought_only(case: Case) -> bool:
+    """Whether all tokens went into thinking: more of the same would."""
+    return case.get("finish_reason") == "length" and not case.get("content")
+
+
 @pytest.mark.parametrize("model", ["openai/any", "hosted_vllm/any"])
 def test_answers_are_read_through_litellm(server: Loopback, model: str) -> None:
     chat = ModelChat(replace(SETTINGS, model=model, api_base=server.url), forms=Forms())
     answers = chat.ask([question(number) for number in range(len(CASES))])
     for case, answer in zip(CASES, answers, strict=True):
         check(case, answer.value, answer.problem, answer.mended)
-        assert len(answer.calls) == (2 if "refused" in case else 1), case
+        assert len(answer.calls) == (2 if "refused" in case and not thought_only(case) else 1), case
         assert answer.calls[0].prompt_tokens == 10
 
 

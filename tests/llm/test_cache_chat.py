@@ -83,7 +83,7 @@ def test_quicker_process_wins(tmp_path: Path) -> None:
     path = tmp_path / "answers.sqlite"
 
     def overtaken(request: ChatRequest, form: str) -> str:
-        AnswerCache(path, "use").keep(asdict(request), asdict(reply(GOOD.replace("free", "first"))))
+        AnswerCache(path, "use").keep(request.told(), asdict(reply(GOOD.replace("free", "first"))))
         return GOOD
 
     answer = chat(FakeSender(overtaken), cache=AnswerCache(path, "use")).ask([question()])[0]

@@ -160,18 +160,21 @@ def test_server_that_asks_for_an_hour_is_given_up() -> None:
 @pytest.mark.parametrize("kind", [FaultKind.KEY, FaultKind.MODEL, FaultKind.QUOTA, FaultKind.UNREACHABLE])
 def test_what_the_user_must_mend_is_refused_at_the_first_call_and_ends_an_episode_later(kind: FaultKind) -> None:
     with pytest.raises(ModelError, match=r"set |buy"):
-        ask(chat(FakeSender([CallError(kind, "no")] * 9)))
+        ask(chat(FakeSender([CallError(kind, "no")] * 20)))
     client = chat(FakeSender([GOOD, *[CallError(kind, "no")] * 9]))
     ask(client)
     with pytest.raises(ModelError if kind is FaultKind.QUOTA else ModelUnavailableError):
         ask(client)
 
 
-def test_other_refusals_end_the_episode_without_a_retry() -> None:
-    sender = FakeSender([CallError(FaultKind.REFUSED, "400: no")] * 9)
-    with pytest.raises(ModelUnavailableError, match="400: no"):
-        ask(chat(sender))
-    assert len(sender.sent) == 1
+def test_what_is_refused_in_every_way_ends_the_episode() -> None:
+    sender = FakeSender([GOOD, *[CallError(FaultKind.REFUSED, "400: no")] * 9])
+    client = chat(sender)
+    ask(client)
+    with pytest.raises(ModelUnavailableError, match=r"400: no.*asked 5 times"):
+        ask(client)
+    forms = [form for _, form, _ in sender.sent[1:]]
+    assert forms == ["json_schema", "json_schema_any_length", "json_object", "text", "text"]
 
 
 def test_attempt_that_never_ends_is_ended_by_the_deadline() -> None:
@@ -180,7 +183,10 @@ def test_attempt_that_never_ends_is_ended_by_the_deadline() -> None:
         raise AssertionError
 
     sender = FakeSender(lambda request, form: never(request, form))
-    with pytest.raises(ModelUnavailableError, match=r"did not answer in time \(0.1 s\), asked 2 times"):
+    with pytest.raises(
+        ModelUnavailableError,
+        match=r"did not answer in time \(0.1 s; no answer so far\), asked 2 times; raise llm.deadline or lower",
+    ):
         ask(chat(sender, deadline=0.1, attempts=2))
 
 

@@ -1,5 +1,6 @@
 """Settings of a language model: what is refused, and that a process shares one client."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -56,6 +57,86 @@ def test_what_breaks_a_rule_is_refused_with_key_rule_and_value(override: str, ru
     with pytest.raises(ConfigError) as refusal:
         model("openai", f"llm.{override}")
     assert str(refusal.value).startswith(rule)
+
+
+@pytest.mark.parametrize(
+    ("name", "override", "rule"),
+    [
+        (
+            "ollama",
+            "model=qwen3:0.6b",
+            "llm.model must begin with ollama_chat/ here.*set llm.model=ollama_chat/qwen3:0.6b",
+        ),
+        ("ollama", "model=ollama/qwen3:0.6b", "llm.model must begin with .*set llm.model=ollama_chat/qwen3:0.6b"),
+        (
+            "gemini",
+            "model=gemini-2.5-flash",
+            "llm.model must begin with gemini/ here.*set llm.model=gemini/gemini-2.5-flash",
+        ),
+        ("anthropic", "model=claude-haiku-4-5", "llm.model must begin with .*set llm.model=anthropic/claude-haiku-4-5"),
+        ("custom", "system_role=assistant", "llm.system_role must be system, developer or user, got assistant"),
+        ("custom", "max_tokens_field=''", "llm.max_tokens_field must be the name of a field"),
+        ("custom", "label=' '", "llm.label must be a name or null, got an empty text"),
+        ("custom", "fallbacks_at_first=0", "llm.fallbacks_at_first must be 1 to 100000, got 0"),
+        ("custom", "extra={model: other}", "llm.extra must not hold model; it is set by llm.model"),
+        ("custom", "extra={stream: true}", "llm.extra must not hold stream; it is set by llm.stream"),
+        ("custom", "extra={x: inf}", "llm.extra must hold what JSON can hold"),
+        ("custom", "headers={X-A: 'ü'}", "llm.headers must hold plain texts, got others under X-A"),
+        ("custom", "headers={X-A: 'a\nb: c'}", "llm.headers must hold plain texts, got others under X-A"),
+        ("custom", "api_key_header='a:b'", "llm.api_key_header must be names of headers"),
+    ],
+)
+def test_what_a_server_may_want_is_checked(name: str, override: str, rule: str) -> None:
+    with pytest.raises(ConfigError) as refusal:
+        model(name, f"llm.{override}")
+    assert re.match(rule, str(refusal.value)), str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    "override",
+    [
+        "extra={api_key: canary-0123}",
+        "extra={nested: {list: [{accessToken: canary-0123}]}}",
+        "extra={note: 'Bearer canary0123'}",
+        "extra={note: sk-canary0123456}",
+        "extra={id: canary0123456789abcdefghijklmnopqrst}",
+        "extra={id: 0ca0a9ca-ca0a-4ca0-8ca0-ca0a9ca0a9ca}",
+        "headers={Authorization: canary}",
+        "headers={X-Api-Key: canary}",
+        "headers={x-goog-api-key: canary}",
+        "headers={X-Team-Secret: canary-0123}",
+        "headers={Cookie: canary}",
+    ],
+)
+def test_what_looks_like_a_key_is_refused_and_not_repeated(override: str) -> None:
+    with pytest.raises(ConfigError, match=r"must hold no key, .*llm\.api_key_env") as refusal:
+        model("custom", f"llm.{override}")
+    assert "canary" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    "override",
+    [
+        "extra={think: false, max_completion_tokens: 300, thinking: {type: enabled, budget_tokens: 1024}}",
+        "extra={tokenizer: cl100k, stop_token: '</s>', chat_template_kwargs: {enable_thinking: false}}",
+        "extra={temperature: null, provider: {order: [deepinfra, together]}}",
+        "headers={X-Title: 'lane change study', anthropic-beta: token-efficient-tools-2025-02-19}",
+    ],
+)
+def test_other_fields_and_headers_are_taken(override: str) -> None:
+    made = model("custom", f"llm.{override}")
+    assert made.extra or made.headers
+
+
+def test_a_label_is_the_name_in_tables() -> None:
+    assert model("custom", "llm.label=ours").name == "ours"
+    assert model("custom", "llm.extra={seed: 1}").chat() is not model("custom", "llm.extra={seed: 2}").chat()
+
+
+@pytest.mark.parametrize("name", ["ollama", "vllm", "custom"])
+def test_servers_on_ones_own_machine_are_asked_four_things_at_once(name: str) -> None:
+    assert model(name).max_concurrency == 4
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,14 @@
 """How an answer is asked for, and what is remembered about it."""
 
 import json
+from dataclasses import replace
 from typing import Literal
 
 from pydantic import BaseModel
 
 from codriving.llm.prompts.replies import LessonReply, correction_reply, decision_reply, order_reply
 from codriving.llm.question import Message
-from codriving.llm.request import FORMS, Forms, response_format, schema_of, worded
+from codriving.llm.request import FORMS, ChatRequest, Forms, plainer, response_format, schema_of, spoken, worded
 
 
 class Pair(BaseModel):
@@ -80,13 +81,58 @@ def test_without_a_schema_nothing_is_added() -> None:
         assert worded(TALK, form, None) == TALK
 
 
-def test_step_down_is_remembered_once_per_model() -> None:
+def asked(model: str = "a", api_base: str | None = None) -> ChatRequest:
+    return ChatRequest(model, api_base, TALK, 0.0, 300, SCHEMA)
+
+
+def test_what_works_is_remembered_once_per_model() -> None:
     forms = Forms()
-    assert forms.step_down("a", None, "json_schema")
-    assert forms.step_down("a", None, "json_schema"), "a question that was on its way when the first one was refused"
-    assert forms.best("a", None) == "json_schema_any_length"
-    assert forms.best("b", None) == forms.best("a", "http://elsewhere/v1") == "json_schema"
-    assert forms.step_down("a", None, "json_schema_any_length")
-    assert forms.step_down("a", None, "json_object")
-    assert not forms.step_down("a", None, "text")
-    assert forms.best("a", None) == "text"
+    assert not forms.settle(asked(), "json_object", ())
+    assert forms.best(asked()) == ("json_object", ())
+    assert forms.best(asked("b")) == forms.best(asked("a", "http://elsewhere/v1")) == ("json_schema", ())
+    forms.settle(asked(), "text", ())
+    assert forms.best(asked()) == ("json_object", ()), "one refusal of what has worked says nothing about the form"
+    assert forms.settle(asked("b"), "text", ("temperature",))
+    assert forms.best(asked("b")) == ("text", ("temperature",))
+
+
+def test_plainer_ways_go_from_one_field_to_all() -> None:
+    assert list(plainer("json_schema", (), True, False, "")) == [
+        ("json_schema_any_length", ()),
+        ("json_object", ()),
+        ("text", ()),
+        ("text", ("temperature", "any limit")),
+    ]
+    ways = [left_out for _, left_out in plainer("text", (), False, True, "Unsupported parameter: temperature")]
+    assert ways == [
+        ("temperature",),
+        ("max_tokens",),
+        ("system",),
+        ("temperature", "max_tokens"),
+        ("temperature", "system"),
+        ("max_tokens", "system"),
+        ("temperature", "max_tokens", "system"),
+        ("temperature", "any limit", "system"),
+    ]
+
+
+def test_what_is_left_out_changes_the_request_and_nothing_else() -> None:
+    request = asked()
+    assert request.without(("temperature",)) == replace(request, temperature=None)
+    assert request.without(("max_tokens", "system")) == replace(
+        request, max_tokens_field="max_completion_tokens", system_role="user"
+    )
+    assert request.without(("any limit",)).max_tokens_field is None
+
+
+def test_what_an_answer_depends_on_holds_only_what_is_set() -> None:
+    request = asked()
+    plain = ["api_base", "max_tokens", "messages", "model", "schema", "temperature"]
+    assert sorted(request.told()) == sorted(replace(request, stream=True).told()) == plain
+    assert replace(request, extra={"think": False}).told()["extra"] == {"think": False}
+
+
+def test_instructions_go_into_the_role_that_a_server_knows() -> None:
+    assert spoken(TALK, "system") == TALK
+    assert spoken(TALK, "developer") == (Message("developer", "You drive."), TALK[1])
+    assert spoken(TALK, "user") == (Message("user", "You drive.\n\nChoose."),)
