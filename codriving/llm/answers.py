@@ -122,16 +122,21 @@ def _outermost(text: str, start: int) -> tuple[list[Any], int]:
 def mended_values(text: str, question: Question) -> list[Any]:
     """Read a text tolerantly: objects that are no JSON, written as a text, in pieces, or left out around a name."""
     strict = strict_values(text)
-    found: list[Any] = [strict] if len(strict) > 1 else []
-    found += [{key: _only(inner) for key, inner in value.items()} for value in strict if isinstance(value, dict)]
-    found += [value for inner in _texts(text, strict, question) for value in strict_values(inner)]
-    # Quotes may be written for another language, as a whole; where one object can be read they are not.
-    found += careless_values(text) or ([] if strict else careless_values(html.unescape(text).replace('\\"', '"')))
+    found: list[Any] = [strict] if strict else []
+    found += [{key: _unwrapped(inner) for key, inner in value.items()} for value in strict if isinstance(value, dict)]
+    for inner in _texts(text, strict, question):
+        found += [*careless_values(inner), *strict_values(inner)]
+    # All may be written for another language; where one object can be read it is not.
+    plain = html.unescape(text).replace('\\"', '"').replace("\\n", "\n")
+    found += careless_values(text) or ([] if strict else careless_values(plain))
     return [*found, *_named_alone(text, question)]
 
 
-def _only(value: Any) -> Any:  # noqa: ANN401 - any JSON
-    """Return the one word of a list, or else the value as it is."""
+def _unwrapped(value: Any) -> Any:  # noqa: ANN401 - any JSON
+    """Return the one word of a list, what is written as a text, or else the value as it is."""
+    if isinstance(value, str) and value.lstrip()[:1] in ("{", "["):
+        with suppress(ValueError, RecursionError):
+            return json.loads(value)
     return value[0] if isinstance(value, list) and len(value) == 1 and isinstance(value[0], str) else value
 
 
@@ -152,12 +157,14 @@ def _texts(text: str, values: Sequence[Any], question: Question) -> Iterator[str
 
 def _named_alone(text: str, question: Question) -> Iterator[dict[str, Any]]:
     """Make an object of a list or text in JSON that is all that was said and holds one name, if one is asked for."""
+    whole, chosen, values = _unfenced(text), _choices(question), list[Any]()
     with suppress(ValueError, RecursionError):
-        value, chosen = json.loads(_unfenced(text)), _choices(question)
-        if isinstance(value, str):
-            value = [value]
-        if isinstance(value, list) and len(value) == len(chosen) == 1:
-            yield dict.fromkeys(chosen, value[0])
+        values = [json.loads(whole)]
+    if not values and whole[:1] == "[" and whole[-1:] == "]":
+        values = careless_values(whole)
+    value = [values[0]] if values and isinstance(values[0], str) else values[0] if len(values) == 1 else None
+    if isinstance(value, list) and len(value) == len(chosen) == 1:
+        yield dict.fromkeys(chosen, value[0])
 
 
 def _unfenced(text: str) -> str:

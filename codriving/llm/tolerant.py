@@ -1,7 +1,7 @@
 # ruff: noqa: RUF001 - quotes, colons and commas of other scripts are meant
 """JSON as models write it when they are careless, read where only one reading is possible.
 
-Quotes of any kind, comments, unquoted keys, commas too many or at a line's end too few, Python's words, and an end that
+Quotes of any kind, comments, unquoted keys, commas too many or too few, Python's words, and an end that
 is missing. A value that the end of the text cuts off is left out: ``CAV1`` may be the beginning of ``CAV12``.
 """
 
@@ -19,7 +19,7 @@ _WORD = re.compile(r"(?:(?!\s(?://|#|/\*))[^,;，}\]{\[\n\"“”])+")
 _WORDS = {"true": True, "false": False, "none": None, "null": None}
 # What may follow the quote that ends a key, and the one that ends a value; any other quote stands inside the text.
 _AFTER_KEY = re.compile(r"\s*(?:=>|[:=：])")
-_AFTER_VALUE = re.compile(r"[ \t]*\n\s*[\"“'‘]?\w+[\"”'’]?\s*[:=：]|\s*(?:[,;，}\]]|//|#|/\*|$)")
+_AFTER_VALUE = re.compile(r"[ \t]*\n\s*\w+\s*[:=：]|\s+[\"“'‘]\w+[\"”'’]\s*[:=：]|\s*(?:[,;，}\]]|//|#|/\*|$)")
 _ESCAPE = re.compile(r"\\(?:u([0-9a-fA-F]{4})|(.))", re.DOTALL)
 _ESCAPED = {"n": "\n", "t": "\t", "r": "\n", "b": "", "f": ""}
 
@@ -100,11 +100,11 @@ class _Reader:
             at = self._next(at, "]")
 
     def _next(self, at: int, end: str) -> int:
-        """Go past the comma after a member, which may be missing at the end of a line."""
+        """Go past the comma after a member, which may be missing."""
         begun, at = at, self._skip(at)
         if comma := _COMMA.match(self.text, at):
             return comma.end()
-        if self.text[at : at + 1] in ("", end) or "\n" in self.text[begun:at]:
+        if self.text[at : at + 1] in ("", end) or at > begun:
             return at
         raise _UnreadableError
 

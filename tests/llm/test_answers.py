@@ -63,10 +63,23 @@ def _order(said: Any) -> dict[str, str]:
     return {pair: first for pair, (first, _) in first_of_pairs(said).items()}
 
 
+_NOT_OF_THE_MESSAGE = (
+    "ask",
+    "read",
+    "refused",
+    "mended",
+    "finish_reason",
+    "parts",
+    "content",
+    "tool_calls",
+    "function_call",
+)
+
+
 def completion(case: Case) -> dict[str, Any]:
     """Write the body of a server's response."""
     message: Case = {"role": "assistant", "content": case.get("parts", case.get("content"))}
-    message |= {name: case[name] for name in ("reasoning_content", "reasoning", "refusal") if name in case}
+    message |= {name: value for name, value in case.items() if name not in _NOT_OF_THE_MESSAGE}
     if "tool_calls" in case:
         call = {"name": "answer", "arguments": case["tool_calls"]}
         message["tool_calls"] = [{"id": "a", "type": "function", "function": call}]
@@ -170,6 +183,19 @@ def test_nothing_is_made_up_from_words(text: str, marks: str) -> None:
 @given(st.text('[]" ,:ab\\'), st.sampled_from(ACTIONS))
 def test_object_after_anything_is_found(before: str, action: str) -> None:
     assert decided(f'{before}\n{{"action": "{action}"}}').action == action
+
+
+def test_nothing_is_read_that_was_not_said_whatever_is_cut_off() -> None:
+    texts = [case["content"] for case in CASES if case["ask"] == "decide" and isinstance(case.get("content"), str)]
+    assert len(texts) > 60
+    for text in texts:
+        for end in range(0, len(text), 3):
+            value = judge(Reply(text[:end], "length"), PLAIN).value
+            assert value is None or letters(value.action) in letters(text[:end]), text[:end]  # type: ignore[attr-defined]
+
+
+def letters(text: str) -> str:
+    return "".join(c for c in text.lower() if c.isalnum())
 
 
 @given(st.integers(0, 40))

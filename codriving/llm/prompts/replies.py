@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_model, model_validator
 
+from codriving.datatypes import Action
 from codriving.llm.prompts.free_text import one_line, the_one_of
 
 
@@ -19,8 +20,9 @@ def _short(value: Any) -> str:  # noqa: ANN401 - anything that the model put the
     return one_line(value) if isinstance(value, str) else ""
 
 
-def _upper(value: Any) -> Any:  # noqa: ANN401 - anything that the model put there
-    return value.strip().upper() if isinstance(value, str) else value
+def _action(value: Any) -> Any:  # noqa: ANN401 - anything that the model put there
+    """Call an action by its name, also one that is not allowed now: the model is told why not."""
+    return the_one_of(value, map(str, Action)) or value.strip().upper() if isinstance(value, str) else value
 
 
 def _one_of(words: Sequence[str]) -> Any:  # noqa: ANN401 - pydantic's own type is not public
@@ -36,7 +38,7 @@ def _one_word(words: Sequence[str]) -> WithJsonSchema:
 # A reason: on one line, and capped; a model may write a little more than is kept, rather than in the middle of a word.
 Reason = Annotated[str, BeforeValidator(_short), WithJsonSchema({"type": "string", "maxLength": 240})]
 
-ActionWord = Annotated[str, BeforeValidator(_upper)]
+ActionWord = Annotated[str, BeforeValidator(_action)]
 
 
 class DecisionReply(BaseModel):
@@ -71,7 +73,9 @@ class OrderReply(BaseModel):
         of = {"reason": said.get("reason")} if isinstance(said, dict) else {}
         found: dict[str, dict[str, Any]] = {}
         torn: set[str] = set()
-        for pair, first, reason in _entries(said):
+        # One pair alone is part of an order; it counts in a list.
+        alone = isinstance(said, dict) and "pair" in said
+        for pair, first, reason in () if alone else _entries(said):
             name = the_one_of(pair, cls.pairs)
             goes = None if name is None else the_one_of(first, cls.pairs[name])
             if name is None or goes is None:
