@@ -10,10 +10,9 @@ from codriving.config.locate import conf_dir, experiments_root
 from codriving.config.overrides import at_home, prepare
 from codriving.config.plugins import find_beside, gathered
 from codriving.config.references import check_references, no_resolvers
-from codriving.config.schema import GROUPS, LARGEST_SEED, check_root, texts
+from codriving.config.schema import GROUPS, LARGEST_SEED, SHOWN, check_root, texts
 from codriving.errors import ConfigError
 
-SHOWN = ("_tables_", "_style_")  # What a method's YAML says for tables and figures; it is no part of a run
 _VARIABLE = re.compile(r"[A-Z_][A-Z0-9_]*")
 _PASSWORD = re.compile(r"\w+://[^/]*@")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config.choices import LISTED, choices
-from codriving.config.schema import GROUPS, ROOT
+from codriving.config.schema import GROUPS, ROOT, SHOWN
 from codriving.errors import ConfigError
 
 KEY_VALUE = "write key=value, for instance scenario=intersection or episodes=20"
@@ -43,6 +43,8 @@ def prepare(token: str, config_dir: Path | None = None) -> str:
     if key in LISTED or "/" in key:
         return plain
     head, _, rest = key.partition(".")
+    if head == "method" and rest in SHOWN:
+        raise ConfigError(f"{key} is no setting of a run, but what a YAML says for tables; leave it out")
     if head not in GROUPS[2:] and (slot := rest.partition(".")[0]) in GROUPS:
         raise ConfigError(f"{key} is {slot} itself; set {rest} instead")
     if key in ROOT and ROOT[key].kind is str and not isinstance(override.value(), str | None):

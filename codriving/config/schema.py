@@ -14,6 +14,8 @@ GROUPS = ("scenario", "method", "executor", "cda", "llm", "memory", "metrics", "
 
 NODES = (*GROUPS, "environment")  # The keys of the root that hold a constructor call
 
+SHOWN = ("_tables_", "_style_")  # What a method's YAML says for tables and figures; it is no part of a run
+
 OPTIONAL = ("memory", "limits")  # Those of them that may be null
 
 LARGEST_SEED = 2**31 - 1  # Seeds beyond this are refused by some of the generators below us

@@ -32,6 +32,8 @@ def test_what_a_method_says_for_tables_and_figures_is_no_part_of_a_run() -> None
     assert taking_part("single-vehicle")[-2:] == ("dilu", "codriving")
     assert styles()["dilu"] == ("#cc79a7", "P", "-.")
     assert [key for key in compose(["method=dilu"])["method"] if key.startswith("_")] == ["_target_"]
+    assert "leave it out" in refused("method._style_=red")
+    assert "leave it out" in refused("+method._tables_={baselines: 1}")
 
 
 def test_overrides_of_groups_keys_and_lists() -> None:
