@@ -7,6 +7,7 @@ from contextlib import closing
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
+from signal import SIGINT
 from typing import Any
 
 from codriving.config import experiments_dir, show
@@ -23,6 +24,7 @@ from codriving.experiment.processes import Processes
 from codriving.experiment.progress import show_progress
 from codriving.experiment.remembering import growing, learns
 from codriving.experiment.scoring import scored
+from codriving.experiment.stopping import StopSignal, stopped_by_signals
 from codriving.experiment.threads import Threads
 from codriving.experiment.worker import Job, Objects, Report, SaveEpisode, Unit
 from codriving.reports import (
@@ -58,11 +60,11 @@ from codriving.runs import (
 
 
 class Interrupted(KeyboardInterrupt):
-    """Raised when the user stops a batch, after everything has been put in order."""
+    """Raised when the user or the system stops a batch, after everything has been put in order."""
 
-    def __init__(self, folder: Path, finished: int, planned: int) -> None:
+    def __init__(self, folder: Path, finished: int, planned: int, signal: int = SIGINT) -> None:
         super().__init__(f"stopped with {finished} of {planned} episodes finished")
-        self.folder, self.finished, self.planned = folder, finished, planned
+        self.folder, self.finished, self.planned, self.signal = folder, finished, planned, int(signal)
 
 
 class HaltedError(ModelError):
@@ -168,7 +170,8 @@ def drive(
         failed: list[Report] = []
         todo = missing + unfilmed
         try:
-            with show_progress(Counter(unit.cell for unit in todo), models.usage if models.models else None) as update:
+            usage = models.usage if models.models else None
+            with stopped_by_signals(), show_progress(Counter(unit.cell for unit in todo), usage) as update:
                 for part, launcher, workers in _places(missing, unfilmed, plan, models):
                     failures = FailuresInARow(models.names, models.patience)
                     with closing(launcher.launch(part, job, workers, preload)) as reports:
@@ -181,7 +184,8 @@ def drive(
             finished = len(_records(folder, cells, plan.seeds, records, damaged=[]))
             if isinstance(stop, ModelError):
                 raise HaltedError(stop, folder.path, finished, len(units)) from stop
-            raise Interrupted(folder.path, finished, len(units)) from None
+            number = stop.number if isinstance(stop, StopSignal) else SIGINT
+            raise Interrupted(folder.path, finished, len(units), number) from None
         finally:
             folder.clean()
         everything = _records(folder, cells, plan.seeds, records, errors=True)

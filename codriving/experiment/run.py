@@ -4,6 +4,7 @@ import shlex
 import sys
 from collections import defaultdict
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,7 +19,7 @@ from codriving.reports import print_table
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-INTERRUPTED = 130  # Exit code of a process that the user stopped (128 + SIGINT)
+STOPPED = 128  # Exit code of a process that a signal stopped, less the number of the signal
 
 # The readings of "each CAV generates its expected passing order"; all are reported, none is chosen afterwards.
 OWN_ORDERS = ("own_view", "same_rule", "independent")
@@ -65,7 +66,7 @@ def run_command(
         show_only: Print the config of every cell and drive nothing.
 
     Returns:
-        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
+        Exit code: 0, 1 if episodes ended in an error, or 128 and the number of the signal that stopped it.
 
     Raises:
         UserError: If the config or the run folder cannot be used.
@@ -140,9 +141,11 @@ def stopped(stop: Interrupted | HaltedError, again: str) -> int:
     """Say how to go on with a run that has been stopped."""
     if isinstance(stop, HaltedError):
         raise ModelError(f"{stop.text}; go on with: {again}") from stop
-    print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)
-    print(f"Go on with: {again}", file=sys.stderr)
-    return INTERRUPTED
+    # The terminal may be gone, which is what SIGHUP says.
+    with suppress(OSError):
+        print(f"\nStopped; {stop.finished} of {stop.planned} episodes are finished and kept.", file=sys.stderr)
+        print(f"Go on with: {again}", file=sys.stderr, flush=True)
+    return STOPPED + stop.signal
 
 
 def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None, run: str) -> str:

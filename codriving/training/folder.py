@@ -71,15 +71,18 @@ class Stop:
 
     @contextmanager
     def listening(self) -> Iterator[None]:
-        """Listen for Ctrl-C; a training stops between two episodes, so that its checkpoint is exact."""
+        """Listen for Ctrl-C, SIGTERM and SIGHUP; a training stops between two episodes: its checkpoint is exact."""
 
         def note(signum: int, frame: FrameType | None) -> None:
             if self.wanted:
                 raise KeyboardInterrupt
             self.wanted = True
 
-        before = signal.signal(signal.SIGINT, note)
+        numbers = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+        # What is ignored stays so, as ``nohup`` wants it.
+        before = {n: signal.signal(n, note) for n in numbers if signal.getsignal(n) is not signal.SIG_IGN}
         try:
             yield
         finally:
-            signal.signal(signal.SIGINT, before)
+            for number, handler in before.items():
+                signal.signal(number, handler)

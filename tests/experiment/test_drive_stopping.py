@@ -14,6 +14,7 @@ from test_drive import deterministic
 from toy_plan import EPISODES, toy, toy_plan
 
 from codriving.experiment.drive import drive
+from codriving.experiment.stopping import StopSignal, stopped_by_signals
 
 SCRIPT = Path(__file__).with_name("toy_plan.py")
 DEADLINE = 30.0
@@ -102,16 +103,25 @@ def test_sigkill_loses_only_what_was_in_flight(tmp_path: Path, reference: dict[s
     assert not list((tmp_path / "out").rglob(".partial-*"))
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_ctrl_c_keeps_what_is_finished_and_says_how_to_go_on(
-    tmp_path: Path, reference: dict[str, bytes], workers: int
+@pytest.mark.parametrize(
+    ("number", "workers", "code"),
+    [
+        (signal.SIGINT, 1, 130),
+        (signal.SIGINT, 2, 130),
+        (signal.SIGTERM, 1, 143),
+        (signal.SIGTERM, 2, 143),
+        (signal.SIGHUP, 2, 129),
+    ],
+)
+def test_a_signal_keeps_what_is_finished_and_says_how_to_go_on(
+    tmp_path: Path, reference: dict[str, bytes], number: signal.Signals, workers: int, code: int
 ) -> None:
     with Started(tmp_path, workers) as batch:
         if workers > 1:
             assert not any(feels_ctrl_c(pid) for pid in batch.workers)
-        # A terminal sends it to the whole group, workers included.
-        out, err = batch.end(lambda: os.killpg(batch.process.pid, signal.SIGINT))
-    assert batch.process.returncode == 130
+        # A terminal sends it to the whole group, workers included, and so does a service manager.
+        out, err = batch.end(lambda: os.killpg(batch.process.pid, number))
+    assert batch.process.returncode == code
     assert out == ""
     assert f"Stopped; 4 of {EPISODES} episodes are finished and kept." in err
     assert err.splitlines()[-1] == "Go on with: codriving run scenario=toy run=mine"
@@ -120,3 +130,25 @@ def test_ctrl_c_keeps_what_is_finished_and_says_how_to_go_on(
     resumed = drive(toy_plan(tmp_path / "out"), build=toy())
     assert resumed.kept == 4
     assert deterministic(resumed.folder) == reference
+
+
+def test_a_single_process_may_be_asked_to_stop_and_its_workers_go_with_it(tmp_path: Path) -> None:
+    with Started(tmp_path, 2) as batch:
+        _, err = batch.end(batch.process.terminate)
+    assert batch.process.returncode == 143
+    assert err.splitlines()[-1] == "Go on with: codriving run scenario=toy run=mine"
+
+
+def test_signals_are_as_before_after_a_batch_and_what_is_ignored_stays_ignored() -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with stopped_by_signals():
+            # nohup ignores it, and so does all that is started by it.
+            assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+            with pytest.raises(StopSignal, match="SIGTERM"):
+                signal.raise_signal(signal.SIGTERM)
+            # What follows is not broken off by a second one.
+            signal.raise_signal(signal.SIGTERM)
+        assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+    finally:
+        signal.signal(signal.SIGHUP, before)
