@@ -103,6 +103,14 @@ class CaseMemory(ABC):
     learns: bool = False  # Whether episodes learn from one another, so that they have to be driven in order
     reflections: int = 0  # Mistakes of an episode whose lessons a language model writes at most
 
+    def prepare(self) -> None:
+        """Refuse before the first episode what would fail in each of them.
+
+        Raises:
+            UserError: With what is wrong and its cure.
+        """
+        return None
+
     def begin(self, seed: int) -> None:
         """Begin an episode."""
         return None

@@ -12,7 +12,7 @@ from typing import Any
 
 from codriving.config import experiments_dir, show
 from codriving.datatypes import Ending, EpisodeRecord
-from codriving.errors import DamagedEpisodeError, ModelError, ModelUnavailableError
+from codriving.errors import DamagedEpisodeError, MemoryFileError, ModelError, ModelUnavailableError, UserError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell, with_metrics
@@ -22,7 +22,7 @@ from codriving.experiment.objects import BuildObjects, modules_to_preload
 from codriving.experiment.plan import Plan
 from codriving.experiment.processes import Processes
 from codriving.experiment.progress import show_progress
-from codriving.experiment.remembering import growing, learns
+from codriving.experiment.remembering import growing, learns, prepare
 from codriving.experiment.scoring import scored
 from codriving.experiment.stopping import StopSignal, stopped_by_signals
 from codriving.experiment.threads import Threads
@@ -68,9 +68,9 @@ class Interrupted(KeyboardInterrupt):
 
 
 class HaltedError(ModelError):
-    """Raised when a batch stops since its language model must not be used any more; everything is in order."""
+    """Raised when a batch stops since its language model or its memory cannot be used; everything is in order."""
 
-    def __init__(self, reason: ModelError, folder: Path, finished: int, planned: int) -> None:
+    def __init__(self, reason: UserError, folder: Path, finished: int, planned: int) -> None:
         self.text = f"{str(reason).rstrip('.;')}; {finished} of {planned} episodes are finished and kept"
         super().__init__(f"{self.text} in {folder}")
         self.folder = folder
@@ -140,6 +140,7 @@ def drive(
     if is_new:
         # Before the folder is made: a model that cannot be reached leaves nothing behind.
         found.preflight()
+        prepare(cell.resolved for cell in plan.driven)
     asked = manifest_of(plan, found.served)
     path = plan.output / plan.experiment
     path = path / plan.run if plan.run else new_run_path(path, datetime.now())
@@ -164,6 +165,7 @@ def drive(
         resolved = {
             name: with_metrics(config, [c for c in shown if c.folder == name]) for name, config in resolved.items()
         }
+        prepare(resolved[name] for name in dict.fromkeys(unit.cell for unit in missing))
         save = SaveEpisode(folder.path, variables_in([cell.resolved for cell in cells]))
         job = Job({cell.folder: cell.labels for cell in cells}, (build or BuildObjects)(resolved), save, film)
         preload = [*modules_to_preload(plan.configs.values()), *(["codriving.animation.film"] if film else [])]
@@ -180,9 +182,9 @@ def drive(
                                 failed.append(report)
                             failures.note(report)
                             update(report.unit.cell, report.ending is Ending.ERROR)
-        except (KeyboardInterrupt, ModelError) as stop:
+        except (KeyboardInterrupt, ModelError, MemoryFileError) as stop:
             finished = len(_records(folder, cells, plan.seeds, records, damaged=[]))
-            if isinstance(stop, ModelError):
+            if isinstance(stop, UserError):
                 raise HaltedError(stop, folder.path, finished, len(units)) from stop
             number = stop.number if isinstance(stop, StopSignal) else SIGINT
             raise Interrupted(folder.path, finished, len(units), number) from None

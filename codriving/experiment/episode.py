@@ -8,7 +8,7 @@ from time import perf_counter, thread_time
 from typing import Any
 
 from codriving.datatypes import Ending, EpisodeRecord, Method, Outcome, Participant, Score, Simulator, Trajectory
-from codriving.errors import ModelError, ModelUnavailableError
+from codriving.errors import MemoryFileError, ModelError, ModelUnavailableError
 from codriving.metrics import Scorer
 
 
@@ -68,7 +68,7 @@ def run_episode(
     """Drive one episode and score it.
 
     What goes wrong becomes a record that ends in ``error``. An interruption by the user passes through, and so does a
-    language model that must not be used any more: neither is this episode's fault.
+    language model or a memory that cannot be used any more: none of them is this episode's fault.
     """
     log, started, trace = _EpisodeLog(), perf_counter(), ""
     trajectory: Trajectory | None = None
@@ -91,7 +91,7 @@ def run_episode(
         trajectory = environment.trajectory()
         if outcome.ending is not Ending.ERROR:
             scores = {n: scorer.score(trajectory, outcome, environment.road_map) for n, scorer in metrics.items()}
-    except ModelError:
+    except (ModelError, MemoryFileError):
         raise
     except Exception as error:
         scores = {}

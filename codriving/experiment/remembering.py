@@ -1,6 +1,6 @@
 """The memory of a cell: a snapshot is noted by what it holds, and one that learns grows in the run folder."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,13 @@ def pinned(resolved: Mapping[str, Any]) -> dict[str, Any]:
     node = resolved["memory"]
     memory = memory_of(resolved) if node is not None and node.get("snapshot") == AUTO else None
     return dict(resolved) if memory is None else {**resolved, "memory": {**node, "snapshot": memory.digest}}
+
+
+def prepare(configs: Iterable[Mapping[str, Any]]) -> None:
+    """Try the memory of each cell before anything is driven, its file and what turns situations into vectors."""
+    for config in configs:
+        if (memory := memory_of(config)) is not None:
+            memory.prepare()
 
 
 def learns(resolved: Mapping[str, Any]) -> bool:

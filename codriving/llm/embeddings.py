@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Sequence
+from dataclasses import replace
 from math import isfinite
 from typing import Any
 
@@ -53,23 +54,41 @@ class EmbeddingModel:
         if not texts:
             return []
         try:
-            return loop().run(self._embed(list(texts)))
+            return loop().run(self._embed(list(texts), ATTEMPTS))
         except CallError as fault:
             failed = fault
-        where = self.api_base or f"the provider of {self.model}"
         if failed.kind.passes and failed.kind is not FaultKind.UNREACHABLE:
-            raise ModelUnavailableError(f"{self.model}: {where} {failed}")
-        raise ModelError(
-            f"the embedding model {self.model} cannot be used: {where} {failed}; check "
+            raise ModelUnavailableError(f"{self.model}: {self._where} {failed}")
+        raise self._unusable(failed)
+
+    def try_out(self, text: str) -> list[list[float]]:
+        """Embed one text, before anything depends on it, with one more attempt at most.
+
+        Raises:
+            ModelError: If the server does not answer, or must be mended.
+        """
+        try:
+            return loop().run(self._embed([text], 2))
+        except CallError as fault:
+            failed = fault
+        raise self._unusable(failed)
+
+    @property
+    def _where(self) -> str:
+        return self.api_base or f"the provider of {self.model}"
+
+    def _unusable(self, failed: CallError) -> ModelError:
+        return ModelError(
+            f"the embedding model {self.model} cannot be used: {self._where} {failed}; check "
             "memory.embedding_model, memory.embedding_api_base and memory.embedding_key_env"
         )
 
-    async def _embed(self, texts: list[str]) -> list[list[float]]:
+    async def _embed(self, texts: list[str], attempts: int) -> list[list[float]]:
         names = ("embedding model", "memory.embedding_api_base", "memory.embedding_key_env")
         key = read_key(self.key_env, self.api_base, *names)
         await load_litellm()
 
-        response, _ = await self._retries.run(
+        response, _ = await replace(self._retries, attempts=attempts).run(
             lambda: self._retries.within_deadline(self._send(texts, key)), lambda fault: fault.kind.passes
         )
         return self._vectors(response, len(texts))

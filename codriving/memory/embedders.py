@@ -5,6 +5,7 @@ import zlib
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from math import asinh, cos, log, log1p, pi, sin
 
@@ -30,6 +31,10 @@ class Embedder:
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
         """Return one vector a description, each of length 1."""
         raise NotImplementedError
+
+    def try_out(self) -> None:
+        """Refuse before the first episode what would fail in each: no key, no server, no such model."""
+        return None
 
 
 def unit(vectors: NDArray[np.float64]) -> Vectors:
@@ -200,8 +205,13 @@ class ModelEmbedder(Embedder):
         from codriving.llm import EmbeddingModel
 
         super().__init__(f"{LITELLM} {server.model}", None)
+        self._server = server
         self._model = EmbeddingModel(server.model, server.api_base, server.api_key_env, server.deadline)
         self._known: dict[str, list[float]] = {}
+
+    def try_out(self) -> None:
+        """Embed one short text, once a process, so that the length of the vectors is known."""
+        self.dimension = _dimension(self._server)
 
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
         """Return one vector a description, each of length 1."""
@@ -217,6 +227,15 @@ class ModelEmbedder(Embedder):
         if not texts:
             return np.zeros((0, self.dimension or 1), dtype=np.float32)
         return unit(np.array([self._known[text] for text in texts], dtype=np.float64))
+
+
+@lru_cache(maxsize=8)
+def _dimension(server: EmbeddingServer) -> int:
+    """Ask a server for one vector; what fails is asked again the next time."""
+    from codriving.llm import EmbeddingModel
+
+    model = EmbeddingModel(server.model, server.api_base, server.api_key_env, server.deadline)
+    return len(model.try_out("A vehicle waits.")[0])
 
 
 # Embedders that need nothing else.

@@ -44,7 +44,18 @@ class FrozenMemory(RetrievalMemory):
                 f"{file} does not hold the snapshot {snapshot[:12]} but {self.digest[:12]}: it has changed since; "
                 "restore it, or set memory.snapshot=auto and another run=<name>"
             )
+        self._path = path
         self.label = f"frozen {self.digest[:8]}, {found.interactions} interactions"
+
+    def prepare(self) -> None:
+        """Try the embedder, whose vectors have to be as long as those of the file."""
+        self._embedder.try_out()
+        made = self._embedder.dimension
+        if self._snapshot is not None and made is not None and made != self._snapshot.dimension:
+            raise MemoryFileError(
+                f"{self._path} holds vectors of {self._snapshot.dimension} numbers, and {self._embedder.name} makes "
+                f"{made}; name the model that it was made with, or build it again"
+            )
 
 
 @lru_cache(maxsize=8)

@@ -47,6 +47,13 @@ class OnlineMemory(RetrievalMemory):
         self.file, self.duplicates = file, duplicates
         self.reflections = reflections if reflection == "llm" else 0
 
+    def prepare(self) -> None:
+        """Try the embedder and the file, before the first episode."""
+        self._embedder.try_out()
+        if self.file is not None:
+            with self._store() as store:
+                store.check()
+
     def begin(self, seed: int) -> None:
         """Begin an episode: what was learnt with smaller seeds is what can be recalled."""
         with self._store() as store:

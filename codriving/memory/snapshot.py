@@ -1,5 +1,6 @@
 """What is recalled from: the experiences of a file, or of its first interactions, as they were when it was opened."""
 
+import dataclasses
 import hashlib
 import sqlite3
 from collections.abc import Sequence
@@ -9,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from codriving.datatypes import Action, Experience, Memory, Verdict
+from codriving.datatypes import Action, Effect, Experience, Memory, Verdict
 from codriving.errors import MemoryFileError
 from codriving.memory.describe import brief
 from codriving.memory.embedders import Embedder, Vectors
@@ -55,7 +56,8 @@ class Snapshot:
         self.experiences = tuple(experiences)
         self.digest, self.interactions = digest, interactions
         self._by_id = {entry.id: entry for entry in self.experiences}
-        self._index = Index(vectors.shape[1])
+        self.dimension = vectors.shape[1]
+        self._index = Index(self.dimension)
         self._index.add(list(self._by_id), vectors)
 
     def __len__(self) -> int:
@@ -75,8 +77,8 @@ class Snapshot:
 def open_snapshot(path: Path, embedder: Embedder, interactions: int | None = None) -> Snapshot:
     """Read a file, or what it held after its first interactions."""
     with closing(open_file(path, write=False)) as connection:
-        dimension = check_embedder(path, about(connection), embedder)
         try:
+            dimension = check_embedder(path, about(connection), embedder)
             limit = -1 if interactions is None else interactions
             chosen = [n for (n,) in connection.execute("SELECT id FROM interactions ORDER BY id LIMIT ?", (limit,))]
             if interactions is not None and len(chosen) < interactions:
@@ -85,12 +87,13 @@ def open_snapshot(path: Path, embedder: Embedder, interactions: int | None = Non
                     "build a larger one"
                 )
             return load(connection, dimension, embedder.name, chosen)
-        except (sqlite3.Error, ValueError) as error:
+        except (sqlite3.Error, LookupError, ValueError, TypeError, OverflowError) as error:
             raise damaged(path, error) from error
 
 
 def load(connection: sqlite3.Connection, dimension: int, embedder: str, chosen: Sequence[int]) -> Snapshot:
     """Read what was experienced in some interactions."""
+    _refuse_damaged(connection)
     digest = hashlib.sha256(f"{embedder} {dimension}\n".encode())
     wanted = set(chosen)
     for row in connection.execute("SELECT * FROM interactions ORDER BY id"):
@@ -99,7 +102,6 @@ def load(connection: sqlite3.Connection, dimension: int, embedder: str, chosen: 
     seen = _sightings(connection, chosen)
     found: list[StoredExperience] = []
     blobs: list[bytes] = []
-    _refuse_damaged(connection)
     for number, vector, *rest in connection.execute(f"SELECT id, {', '.join(COLUMNS)} FROM experiences ORDER BY id"):
         if number not in seen:
             continue
@@ -125,12 +127,53 @@ def _sightings(connection: sqlite3.Connection, chosen: Sequence[int]) -> dict[in
     return {experience: (count, step, ego) for experience, count, step, ego, _ in rows}
 
 
+# What a row has to hold so that it can be recalled from, by table.
+_WHOLE = {
+    "interactions": ("seed", ("scenario", "method", "variant", "reasoner"), ""),
+    "sightings": (
+        "step",
+        ("ego",),
+        "experience IN (SELECT id FROM experiences) AND interaction IN (SELECT id FROM interactions)",
+    ),
+    "experiences": (
+        "id",
+        ("action", "verdict", "scene", "conflict", "passing", "numbers", "kinds", "effect", "lesson"),
+        "typeof(vector) = 'blob' AND json_valid(numbers) AND json_valid(kinds) AND json_valid(effect)",
+    ),
+}
+_NAMED = ("mine", "its", "my_ttcp", "its_ttcp", "dttcp")  # Numbers that belong to a conflict
+
+
 def _refuse_damaged(connection: sqlite3.Connection) -> None:
     """Find in one go what could not be read later."""
+    for table, (number, texts, more) in _WHOLE.items():
+        holds = [
+            f"typeof({number}) = 'integer'",
+            *(f"typeof({name}) = 'text'" for name in texts),
+            *([more] * bool(more)),
+        ]
+        _refuse(connection, table, " AND ".join(holds))
     actions, verdicts = (", ".join(f"'{member.value}'" for member in kind) for kind in (Action, Verdict))
-    (broken,) = connection.execute(
-        "SELECT count(*) FROM experiences WHERE NOT (json_valid(numbers) AND json_valid(kinds) AND json_valid(effect)) "
-        f"OR action NOT IN ({actions}) OR verdict NOT IN ({verdicts})"
-    ).fetchone()
+    fields = ", ".join(f"'{field.name}'" for field in dataclasses.fields(Effect))
+    told = " AND ".join(f"json_type(numbers, '$.{name}') IS NOT NULL" for name in _NAMED)
+    _refuse(
+        connection,
+        "experiences",
+        f"action IN ({actions}) AND verdict IN ({verdicts}) "
+        "AND json_type(numbers) = 'object' AND json_type(kinds) = 'object' AND json_type(effect) = 'object' "
+        "AND NOT EXISTS (SELECT 1 FROM json_each(numbers) WHERE type NOT IN ('integer', 'real')) "
+        "AND NOT EXISTS (SELECT 1 FROM json_each(kinds) WHERE type != 'text') "
+        f"AND NOT EXISTS (SELECT 1 FROM json_each(effect) WHERE key NOT IN ({fields}) OR type IN ('text', 'array', "
+        "'object')) "
+        "AND json_type(numbers, '$.speed') IS NOT NULL AND json_extract(kinds, '$.relation') IS NOT NULL "
+        "AND iif(json_extract(kinds, '$.relation') = 'none', "
+        "json_type(numbers, '$.lead_gap') IS NULL OR json_type(numbers, '$.lead_speed') IS NOT NULL, "
+        f"json_extract(kinds, '$.order') IN ('first', 'second', 'none') AND json_type(kinds, '$.driver') = 'text' "
+        f"AND {told})",
+    )
+
+
+def _refuse(connection: sqlite3.Connection, table: str, holds: str) -> None:
+    (broken,) = connection.execute(f"SELECT count(*) FROM {table} WHERE NOT coalesce({holds}, 0)").fetchone()
     if broken:
-        raise ValueError(f"{broken} experiences cannot be read")
+        raise ValueError(f"{broken} {table} cannot be read")

@@ -30,6 +30,10 @@ from codriving.memory.store_file import (
 NEIGHBOURS = 16  # Nearest experiences among which one with the same action and verdict is looked for
 
 
+class _TriedError(Exception):
+    """Takes back what was written to see whether it can be."""
+
+
 class MemoryStore:
     """A file of memories that is open for writing; a context manager. Several may have the same file open."""
 
@@ -58,6 +62,20 @@ class MemoryStore:
             number = int(connection.execute(insert, astuple(interaction)).lastrowid or 0)
             return sum(self._keep(connection, number, *pair) for pair in zip(experiences, made, strict=True))
 
+    def check(self) -> None:
+        """Refuse a file that cannot be read or written, before anything depends on it; one that is not there is made.
+
+        Raises:
+            MemoryFileError: If it, or the folder in which it is, cannot be used.
+        """
+        if self._connection is None:
+            self._open()
+        self.snapshot()
+        with suppress(_TriedError), self._transaction() as connection:
+            # The journal, beside the file, is made by the first change alone.
+            connection.execute("INSERT INTO about VALUES ('tried', '')")
+            raise _TriedError
+
     def snapshot(self, before: int | None = None) -> Snapshot:
         """Return what can be recalled now."""
         if self._connection is None:
@@ -66,7 +84,7 @@ class MemoryStore:
             rows = self._connection.execute("SELECT id, seed FROM interactions ORDER BY id").fetchall()
             chosen = [number for number, seed in rows if before is None or seed < before]
             return load(self._connection, self._dimension, self.embedder.name, chosen)
-        except (sqlite3.Error, ValueError) as error:
+        except (sqlite3.Error, LookupError, ValueError, TypeError, OverflowError) as error:
             raise damaged(self.path, error) from error
 
     def close(self) -> None:
@@ -87,6 +105,9 @@ class MemoryStore:
         self._connection = open_file(self.path, write=True)
         try:
             self._dimension = check_embedder(self.path, about(self._connection), self.embedder)
+        except sqlite3.Error as error:
+            self.close()
+            raise damaged(self.path, error) from error
         except BaseException:
             self.close()
             raise

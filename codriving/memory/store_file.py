@@ -3,6 +3,7 @@
 import json
 import sqlite3
 from collections.abc import Mapping
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -74,15 +75,30 @@ def open_file(path: Path, write: bool) -> sqlite3.Connection:
                     f"{path} was written by another version (layout {layout}, not {LAYOUT}); build it again with this "
                     "one"
                 )
+            _check_columns(path, connection)
         except BaseException:
             connection.close()
             raise
     except sqlite3.Error as error:
+        if _is_locked(error):
+            raise _locked(path) from error
         raise MemoryFileError(
             f"{path} cannot be read as a file of memories ({error}); name another one, or make one with codriving "
             "memory build"
         ) from error
     return connection
+
+
+def _check_columns(path: Path, connection: sqlite3.Connection) -> None:
+    """Refuse a file whose tables are not those that are written."""
+    with closing(sqlite3.connect(":memory:")) as ours:
+        ours.executescript(_TABLES)
+        for (table,) in ours.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name").fetchall():
+            query = f"SELECT name FROM pragma_table_info('{table}')"
+            wanted, found = ([name for (name,) in each.execute(query)] for each in (ours, connection))
+            if wanted != found:
+                columns = f"has the columns {', '.join(found)}" if found else "is missing"
+                raise damaged(path, ValueError(f"the table {table} {columns}, and not {', '.join(wanted)}"))
 
 
 def about(connection: sqlite3.Connection) -> dict[str, str]:
@@ -106,14 +122,30 @@ def check_embedder(path: Path, said: Mapping[str, str], embedder: Embedder) -> i
     return int(dimension)
 
 
+def _is_locked(error: Exception) -> bool:
+    return isinstance(error, sqlite3.Error) and "locked" in str(error)
+
+
+def _locked(path: Path) -> MemoryFileError:
+    return MemoryFileError(
+        f"{path} is locked by another program that writes it; wait until that has ended or close it, then run again"
+    )
+
+
 def damaged(path: Path, error: Exception) -> MemoryFileError:
     """The error for a file whose contents cannot be used."""
+    if _is_locked(error):
+        return _locked(path)
     return MemoryFileError(f"{path} is damaged ({error}); build it again, or name another one")
 
 
 def unwritable(path: Path, error: Exception) -> MemoryFileError:
     """The error for a file that cannot be written."""
-    return MemoryFileError(f"cannot write the memory {path}: {error}; make room, or name another file")
+    if _is_locked(error):
+        return _locked(path)
+    return MemoryFileError(
+        f"cannot write the memory {path}: {error}; permit writing it and its folder, make room, or name another file"
+    )
 
 
 # The columns of ``experiences`` after the number, in their order.
@@ -147,6 +179,10 @@ def vectors_of(blobs: list[bytes], dimension: int) -> Vectors:
     vectors = np.frombuffer(b"".join(blobs), dtype="<f4").reshape(len(blobs), dimension).astype(np.float32)
     if not np.isfinite(vectors).all():
         raise ValueError("a vector holds a number that is not finite")
+    # A text without a known word gives zeros.
+    lengths = np.einsum("ij,ij->i", vectors, vectors)
+    if not ((np.abs(lengths - 1) < 1e-3) | (lengths == 0)).all():
+        raise ValueError("a vector does not have the length 1")
     return vectors
 
 

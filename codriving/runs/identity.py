@@ -22,7 +22,6 @@ WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render", 
 
 # Keys of ``llm`` likewise: with them a run goes on after a limit has been raised, or is replayed under its name.
 HOW_A_MODEL_IS_ASKED = (
-    "api_key_env",
     "attempts",
     "cache",
     "cache_file",
@@ -90,7 +89,7 @@ def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
         values.pop(LIMITS, None)
     dropped: dict[str, Sequence[str]] = {"llm": HOW_A_MODEL_IS_ASKED}
     if snapshot_of(resolved):
-        dropped[MEMORY] = (SNAPSHOT, "file", "embedding_deadline")
+        dropped[MEMORY] = (SNAPSHOT, "file")
     for key, names in dropped.items():
         if isinstance(node := values.get(key), Mapping):
             values[key] = {name: value for name, value in node.items() if name not in names}
@@ -108,8 +107,15 @@ def _plain(node: object, resolved: Mapping[str, Any]) -> object:
     return {
         name: _plain(value, resolved)
         for name, value in node.items()
-        if name != "_target_" and not (name in _COPIED and name in resolved and value == resolved[name])
+        if name != "_target_"
+        and not _tells_how(str(name))
+        and not (name in _COPIED and name in resolved and value == resolved[name])
     }
+
+
+def _tells_how(name: str) -> bool:
+    """Whether a key names the environment variable of a key, or how long a server may take."""
+    return name.endswith("_env") or name == "embedding_deadline"
 
 
 def snapshot_of(resolved: Mapping[str, Any]) -> tuple[NamedFile, ...]:

@@ -2,17 +2,20 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from remembered import description, experience, filled
 
 from codriving.config.compose import compose
-from codriving.errors import ConfigError, MemoryFileError
+from codriving.datatypes.experience import Interaction
+from codriving.errors import ConfigError, MemoryFileError, ModelError
 from codriving.experiment.memory_build import BUILD, build_points
 from codriving.experiment.memory_pages import merge_page, search_page, show_page
 from codriving.experiment.remembering import growing, learns, pinned
 from codriving.experiment.run import run_command, run_experiment
 from codriving.memory.reading import read_memory
+from codriving.memory.store import MemoryStore
 from codriving.runs.identity import driving_values, snapshot_of
 
 
@@ -179,3 +182,41 @@ def test_tables_with_a_memory_are_the_same_for_any_number_of_workers(
         kept[-1]["memory", "bytes"] = file.read_bytes()
     assert len(kept[0]) == 2 * (2 + 3 * 3) + 1
     assert kept[0] == kept[1]
+
+
+def short(tmp_path: Path, *more: str) -> list[str]:
+    """A run of three short episodes that learn."""
+    settings = ["run=one", "launcher=serial", "scenario.time_limit=1", "memory=online"]
+    return [f"output={tmp_path / 'out'}", *settings, *more, *([] if "episodes=4" in more else ["episodes=3"])]
+
+
+def test_a_memory_that_cannot_be_used_is_refused_before_the_first_episode(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(MemoryFileError, match=r"cannot write the memory .*/file/m\.sqlite"):
+        run_experiment(short(tmp_path, f"memory.file={tmp_path / 'file' / 'm.sqlite'}"))
+    assert not (tmp_path / "out").exists()
+    assert run_experiment(short(tmp_path)) == 0
+    (memory,) = (tmp_path / "out").glob("run/one/memory/*.sqlite")
+    memory.write_bytes(b"garbage " * 100)
+    with pytest.raises(MemoryFileError, match="cannot be read as a file of memories"):
+        run_experiment(short(tmp_path, "episodes=4"))
+    assert len(list((tmp_path / "out").glob("run/one/episodes/*/*"))) == 3
+
+
+def test_a_memory_that_fails_meanwhile_ends_the_batch_and_keeps_what_is_finished(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    add = MemoryStore.add
+
+    def fails(self: MemoryStore, learnt: Interaction, *args: Any) -> int:
+        if learnt.seed == 1:
+            raise MemoryFileError("cannot write the memory: database or disk is full; make room")
+        return add(self, learnt, *args)
+
+    monkeypatch.setattr(MemoryStore, "add", fails)
+    with pytest.raises(
+        ModelError, match=r"disk is full; make room; 1 of 3 episodes .* kept; go on with: codriving run"
+    ):
+        run_experiment(short(tmp_path))
+    monkeypatch.undo()
+    assert run_experiment(short(tmp_path)) == 0

@@ -159,13 +159,6 @@ def test_a_file_that_was_changed_is_refused(statement: str, said: str, tmp_path:
         opened(path)
 
 
-def test_what_cannot_be_read_is_said_when_it_is_read(tmp_path: Path) -> None:
-    path = filled(tmp_path / "m.sqlite", [experience()])
-    edit(path, "UPDATE experiences SET effect = '{\"other\": 1}'")
-    with pytest.raises(MemoryFileError, match="experience 1 of the memory is damaged"):
-        _ = opened(path).experiences[0].experience
-
-
 def test_other_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(MemoryFileError, match="there is no file of memories"):
         opened(tmp_path / "none.sqlite")

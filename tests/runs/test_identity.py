@@ -136,3 +136,12 @@ def test_a_cell_of_release_0_1_is_told_by_labels_and_values() -> None:
     assert not same_cell(replace(there, method="fcfs"), here)
     assert not same_cell(replace(there, settings={"a": "2"}), here)
     assert not same_cell(replace(there, files=(replace(MEMORY, sha256="cc"),)), here)
+
+
+def test_names_of_keys_and_patience_are_no_part_of_a_cell() -> None:
+    memory = {"embedder": "litellm", "embedding_key_env": "ONE_KEY", "embedding_deadline": 30.0}
+    other = {"embedder": "litellm", "embedding_key_env": None, "embedding_deadline": 5.0}
+    llm = {"model": "m", "api_key_env": "ONE_KEY", "part": {"their_key_env": "A"}}
+    other_llm = {"model": "m", "api_key_env": "TWO_KEY", "part": {"their_key_env": "B"}}
+    assert driving_values({"memory": memory, "llm": llm}) == driving_values({"memory": other, "llm": other_llm})
+    assert driving_values({"memory": {**memory, "embedder": "words"}}) != driving_values({"memory": memory})
