@@ -22,7 +22,7 @@ from codriving.experiment.objects import BuildObjects, modules_to_preload
 from codriving.experiment.plan import Plan
 from codriving.experiment.processes import Processes
 from codriving.experiment.progress import show_progress
-from codriving.experiment.remembering import growing, learns, prepare
+from codriving.experiment.remembering import growing, learns, merged_notes, prepare
 from codriving.experiment.scoring import scored
 from codriving.experiment.stopping import StopSignal, stopped_by_signals
 from codriving.experiment.threads import Threads
@@ -190,6 +190,8 @@ def drive(
             raise Interrupted(folder.path, finished, len(units), number) from None
         finally:
             folder.clean()
+        for note in merged_notes(resolved[name] for name in dict.fromkeys(unit.cell for unit in missing)):
+            print(note, file=sys.stderr)
         everything = _records(folder, cells, plan.seeds, records, errors=True)
         if gone := [unit for unit in units if unit not in everything]:
             raise removed(folder.path, f"{len(gone)} of {len(units)} episodes are not there any more")

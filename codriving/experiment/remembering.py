@@ -1,14 +1,17 @@
 """The memory of a cell: a snapshot is noted by what it holds, and one that learns grows in the run folder."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from codriving.experiment.objects import memory_of
+from codriving.memory import read_memory
 
 MEMORIES = "memory"  # Folder, in the run folder, of the memories that grow in it; one file a cell
 
 AUTO = "auto"
+
+FEW = 10  # Of fewer experiences nothing can be said
 
 
 def pinned(resolved: Mapping[str, Any]) -> dict[str, Any]:
@@ -35,6 +38,22 @@ def growing(resolved: Mapping[str, Any], run: Path, cell: str) -> dict[str, Any]
     if not learns(resolved) or resolved["memory"].get("file") is not None:
         return dict(resolved)
     return {**resolved, "memory": {**resolved["memory"], "file": str(memory_file(run, cell))}}
+
+
+def merged_notes(configs: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+    """Say of which memory more than half of what was experienced is not told apart."""
+    for config in configs:
+        node = config["memory"] or {}
+        if not learns(config) or "duplicates" not in node or not (path := Path(node["file"]).expanduser()).exists():
+            continue
+        kept = read_memory(path).snapshot.experiences
+        made = sum(entry.count for entry in kept)
+        if made >= FEW and 2 * len(kept) < made:
+            yield (
+                f"{path}: of {made} experiences only {len(kept)} are kept, since the others are too like one of them; "
+                f"raise memory.duplicates, which is {node['duplicates']}, or choose another memory.embedder, and build "
+                "it again"
+            )
 
 
 def memory_file(run: Path, cell: str) -> Path:

@@ -17,6 +17,8 @@ from codriving.errors import ConfigError
 
 Vectors = NDArray[np.float32]
 
+LITELLM = "litellm"  # The word for an embedding model through LiteLLM
+
 
 class Embedder:
     """Turns descriptions into vectors; this base class only names an embedder whose vectors are there already.
@@ -27,6 +29,9 @@ class Embedder:
 
     def __init__(self, name: str, dimension: int | None) -> None:
         self.name, self.dimension = name, dimension
+        # Whether the thresholds of the config are meant for its cosines. What is like for one embedding model is not
+        # for another: of some, all texts of traffic scenes have a cosine of 0.9.
+        self.calibrated = not name.startswith(f"{LITELLM} ")
 
     def embed(self, descriptions: Sequence[Description]) -> Vectors:
         """Return one vector a description, each of length 1."""
@@ -146,8 +151,6 @@ def _put(places: NDArray[np.float64], number: Number, value: float | None) -> No
 
 
 DIMENSION = 256
-
-LITELLM = "litellm"  # The word for an embedding model through LiteLLM
 
 CACHED = 20_000  # Texts whose vectors are remembered
 

@@ -26,4 +26,6 @@ class RetrievalMemory(CaseMemory):
         if not self._snapshot or not situations:
             return [()] * len(situations)
         vectors = self._embedder.embed(list(map(describe, situations)))
-        return self._snapshot.search(vectors, self._shots, self._least_similarity)
+        least = self._least_similarity
+        least = least if self._embedder.calibrated else self._snapshot.equivalent(least)
+        return self._snapshot.search(vectors, self._shots, least)

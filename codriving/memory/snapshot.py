@@ -10,12 +10,16 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from codriving.datatypes import Action, Effect, Experience, Memory, Verdict
 from codriving.errors import MemoryFileError
 from codriving.memory.describe import brief
-from codriving.memory.embedders import Embedder, Vectors
+from codriving.memory.embedders import Embedder, FeatureEmbedder, Vectors
 from codriving.memory.index import Index
 from codriving.memory.store_file import COLUMNS, about, check_embedder, damaged, from_row, open_file, vectors_of
+
+SAMPLE = 300  # Experiences, the oldest, by which similarities of embedders are compared
 
 
 @dataclass
@@ -59,6 +63,8 @@ class Snapshot:
         self.dimension = vectors.shape[1]
         self._index = Index(self.dimension)
         self._index.add(list(self._by_id), vectors)
+        self._sample = vectors[:SAMPLE]
+        self._least: dict[float, float] = {}
 
     def __len__(self) -> int:
         """Number of experiences."""
@@ -69,9 +75,29 @@ class Snapshot:
         hits = self._index.search(queries, shots)
         return [tuple(self._memory(*hit) for hit in found if hit[1] >= least) for found in hits]
 
+    def equivalent(self, least: float) -> float:
+        """Translate a similarity by ``features`` into one by the vectors of this file.
+
+        It is the cosine that as many pairs of experiences reach, so that as large a share of them counts as alike.
+        """
+        if least not in self._least:
+            told = [entry.experience.description for entry in self.experiences[:SAMPLE]]
+            above, own = (_pairs(vectors) for vectors in (FeatureEmbedder().embed(told), self._sample))
+            alike = int((above >= least).sum())
+            # Between the last that reaches it and the first that does not; without pairs it is what was given.
+            edges = [*own[alike - 1 : alike], *own[alike : alike + 1]] if alike else [*own[:1], *[1.0] * bool(len(own))]
+            self._least[least] = sum(map(float, edges)) / len(edges) if edges else least
+        return self._least[least]
+
     def _memory(self, number: int, similarity: float) -> Memory:
         entry = self._by_id[number]
         return Memory(number, entry.text, entry.experience.action, entry.experience.verdict, similarity, entry.count)
+
+
+def _pairs(vectors: Vectors) -> Vectors:
+    """The cosines of all pairs, the largest first."""
+    every: Vectors = (vectors @ vectors.T)[np.triu_indices(len(vectors), 1)]
+    return np.sort(every)[::-1]
 
 
 def open_snapshot(path: Path, embedder: Embedder, interactions: int | None = None) -> Snapshot:

@@ -1,5 +1,6 @@
 """A memory that grows: one SQLite file is the truth, and what is alike is kept once with a count."""
 
+import json
 import sqlite3
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
@@ -9,9 +10,9 @@ from typing import Self
 
 import numpy as np
 
-from codriving.datatypes import Experience, Interaction
+from codriving.datatypes import Description, Experience, Interaction
 from codriving.errors import MemoryFileError
-from codriving.memory.embedders import Embedder, Vectors
+from codriving.memory.embedders import Embedder, FeatureEmbedder, Vectors
 from codriving.memory.index import Index
 from codriving.memory.snapshot import Snapshot, load
 from codriving.memory.store_file import (
@@ -26,6 +27,9 @@ from codriving.memory.store_file import (
     unwritable,
     vectors_of,
 )
+
+# What tells duplicates where the embedder's own cosines have no known meaning: the numbers of the situations.
+_ALIKE = FeatureEmbedder()
 
 NEIGHBOURS = 16  # Nearest experiences among which one with the same action and verdict is looked for
 
@@ -60,7 +64,8 @@ class MemoryStore:
             self._catch_up(connection)
             insert = "INSERT INTO interactions (scenario, seed, method, variant, reasoner) VALUES (?, ?, ?, ?, ?)"
             number = int(connection.execute(insert, astuple(interaction)).lastrowid or 0)
-            return sum(self._keep(connection, number, *pair) for pair in zip(experiences, made, strict=True))
+            alike = made if self.embedder.calibrated else _ALIKE.embed([e.description for e in experiences])
+            return sum(self._keep(connection, number, *each) for each in zip(experiences, made, alike, strict=True))
 
     def check(self) -> None:
         """Refuse a file that cannot be read or written, before anything depends on it; one that is not there is made.
@@ -146,24 +151,35 @@ class MemoryStore:
         (version,) = connection.execute("PRAGMA data_version").fetchone()
         if self._index is None or version != self._version:
             self._version = version
-            self._index, self._kinds = Index(self._dimension), {}
-        query = "SELECT id, vector, action, verdict FROM experiences WHERE id > ? ORDER BY id"
+            self._index, self._kinds = Index(self._compared), {}
+        query = "SELECT id, vector, action, verdict, numbers, kinds FROM experiences WHERE id > ? ORDER BY id"
         rows = connection.execute(query, (self._index.ids[-1] if self._index.ids else 0,)).fetchall()
-        self._index.add([row[0] for row in rows], vectors_of([row[1] for row in rows], self._dimension))
+        if self.embedder.calibrated:
+            vectors = vectors_of([row[1] for row in rows], self._dimension)
+        else:
+            vectors = _ALIKE.embed([Description("", "", "", *map(json.loads, row[4:])) for row in rows])
+        self._index.add([row[0] for row in rows], vectors)
         self._kinds.update((row[0], (row[2], row[3])) for row in rows)
 
-    def _keep(self, connection: sqlite3.Connection, interaction: int, experience: Experience, vector: Vectors) -> bool:
+    @property
+    def _compared(self) -> int:
+        """Length of the vectors by which experiences are compared."""
+        return self._dimension if self.embedder.calibrated else _ALIKE.dimension or 0
+
+    def _keep(
+        self, connection: sqlite3.Connection, interaction: int, experience: Experience, vector: Vectors, alike: Vectors
+    ) -> bool:
         """Note one experience: as another sighting of one that is like it, or as a new one."""
         assert self._index is not None
         kind = (str(experience.action), str(experience.verdict))
         # Above 1 nothing is a duplicate, and no search is needed.
-        (hits,) = self._index.search(vector[None], NEIGHBOURS) if self.duplicates <= 1 else ([],)
+        (hits,) = self._index.search(alike[None], NEIGHBOURS) if self.duplicates <= 1 else ([],)
         number = next((n for n, similarity in hits if similarity >= self.duplicates and self._kinds[n] == kind), None)
         new = number is None
         if number is None:
             insert = f"INSERT INTO experiences ({', '.join(COLUMNS)}) VALUES ({', '.join('?' * len(COLUMNS))})"
             number = int(connection.execute(insert, to_row(experience, vector)).lastrowid or 0)
-            self._index.add([number], vector[None])
+            self._index.add([number], alike[None])
             self._kinds[number] = kind
         seen = (number, interaction, experience.step, experience.ego)
         connection.execute("INSERT INTO sightings VALUES (?, ?, ?, ?)", seen)

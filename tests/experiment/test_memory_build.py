@@ -12,7 +12,7 @@ from codriving.datatypes.experience import Interaction
 from codriving.errors import ConfigError, MemoryFileError, ModelError
 from codriving.experiment.memory_build import BUILD, build_points
 from codriving.experiment.memory_pages import merge_page, search_page, show_page
-from codriving.experiment.remembering import growing, learns, pinned
+from codriving.experiment.remembering import growing, learns, merged_notes, pinned
 from codriving.experiment.run import run_command, run_experiment
 from codriving.memory.reading import read_memory
 from codriving.memory.store import MemoryStore
@@ -220,3 +220,34 @@ def test_a_memory_that_fails_meanwhile_ends_the_batch_and_keeps_what_is_finished
         run_experiment(short(tmp_path))
     monkeypatch.undo()
     assert run_experiment(short(tmp_path)) == 0
+
+
+def test_a_memory_that_merges_nearly_everything_says_so(tmp_path: Path) -> None:
+    told = [experience(step=step) for step in range(9)]
+    path = filled(tmp_path / "m.sqlite", [*told, experience(description(dttcp=7.5), step=9)])
+    config = compose(["memory=online", f"memory.file={path}"])
+    (note,) = merged_notes([config])
+    assert note.startswith(
+        f"{path}: of 10 experiences only 2 are kept, since the others are too like one of them; raise"
+    )
+    assert "memory.duplicates, which is 0.98, or choose another memory.embedder, and" in note
+    # Half is not more than half, and of a few nothing can be said.
+    kinds = ("crossing", "converging", "weaving", "diverging", "none")
+    half = [experience(description(relation=k), step=2 * n + again) for n, k in enumerate(kinds) for again in (0, 1)]
+    for name, learnt in (("half", half), ("few", told)):
+        made = filled(tmp_path / f"{name}.sqlite", learnt)
+        assert list(merged_notes([compose(["memory=online", f"memory.file={made}"])])) == []
+    assert list(merged_notes([compose([]), compose(["memory=online", "memory.file=none.sqlite"])])) == []
+
+
+def test_a_build_that_merges_says_so_on_the_screen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(
+        "codriving.experiment.drive.merged_notes", lambda configs: [c["memory"]["file"] for c in configs]
+    )
+    assert run_experiment(short(tmp_path)) == 0
+    assert (
+        str(tmp_path / "out" / "run" / "one" / "memory" / "intersection-codriving-full.sqlite")
+        in capsys.readouterr().err
+    )
