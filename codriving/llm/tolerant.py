@@ -141,7 +141,9 @@ class _Reader:
 
     def _skip(self, at: int) -> int:
         found = _BLANK.match(self.text, at)
-        return found.end() if found else at
+        end = found.end() if found else at
+        self.work += (end - at) // 50
+        return end
 
 
 def merged(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 
 from codriving.datatypes import SceneDescription, Situation
 
@@ -26,10 +27,14 @@ def the_one_of(said: object, names: Iterable[str]) -> str | None:
     if not isinstance(said, str | int) or isinstance(said, bool):
         return None
     known, text = dict.fromkeys(names), str(said).strip()
-    fitting = [name for name in known if _plain(name) == _plain(text)] if _plain(text) else []
-    return text if text in known else fitting[0] if len(fitting) == 1 else None
+    if text in known:
+        return text
+    plain = _plain(text)
+    fitting = [name for name in known if plain and _plain(name) == plain]
+    return fitting[0] if len(fitting) == 1 else None
 
 
+@lru_cache(maxsize=4096)
 def _plain(text: str) -> str:
     return "".join(c for c in unicodedata.normalize("NFKC", text).casefold() if c.isalnum())
 

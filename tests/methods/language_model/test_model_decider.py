@@ -75,6 +75,17 @@ def test_action_that_is_not_allowed_is_asked_for_again_by_name(told: tuple[Situa
     assert (counts["re_asks"], counts["fallbacks"]) == (1, 0)
 
 
+def test_answer_that_only_the_tolerant_reading_understands_is_counted_and_costs_no_question(
+    told: tuple[Situation, ...],
+) -> None:
+    made, chat, ledger = decider(deciding("{'reason': 'close', 'action': 'slower',}"))
+    [decision] = made.decide(told[2:])
+    assert (decision.action, decision.reason) == (Action.SLOWER, "close")
+    counts, [line] = ledger.close_step(0.0)
+    assert (chat.calls, counts["mended"], counts["re_asks"], counts["fallbacks"]) == (1, 1, 0, 0)
+    assert line["mended"] is True
+
+
 @pytest.mark.parametrize("text", ["", "{}", "no idea", says("FASTER"), says("fly"), "<html>busy</html>", "null"])
 def test_without_a_usable_answer_the_safest_action_is_taken_and_counted(told: tuple[Situation, ...], text: str) -> None:
     made, chat, ledger = decider(deciding(text))
