@@ -4,6 +4,7 @@ import asyncio
 import json
 import logging
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
@@ -93,6 +94,8 @@ async def _import() -> ModuleType:
     for name in ("LiteLLM", "httpx", "openai"):
         # Their lines may hold addresses with keys; what goes wrong is told by us.
         logging.getLogger(name).setLevel(logging.CRITICAL)
+    # Of content in parts and arguments that are no text, which are read all the same.
+    warnings.filterwarnings("ignore", "Pydantic serializer warnings", UserWarning)
     litellm.disable_aiohttp_transport = True
     session = client()
     litellm.aclient_session = session

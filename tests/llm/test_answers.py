@@ -1,6 +1,9 @@
 """What is read in the answers of ``answers.yaml``, directly and as a server sends them through LiteLLM."""
 
 import json
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -33,6 +36,7 @@ from codriving.llm.send import reply_of
 Case = dict[str, Any]
 
 CASES: list[Case] = yaml.safe_load(Path(__file__).with_name("answers.yaml").read_text(encoding="utf-8"))
+ROOT = Path(__file__).parents[2]
 ACTIONS = ("SLOWER", "IDLE", "FASTER", "LANE_LEFT")
 PAIRS = {
     "order": {"p1": ("CAV1", "CAV2"), "p2": ("CAV2", "CAV12")},
@@ -143,6 +147,26 @@ def test_answers_are_read_through_litellm(server: Loopback, model: str) -> None:
         check(case, answer.value, answer.problem, answer.mended)
         assert len(answer.calls) == (2 if "refused" in case and not thought_only(case) else 1), case
         assert answer.calls[0].prompt_tokens == 10
+
+
+_ASKED_ALONE = """
+import sys
+from dataclasses import replace
+from fake_sender import SETTINGS
+from test_answers import CASES, question
+from codriving.llm.client import ModelChat
+chat = ModelChat(replace(SETTINGS, api_base=sys.argv[1]))
+odd = [k for k, case in enumerate(CASES) if ("parts" in case or "tool_calls" in case) and "read" in case]
+assert len(odd) > 9
+assert all(answer.value for answer in chat.ask([question(k) for k in odd]))
+"""
+
+
+def test_odd_places_are_read_without_a_word_on_the_screen(server: Loopback) -> None:
+    path = os.pathsep.join((str(Path(__file__).parent), os.environ.get("PYTHONPATH", ""), str(ROOT)))
+    command = [sys.executable, "-c", _ASKED_ALONE, server.url]
+    done = subprocess.run(command, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
 PLAIN = Question("decide", "x", (), decision_reply(ACTIONS), _allowed)
