@@ -190,7 +190,7 @@ def notes_of(rows: Iterable[tuple[str, str, CellResults | None]], screen: bool) 
     return [
         *([FALLBACK_NOTE] if any(cell and cell.asked for *_, cell in rows) else []),
         *([ALGORITHM] if any(cell and cell.first.reasoner == "none" for *_, cell in rows) else []),
-        *([f"{MISSING.capitalize()}: {missing}; to come in a later release."] if missing else []),
+        *([f"{MISSING.capitalize()}: {missing}; there is no method of this name."] if missing else []),
         *stand_in_notes((cell.first.method, cell.first.reasoner) for *_, cell in rows if cell),
         *([f"{QUOTED_ALONE.capitalize()}: {alone}; {theirs}"] if alone else []),
         *([CPU_NOTE] if screen else []),

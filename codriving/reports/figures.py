@@ -7,11 +7,11 @@ from itertools import cycle, pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 from codriving.reports.columns import mean
-from codriving.reports.comparison import LoadRow, load_title, setting_of
+from codriving.reports.comparison import METHOD_CHOICE, LoadRow, load_title, setting_of
 from codriving.reports.learning import LearningRow
 from codriving.reports.paper import LearningStatement
 from codriving.reports.results import CellResults
-from codriving.reports.wording import title
+from codriving.reports.wording import short_names, title
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -81,8 +81,9 @@ def load_figure(
     for row in rows:
         setting = [f"{key}={value}" for key, value in setting_of(row.swept).items()]
         panels.setdefault(", ".join([row.scenario, *setting]), []).append(row)
-    names = list(dict.fromkeys(row.name for row in rows))
-    styles = _styles(rows, methods)
+    labels = _line_labels([(row.name, row.cell, row.swept.get(METHOD_CHOICE, "")) for row in rows if row.cell])
+    label_of = dict(zip(map(id, rows), labels, strict=True))
+    names, styles = list(dict.fromkeys(labels)), _styles(rows, labels, methods)
     step = min((b - a for a, b in pairwise(loads)), default=1)
     figure = Figure(figsize=(max(6.4, 4.4 * len(panels)), 6.6), layout="constrained")
     axes = figure.subplots(2, len(panels), sharex=True, sharey="row", squeeze=False)
@@ -90,11 +91,12 @@ def load_figure(
         success, velocity = axes[0][column], axes[1][column]
         success.set_title(panel)
         for row in members:
-            shift = min(step, 2) * _SPREAD * (names.index(row.name) - (len(names) - 1) / 2)
+            name = label_of[id(row)]
+            shift = min(step, 2) * _SPREAD * (names.index(name) - (len(names) - 1) / 2)
             cells = [(cavs + shift, row.at[cavs]) for cavs in loads if cavs in row.at]
             speeds = [(place, speed) for place, cell in cells if (speed := mean(cell.velocities)) is not None]
-            _draw_rates(success, cells, styles[row.name], row.name)
-            velocity.plot(*_unzipped(speeds), **_look(styles[row.name], row.name))
+            _draw_rates(success, cells, styles[name], name)
+            velocity.plot(*_unzipped(speeds), **_look(styles[name], name))
         success.set_ylim(-3, 103)
         success.set_xticks(loads)
         velocity.set_xlabel("CAVs")
@@ -117,15 +119,20 @@ def learning_figure(
 
     firsts = [row.cell.first for row in rows]
     scenarios = list(dict.fromkeys(first.scenario for first in firsts))
-    levels = list(dict.fromkeys(map(_level, rows)))
+    labels = _line_labels([(_level(row), row.cell, "") for row in rows])
+    levels = list(dict.fromkeys(labels))
     sizes = sorted({row.interactions for row in rows})
     figure = Figure(figsize=(max(5.0, 3.4 * len(scenarios)), 4.4), layout="constrained")
     axes = figure.subplots(1, len(scenarios), sharey=True, squeeze=False)[0]
     for axis, scenario in zip(axes, scenarios, strict=True):
         for index, level in enumerate(levels):
             shift = 0.08 * (index - (len(levels) - 1) / 2)
-            members = [row for row in rows if row.cell.first.scenario == scenario and _level(row) == level]
-            cells = [(sizes.index(row.interactions) + shift, row.cell) for row in members]
+            members = [row for row, label in zip(rows, labels, strict=True) if label == level]
+            cells = [
+                (sizes.index(row.interactions) + shift, row.cell)
+                for row in members
+                if row.cell.first.scenario == scenario
+            ]
             _draw_rates(axis, cells, LEVELS[index % len(LEVELS)], level)
         for s in paper:
             if s.scenario == scenario and s.success is not None and s.interactions in sizes:
@@ -172,14 +179,30 @@ def _look(style: Style, label: str) -> dict[str, str | float]:
 
 
 def _level(row: LearningRow) -> str:
-    return " ".join([row.cell.name, *(f"{key}={value}" for key, value in row.cell.swept.items() if "." in key)])
+    return " ".join([row.cell.name, *(f"{key}={value}" for key, value in row.cell.swept.items())])
 
 
-def _styles(rows: Sequence[LoadRow], methods: Mapping[str, Style]) -> dict[str, Style]:
+def _line_labels(lines: Sequence[tuple[str, CellResults, str]]) -> list[str]:
+    """Name each line; where one name is of several reasoners or choices of a method, these are added.
+
+    Args:
+        lines: Name, a cell and choice of the method of each.
+    """
+    reasoners = short_names(cell.first.reasoner for _, cell, _ in lines)
+    parts = [(name, reasoners[cell.first.reasoner], choice) for name, cell, choice in lines]
+    labels = []
+    for name, *others in parts:
+        alike = [part for part in parts if part[0] == name]
+        told = [text for index, text in enumerate(others, 1) if len({part[index] for part in alike}) > 1]
+        labels.append(", ".join([name, *told]))
+    return labels
+
+
+def _styles(rows: Sequence[LoadRow], labels: Sequence[str], methods: Mapping[str, Style]) -> dict[str, Style]:
     styles: dict[str, Style] = {}
     others = cycle(OTHERS)
-    for row in rows:
+    for row, label in zip(rows, labels, strict=True):
         usual = methods.get(row.method)
-        if row.name not in styles:
-            styles[row.name] = next(others) if usual is None or usual in styles.values() else usual
+        if label not in styles:
+            styles[label] = next(others) if usual is None or usual in styles.values() else usual
     return styles

@@ -109,17 +109,19 @@ def print_learning(rows: Sequence[LearningRow], metrics: str, swept: Sequence[st
 
 
 def _setting(row: LearningRow, swept: Sequence[str]) -> tuple[object, ...]:
-    return (row.cell.first.scenario, row.cell.first.variant, *(row.cell.swept.get(key) for key in swept))
+    first = row.cell.first
+    return (first.scenario, first.variant, first.reasoner, *(row.cell.swept.get(key) for key in swept))
 
 
 def _shown(rows: Sequence[LearningRow], swept: Sequence[str]) -> str:
     """Say where the most interactions are shown to differ from the fewest, and that nothing is shown elsewhere."""
-    shown = []
+    shown, several = [], len({row.cell.first.reasoner for row in rows}) > 1
     for row in {_setting(row, swept): row for row in rows}.values():
         gain, p = (row.pairs.success, row.pairs.p) if row.pairs else (None, None)
         if gain is not None and p is not None and p < SIGNIFICANT:
             how, first = "raise" if gain > 0 else "lower", row.cell.first
-            shown.append(f"{row.interactions} interactions {how} success in {first.scenario} ({first.variant})")
+            named = ", ".join(filter(None, (first.variant, first.reasoner if several else "")))
+            shown.append(f"{row.interactions} interactions {how} success in {first.scenario} ({named})")
     if not shown:
         return "In no setting is a difference in success between the most and the fewest interactions shown (p < 0.05)."
     return f"Shown (p < 0.05): {'; '.join(shown)}. Elsewhere no difference in success is shown."

@@ -118,3 +118,14 @@ def test_a_figure_of_failures_and_of_one_load_can_be_drawn(make: Make) -> None:
 def test_every_method_looks_different_without_colour() -> None:
     looks = {(marker, stroke) for _, marker, stroke in styles().values()}
     assert len(looks) == len({colour for colour, _, _ in styles().values()}) == len(styles())
+
+
+def test_lines_of_two_models_and_of_two_choices_of_a_method_have_names_of_their_own(make: Make) -> None:
+    def svg(*cells: CellResults) -> bytes:
+        return load_figure(load_rows([(4, cell) for cell in cells], ()), (4,), "standard", {})["load.svg"]
+
+    models = svg(*(CellResults([make(0, reasoner=f"a/{name}")]) for name in ("x", "y")))
+    assert b"codriving full, x" in models
+    assert b"codriving full, y" in models
+    chosen = svg(*(CellResults([make(0)], {"method_choice": name}) for name in ("codriving", "mine")))
+    assert b"codriving full, mine" in chosen

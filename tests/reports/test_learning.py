@@ -82,3 +82,19 @@ def test_tables_have_a_column_of_the_memory_only_if_there_was_one(make: Make) ->
     assert "memory" not in summary_of([make(0)]).keys
     assert "memory" in summary_of([make(0), with_one]).keys
     assert summary_of([with_one]).rows[0]["memory"] == "frozen abc, 2 interactions"
+
+
+def test_two_models_are_told_apart_in_table_notes_and_figure(make: Make) -> None:
+    def cell(model: str, size: int, setting: int) -> LearningRow:
+        ending = Ending.SUCCESS if size and model == "openai/one" else Ending.COLLISION
+        records = [make(k, ending, velocities=(8.0,), scenario="merge", reasoner=model) for k in range(SEEDS)]
+        return LearningRow(CellResults(records), size, setting, 5)
+
+    cells = [cell(model, size, k) for k, model in enumerate(("openai/one", "openai/two")) for size in (0, 10)]
+    rows = learning_rows(cells, ())
+    table = print_learning(rows, "standard")
+    assert column_of(table, "reasoner") == ["one", "one", "two", "two"]
+    assert "10 interactions raise success in merge (full, openai/one). Elsewhere" in " ".join(table.notes)
+    svg = learning_figure(rows, (), "standard")["learn.svg"]
+    assert b"codriving full, one" in svg
+    assert b"codriving full, two" in svg
