@@ -180,6 +180,33 @@ def test_a_model_that_never_answers_stops_the_run(fault: str, tmp_path: Path) ->
     assert result.stderr.count("raise llm.max_tokens") == (2 if fault == "thinking" else 0)
 
 
+def test_a_short_run_without_any_answer_says_so(tmp_path: Path) -> None:
+    with Loopback(lambda request: "ok" if request.number == 0 else "empty_content") as server:
+        result = run(server, tmp_path, "episodes=1", "scenario.time_limit=1", "llm.fallbacks_at_first=100000")
+    assert result.exit_code == 0, result.output
+    assert "openai/toy: no usable answer to any of " in result.stderr
+
+
+def test_fields_of_a_request_are_in_the_manifest_as_they_are(tmp_path: Path) -> None:
+    extra = "llm.extra={stop_token: '</s>', tokenizer: cl100k_base, think: false}"
+    with Loopback() as server:
+        settings = (extra, "llm.max_tokens_field=max_completion_tokens", "llm.api_key_header=X-Team-Key")
+        assert run(server, tmp_path, "episodes=1", "scenario.time_limit=1", *settings).exit_code == 0
+        other = run(server, tmp_path, "episodes=1", "scenario.time_limit=1", *settings, "llm.extra={think: true}")
+    assert all(request.body["stop_token"] == "</s>" for request in server.requests)
+    folder = tmp_path / "run" / "mine"
+    (cell,) = json.loads((folder / "manifest.json").read_text())["cells"]
+    told = {name: json.loads(value) for name, value in cell["settings"].items() if name.startswith("llm.")}
+    assert told["llm.max_tokens_field"] == "max_completion_tokens"
+    assert [told[f"llm.extra.{name}"] for name in ("stop_token", "tokenizer", "think")] == [
+        "</s>",
+        "cl100k_base",
+        False,
+    ]
+    assert "api_key_header: X-Team-Key" in next(folder.rglob("config.yaml")).read_text()
+    assert other.exit_code == 2, "another field is another run"
+
+
 def test_no_credit_in_the_middle_stops_the_run_and_a_wait_does_not(tmp_path: Path) -> None:
     def plan(request: Request) -> Fault:
         busy = Fault(status=429, error="You exceeded your current quota; see billing. Try again in 1ms.", code="busy")

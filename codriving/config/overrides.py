@@ -18,7 +18,7 @@ TEXT_WITH_COMMAS = "for a text with commas write {key}='\"a,b\"'"
 _KEY = re.compile(r"\+{0,2}[A-Za-z_][\w./@:-]*", re.ASCII)
 _HOME = re.compile(r"(?s)([^=]*=)(~(?:/.*)?)")
 
-_SECRET = re.compile(r"key|token|secret|password|credential", re.IGNORECASE)
+_SECRET = re.compile(r"key|token|secret|password|credential|llm\.(extra|headers)", re.IGNORECASE)
 
 
 def prepare(token: str, config_dir: Path | None = None) -> str:

@@ -45,6 +45,12 @@ class Asked:
         """What the servers call the models that have answered, for the manifest."""
         return {f"model {client.name}": client.served for client in _clients(self.models.values()) if client.served}
 
+    def complain(self) -> None:
+        """Name the models that have given no usable answer at all."""
+        for client in _clients(self.models.values()):
+            if asked := client.never_answered:
+                tell(f"{client.name}: no usable answer to any of {asked} questions; see what codriving check says")
+
     def usage(self) -> str:
         """Say in a few words what has been used up so far."""
         used = [client.spending.totals() for client in _clients(self.models.values())]

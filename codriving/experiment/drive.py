@@ -192,6 +192,7 @@ def drive(
             folder.clean()
         for note in merged_notes(resolved[name] for name in dict.fromkeys(unit.cell for unit in missing)):
             print(note, file=sys.stderr)
+        models.complain()
         everything = _records(folder, cells, plan.seeds, records, errors=True)
         if gone := [unit for unit in units if unit not in everything]:
             raise removed(folder.path, f"{len(gone)} of {len(units)} episodes are not there any more")

@@ -13,7 +13,7 @@ from codriving.errors import ModelError
 from codriving.llm.answers import judge, split_thoughts
 from codriving.llm.attempts import SLOWLY, ConcurrencyLimit, Retries, Retry, Sleep
 from codriving.llm.cache import AnswerCache
-from codriving.llm.faults import CallError, FaultKind, unavailable, unusable
+from codriving.llm.faults import SLOW, CallError, FaultKind, unavailable, unusable
 from codriving.llm.loop import loop
 from codriving.llm.parsing import one_line
 from codriving.llm.question import Answer, Call, Chat, Message, Question
@@ -163,6 +163,11 @@ class ModelChat(Chat):
                 f"the last time since {problem}; {cure}"
             )
 
+    @property
+    def never_answered(self) -> int:
+        """How many questions had no usable answer, if none had one."""
+        return 0 if self._usable else self._unusable
+
     def _note(self, note: str) -> None:
         """Say something about the model once."""
         if note not in self._noted:
@@ -301,6 +306,7 @@ class ModelChat(Chat):
                 if fault.kind is FaultKind.TIMEOUT:
                     self._limit.shrink(ticket, SLOWLY)
                     fault.detail = f"{fault.detail or f'{s.deadline:g} s'}; {self._seen()}"
+                    self._note(f"answers come too late; {SLOW}")
                 raise
             self._limit.grow()
             self._times.append(time.perf_counter() - begun)

@@ -1,6 +1,7 @@
 """Texts to vectors by an embedding model, through LiteLLM; retried and bounded in time like every other request."""
 
 import asyncio
+import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from math import isfinite
@@ -19,6 +20,10 @@ ATTEMPTS = 5  # How often a request is sent at most
 _LARGEST_VECTOR = 200_000  # Of 8,192 numbers, generously written [bytes]
 
 _LARGEST = 64_000_000  # Of all that are asked for at once [bytes]
+
+
+def _tell(retry: object) -> None:
+    print(retry, file=sys.stderr, flush=True)
 
 
 class EmbeddingModel:
@@ -42,7 +47,7 @@ class EmbeddingModel:
         if not 0.1 <= deadline <= 3600:
             raise ConfigError(f"embedding_deadline must be 0.1 to 3600 s, got {deadline:g}")
         self.model, self.api_base, self.key_env, self.deadline = model, api_base, key_env, deadline
-        self._retries = Retries(model, ATTEMPTS, deadline, lambda retry: None, sleep)
+        self._retries = Retries(model, ATTEMPTS, deadline, _tell, sleep)
 
     def embed(self, texts: Sequence[str]) -> list[list[float]]:
         """Embed some texts in one request.

@@ -277,7 +277,7 @@ def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
         FaultKind.REDIRECT: "set llm.api_base to that address if it may have the prompts and the key",
         FaultKind.OVERSIZE: "check llm.api_base and llm.max_tokens",
         FaultKind.UNREADABLE: "set llm.api_base to the address of its API, which often ends in /v1",
-        FaultKind.TIMEOUT: f"{_SLOW}, or check llm.api_base",
+        FaultKind.TIMEOUT: f"{SLOW}, or check llm.api_base",
         FaultKind.RATE: "try later, or raise llm.attempts",
         FaultKind.SERVER: "try later, or check llm.model and llm.api_base",
         FaultKind.DROPPED: "try later, or check llm.api_base",
@@ -285,7 +285,7 @@ def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
     return ModelError(f"{where} {fault.kind.value}{which}{said}; {cure}")
 
 
-_SLOW = "raise llm.deadline or lower llm.max_concurrency"
+SLOW = "raise llm.deadline or lower llm.max_concurrency"
 
 # What a refusal may be about, and the setting of ours for it; the first that it names counts.
 _SETTINGS = {
@@ -308,7 +308,7 @@ def _cure(detail: str) -> str:
 def unavailable(fault: CallError, settings: ModelSettings) -> ModelUnavailableError:
     """Say that a model did not answer this time."""
     times = "once" if fault.attempts == 1 else f"{fault.attempts} times"
-    cure = f"; {_SLOW}" if fault.kind is FaultKind.TIMEOUT else ""
+    cure = f"; {SLOW}" if fault.kind is FaultKind.TIMEOUT else ""
     return ModelUnavailableError(f"{settings.model}: {_server(settings)} {fault}, asked {times}{cure}")
 
 

@@ -117,18 +117,24 @@ class ModelSettings:
             json.dumps(self.extra, allow_nan=False)
         except ValueError:
             raise ConfigError("extra must hold what JSON can hold, got a number that is none") from None
-        for name, value in [*texts_of(self.extra, "extra"), *texts_of(self.headers, "headers")]:
+        named_by = {"api_key_header": self.api_key_header or "", "max_tokens_field": self.max_tokens_field or ""}
+        for name, value in [*texts_of(self.extra, "extra"), *texts_of(self.headers, "headers"), *named_by.items()]:
             last = name.rpartition(".")[2]
             named = _KEY_HEADER.fullmatch(last) or (_KEY_NAME.fullmatch(last) and len(value) >= 8)
             _require(
                 not named and not _KEY_LOOK.search(value) and not _LONG_LOOK.fullmatch(value),
-                f"{name.replace('.', '[', 1)}] must hold no key, which would be in the run folder; the value is not "
+                f"{_shown(name)} must hold no key, which would be in the run folder; the value is not "
                 "shown: name its variable in llm.api_key_env, and a header of its own in llm.api_key_header",
             )
         for name, value in [*self.headers.items(), *([(self.api_key_header, "x")] if self.api_key_header else [])]:
             where = "headers" if name in self.headers else "api_key_header"
             _require(_HEADER.fullmatch(name), f"{where} must be names of headers, got {name!r}")
             _require(value.isascii() and value.isprintable(), f"{where} must hold plain texts, got others under {name}")
+
+
+def _shown(name: str) -> str:
+    first, _, rest = name.partition(".")
+    return f"{first}[{rest}]" if rest else first
 
 
 def texts_of(node: object, name: str) -> Iterator[tuple[str, str]]:

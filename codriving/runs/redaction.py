@@ -13,6 +13,12 @@ _SECRET = re.compile(r"key|token|secret|password|credential", re.IGNORECASE)
 # These hold the *name* of a variable, which is no secret and is needed to repeat the run.
 _NAME_OF_VARIABLE = re.compile(r"(_env|_variable)$", re.IGNORECASE)
 _VARIABLE = re.compile(r"[A-Z_][A-Z0-9_]*")
+# Names of fields and headers are no secrets; of the further fields of a request few are: not ``tokenizer``.
+_PLAIN, _FIELDS = ("max_tokens_field", "api_key_header"), "extra"
+_SECRET_FIELD = re.compile(r".*(key|token|secret|password|credential)s?", re.IGNORECASE)
+
+# A value of fewer characters is no secret but a stand-in such as EMPTY, and would take whole words out of texts.
+SHORTEST = 8
 
 
 def redact(settings: Mapping[str, object]) -> dict[str, object]:
@@ -23,18 +29,18 @@ def redact(settings: Mapping[str, object]) -> dict[str, object]:
     return {name: _mask(name, value) for name, value in settings.items()}
 
 
-def _mask(name: str, value: object) -> object:
+def _mask(name: str, value: object, within: bool = False) -> object:
+    """Mask a value; within the fields of a request only what may be a key in length and name."""
     if isinstance(value, Mapping):
-        return {inner: _mask(str(inner), item) for inner, item in value.items()}
+        within = within or name == _FIELDS
+        return {key: item if key in _PLAIN else _mask(str(key), item, within) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_mask(name, item) for item in value]
-    if isinstance(value, str) and value and _SECRET.search(name):
-        return value if _NAME_OF_VARIABLE.search(name) and _VARIABLE.fullmatch(value) else MASK
-    return value
-
-
-# A value of fewer characters is no secret but a stand-in such as EMPTY, and would take whole words out of texts.
-SHORTEST = 8
+        return [_mask(name, item, within) for item in value]
+    if not isinstance(value, str) or not value or not _SECRET.search(name):
+        return value
+    if within and (len(value) < SHORTEST or not _SECRET_FIELD.fullmatch(name)):
+        return value
+    return value if _NAME_OF_VARIABLE.search(name) and _VARIABLE.fullmatch(value) else MASK
 
 
 def variables_in(settings: object) -> tuple[str, ...]:

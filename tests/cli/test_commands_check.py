@@ -77,6 +77,10 @@ def test_without_a_key_nothing_is_asked_and_the_line_says_what_to_set(monkeypatc
         ("check", f"llm.api_key_env={KEY}"),
         ("check", f"llm.api_key_env={KEY},{KEY}2"),
         ("ablate", f"llm.api_key_env={KEY}"),
+        ("run", f"llm.headers={{'Authorization': '{KEY}'}}"),
+        ("run", f"llm.headers={{X-Team: 'Bearer {KEY}'}}"),
+        ("run", f"llm.extra.api_key={KEY}"),
+        ("check", f"llm.api_key_header={KEY}"),
     ],
 )
 def test_a_key_on_the_command_line_is_refused_and_not_shown(command: str, token: str) -> None:
@@ -85,7 +89,7 @@ def test_a_key_on_the_command_line_is_refused_and_not_shown(command: str, token:
     assert KEY not in result.output
     assert result.stdout == ""
     assert result.stderr.count("\n") == 1
-    assert "llm.api_" in result.stderr
+    assert "llm." in result.stderr
 
 
 def test_the_name_of_a_variable_is_shown() -> None:

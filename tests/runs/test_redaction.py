@@ -50,3 +50,9 @@ def test_nesting_undoes_flattening(config: dict[str, object]) -> None:
 def test_a_value_that_holds_others_is_refused() -> None:
     with pytest.raises(ValueError, match=r"scenario\.cavs lies below a value"):
         nested({"scenario": "3", "scenario.cavs": "4"})
+
+
+def test_of_the_fields_of_a_request_only_what_may_be_a_key_is_masked() -> None:
+    fields = {"stop_token": "</s>", "tokenizer": "cl100k_base", "inner": {"access_token": "9d8f7a6s5d4f"}}
+    model = {"extra": fields, "max_tokens_field": "max_completion_tokens", "api_key_header": "X-Team-Key"}
+    assert redact({"llm": model}) == {"llm": {**model, "extra": {**fields, "inner": {"access_token": MASK}}}}
