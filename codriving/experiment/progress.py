@@ -1,7 +1,7 @@
 """How far a batch is: a bar on a terminal, a few plain lines in a pipe."""
 
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from typing import TextIO, TypeAlias
@@ -40,14 +40,16 @@ def show_progress(
         yield partial(_print_line, count, stream, note)
         return
     from rich import progress
-    from rich.console import Console
+    from rich.console import Console, RenderableType
     from rich.text import Text
 
-    class _Note(progress.ProgressColumn):
-        """Read anew each time that the bar is drawn, so that it moves between two episodes too."""
+    class _Bar(progress.Progress):
+        """With the note on a line of its own, read anew each time: it moves between two episodes too."""
 
-        def render(self, task: progress.Task) -> Text:
-            return Text(note() if note else "")
+        def get_renderables(self) -> Iterable[RenderableType]:
+            yield from super().get_renderables()
+            if note:
+                yield Text(note())
 
     columns = (
         progress.TextColumn("episodes"),
@@ -58,9 +60,8 @@ def show_progress(
         progress.TimeElapsedColumn(),
         progress.TextColumn("left"),
         progress.TimeRemainingColumn(),
-        *([_Note()] if note else []),
     )
-    with progress.Progress(*columns, console=Console(file=stream)) as bar:
+    with _Bar(*columns, console=Console(file=stream)) as bar:
         task = bar.add_task("episodes", total=count.total, failed=0, cells=count.cells)
 
         def move_bar(cell: str, failed: bool) -> None:

@@ -134,8 +134,10 @@ def learning_figure(
                 if row.cell.first.scenario == scenario
             ]
             _draw_rates(axis, cells, LEVELS[index % len(LEVELS)], level)
+        claims = {row.claim for row in rows if row.cell.first.scenario == scenario}
         for s in paper:
-            if s.scenario == scenario and s.success is not None and s.interactions in sizes:
+            # Not in a panel of another setting than the paper's.
+            if s.scenario == scenario and s.success is not None and s.interactions in sizes and s.statement in claims:
                 place, label = sizes.index(s.interactions), "the paper (GPT-4o mini)"
                 axis.plot([place], [100 * s.success], "x", color="#7a7a7a", markersize=9, label=label)
         axis.set_xticks(range(len(sizes)), [str(size) for size in sizes])

@@ -53,11 +53,12 @@ def reasoner_text(reasoner: Value) -> str:
 
 
 def short_names(reasoners: Iterable[str]) -> dict[str, str]:
-    """Name reasoners in the rows of a table: without the provider that all models have in common."""
+    """Name reasoners in the rows of a table: without the providers that all models have in common."""
     names = list(dict.fromkeys(reasoners))
-    models = [name for name in names if name not in ("rules", "none")]
-    common = {name.rpartition("/")[0] for name in models}
-    return {name: name.rpartition("/")[2] if len(common) == 1 and name in models else name for name in names}
+    short = {name: name.split("/") for name in names if name not in ("rules", "none")}
+    while short and len({parts[0] for parts in short.values()}) == 1 and all(parts[1:] for parts in short.values()):
+        short = {name: parts[1:] for name, parts in short.items()}
+    return {name: "/".join(short.get(name, [name])) for name in names}
 
 
 def title(what: str, scenarios: Iterable[Value], reasoners: Iterable[Value], metrics: str) -> str:

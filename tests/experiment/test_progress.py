@@ -1,6 +1,7 @@
 """Progress: a few lines in a pipe, a bar on a terminal."""
 
 import io
+import re
 
 import pytest
 
@@ -55,3 +56,15 @@ def test_of_several_cells_those_that_are_complete_are_counted(monkeypatch: pytes
     with show_progress({"a": 1, "b": 1}, stream=terminal) as update:
         update("b", False)
     assert "1 of 2 cells" in terminal.getvalue()
+
+
+def test_on_eighty_columns_no_line_is_broken(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "80")
+    stream, used = Terminal(), "1,234,567 tokens, price unknown, 12 retries"
+    with show_progress({f"cell{k}": 1000 for k in range(28)}, lambda: used, stream) as update:
+        update("cell0", False)
+    lines = re.split(r"[\r\n]+", re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", stream.getvalue()))
+    assert max(map(len, lines)) <= 80
+    assert used in [line.strip() for line in lines]
+    assert any("1/28000" in line and "0 of 28 cells" in line for line in lines)

@@ -69,7 +69,11 @@ def test_the_figure_repeats_and_marks_the_papers_numbers(rows: list[LearningRow]
     once, again = (learning_figure(rows, paper, "standard") for _ in range(2))
     assert once == again
     assert set(once) == {"learn.png", "learn.svg"}
-    assert once["learn.svg"] != learning_figure(rows, (), "standard")["learn.svg"]
+    without = learning_figure(rows, (), "standard")["learn.svg"]
+    assert once["learn.svg"] != without
+    elsewhere = [replace(row, cell=replace(row.cell, papers_setting=False), claim=None, fewest=None) for row in rows]
+    assert [row.claim for row in learning_rows(elsewhere, paper)] == [None] * 4
+    assert learning_figure(learning_rows(elsewhere, paper), paper, "standard")["learn.svg"] == without
 
 
 def test_without_the_papers_file_there_is_nothing_beside(tmp_path: Path) -> None:

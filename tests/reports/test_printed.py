@@ -175,6 +175,7 @@ def test_two_models_are_told_apart_in_each_row(make: Callable[..., EpisodeRecord
     assert shown("openai/gpt-4o", "openai/gpt-4o-mini") == ["gpt-4o", "gpt-4o-mini"]
     assert shown("openai/a", "ollama_chat/a", "rules") == ["openai/a", "ollama_chat/a", "rules"]
     assert shown("rules") == []
+    assert shown("openai/meta/llama", "openai/gpt-4o") == ["meta/llama", "gpt-4o"]
 
 
 def test_settings_of_one_model_need_no_reasoner(make: Callable[..., EpisodeRecord]) -> None:
