@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import sys
 import sysconfig
 import tempfile
@@ -15,6 +16,8 @@ from codriving.config import GROUPS, ROOT
 
 _OURS = Path(__file__).resolve().parent.parent
 _INSTALLED = [Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib", "purelib", "platlib")]
+
+_SECRET = re.compile(r"key|token|secret|password|credential", re.IGNORECASE)
 
 _ELSEWHERE = "name another place"
 _CURES = {
@@ -59,7 +62,7 @@ def _of_usage(error: TyperException, args: list[str]) -> str:
 
 def _unforeseen(error: Exception) -> str:
     """What nobody foresaw: a fault of a plug-in or of this program, whose traceback goes into a file."""
-    text = "".join(traceback.format_exception(error))
+    text = _scrubbed("".join(traceback.format_exception(error)))
     try:
         handle, name = tempfile.mkstemp(prefix="codriving-fault-", suffix=".txt", text=True)
         os.close(handle)
@@ -68,10 +71,18 @@ def _unforeseen(error: Exception) -> str:
         where = f"its traceback is in {name}"
     except OSError as no_room:
         where = f"no place was found for its traceback ({no_room.strerror})"
-    what = f"{type(error).__name__}: {str(error)[:300]}".rstrip(": ")
+    what = f"{type(error).__name__}: {_scrubbed(str(error))[:300]}".rstrip(": ")
     if (place := _plugin(error)) is not None:
         return f"the plug-in {place} failed ({what}); {where}: mend the plug-in"
     return f"unforeseen fault of codriving ({what}); {where}: please report it with that file and the command"
+
+
+def _scrubbed(text: str) -> str:
+    """Take out the values of environment variables that may hold secrets: a plug-in may quote what it read."""
+    secrets = [value for name, value in os.environ.items() if _SECRET.search(name) and len(value) >= 8]
+    for secret in sorted(secrets, key=len, reverse=True):
+        text = text.replace(secret, "<redacted>")
+    return text
 
 
 def _plugin(error: Exception) -> str | None:

@@ -20,6 +20,12 @@ _HOME = re.compile(r"(?s)([^=]*=)(~(?:/.*)?)")
 
 _SECRET = re.compile(r"key|token|secret|password|credential|llm\.(extra|headers)", re.IGNORECASE)
 
+# A key in the query of an address or in a mapping, user and password in an address, and keys of well-known providers.
+_LOOKS_SECRET = re.compile(
+    r"(key|token|secret|password|credential)s?[\"']?\s*[=:]|://[^/\s]*@|\b(sk|gsk|hf|ghp|AIza|xai)[-_]?\w{12,}",
+    re.IGNORECASE,
+)
+
 
 def prepare(token: str, config_dir: Path | None = None) -> str:
     """Turn an override into one that Hydra composes without judging its key.
@@ -59,8 +65,9 @@ def shown(token: str) -> str:
 
 
 def may_be_secret(token: str) -> bool:
-    """Tell whether an override may hold a secret, by the name of its key."""
-    return _SECRET.search(token.partition("=")[0]) is not None
+    """Tell whether an override may hold a secret, by the name of its key or the look of its value."""
+    key, _, value = token.partition("=")
+    return _SECRET.search(key) is not None or _LOOKS_SECRET.search(value) is not None
 
 
 def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not typed

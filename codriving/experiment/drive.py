@@ -333,7 +333,7 @@ def _records(
 def _again(damaged: Sequence[DamagedEpisodeError]) -> str:
     """Say which episodes are driven although they are there."""
     first = str(damaged[0]).partition("; ")[0]
-    more = f", and {len(damaged) - 1} more episodes" if len(damaged) > 1 else ""
+    more = f", and {len(damaged) - 1} more" if len(damaged) > 1 else ""
     return f"{first}{more}: driven again."
 
 

@@ -153,50 +153,41 @@ def _sightings(connection: sqlite3.Connection, chosen: Sequence[int]) -> dict[in
     return {experience: (count, step, ego) for experience, count, step, ego, _ in rows}
 
 
-# What a row has to hold so that it can be recalled from, by table.
-_WHOLE = {
-    "interactions": ("seed", ("scenario", "method", "variant", "reasoner"), ""),
-    "sightings": (
-        "step",
-        ("ego",),
-        "experience IN (SELECT id FROM experiences) AND interaction IN (SELECT id FROM interactions)",
-    ),
-    "experiences": (
-        "id",
-        ("action", "verdict", "scene", "conflict", "passing", "numbers", "kinds", "effect", "lesson"),
-        "typeof(vector) = 'blob' AND json_valid(numbers) AND json_valid(kinds) AND json_valid(effect)",
-    ),
-}
 _NAMED = ("mine", "its", "my_ttcp", "its_ttcp", "dttcp")  # Numbers that belong to a conflict
 
 
 def _refuse_damaged(connection: sqlite3.Connection) -> None:
     """Find in one go what could not be read later."""
-    for table, (number, texts, more) in _WHOLE.items():
-        holds = [
-            f"typeof({number}) = 'integer'",
-            *(f"typeof({name}) = 'text'" for name in texts),
-            *([more] * bool(more)),
-        ]
-        _refuse(connection, table, " AND ".join(holds))
+    _refuse(connection, "interactions", _typed("seed", "scenario", "method", "variant", "reasoner"))
+    known = "experience IN (SELECT id FROM experiences) AND interaction IN (SELECT id FROM interactions)"
+    _refuse(connection, "sightings", f"{_typed('step', 'ego')} AND {known}")
     actions, verdicts = (", ".join(f"'{member.value}'" for member in kind) for kind in (Action, Verdict))
-    fields = ", ".join(f"'{field.name}'" for field in dataclasses.fields(Effect))
-    told = " AND ".join(f"json_type(numbers, '$.{name}') IS NOT NULL" for name in _NAMED)
+    # The texts are JSON, and as they are written, without blanks, what is in them shows without reading them.
+    rest = "effect"
+    for field in dataclasses.fields(Effect):
+        rest = f"replace({rest}, '\"{field.name}\":', ':')"
+    told = " AND ".join(_has("numbers", name) for name in _NAMED)
+    order = " OR ".join(f'instr(kinds, \'"order":"{order}"\')' for order in ("first", "second", "none"))
     _refuse(
         connection,
         "experiences",
-        f"action IN ({actions}) AND verdict IN ({verdicts}) "
-        "AND json_type(numbers) = 'object' AND json_type(kinds) = 'object' AND json_type(effect) = 'object' "
-        "AND NOT EXISTS (SELECT 1 FROM json_each(numbers) WHERE type NOT IN ('integer', 'real')) "
-        "AND NOT EXISTS (SELECT 1 FROM json_each(kinds) WHERE type != 'text') "
-        f"AND NOT EXISTS (SELECT 1 FROM json_each(effect) WHERE key NOT IN ({fields}) OR type IN ('text', 'array', "
-        "'object')) "
-        "AND json_type(numbers, '$.speed') IS NOT NULL AND json_extract(kinds, '$.relation') IS NOT NULL "
-        "AND iif(json_extract(kinds, '$.relation') = 'none', "
-        "json_type(numbers, '$.lead_gap') IS NULL OR json_type(numbers, '$.lead_speed') IS NOT NULL, "
-        f"json_extract(kinds, '$.order') IN ('first', 'second', 'none') AND json_type(kinds, '$.driver') = 'text' "
-        f"AND {told})",
+        f"{_typed('id', *COLUMNS[1:])} AND typeof(vector) = 'blob' AND action IN ({actions}) "
+        f"AND verdict IN ({verdicts}) AND json_valid(numbers) AND json_valid(kinds) AND json_valid(effect) "
+        "AND numbers GLOB '{*}' AND numbers NOT GLOB '*:[^-0-9]*' AND kinds GLOB '{*}' AND kinds NOT GLOB '*:[^\"]*' "
+        f"AND effect GLOB '{{*}}' AND {rest} NOT GLOB '*[^-0-9.e+truefalsn:,{{}}]*' "
+        f"AND {_has('numbers', 'speed')} AND {_has('kinds', 'relation')} "
+        'AND iif(instr(kinds, \'"relation":"none"\'), '
+        f"NOT {_has('numbers', 'lead_gap')} OR {_has('numbers', 'lead_speed')}, "
+        f"{_has('kinds', 'driver')} AND ({order}) AND {told})",
     )
+
+
+def _typed(number: str, *texts: str) -> str:
+    return " AND ".join([f"typeof({number}) = 'integer'", *(f"typeof({name}) = 'text'" for name in texts)])
+
+
+def _has(column: str, key: str) -> str:
+    return f"instr({column}, '\"{key}\":')"
 
 
 def _refuse(connection: sqlite3.Connection, table: str, holds: str) -> None:

@@ -11,7 +11,7 @@ from codriving.errors import RunFolderError
 from codriving.runs.atomic import whole_folder
 from codriving.runs.intact import DECISIONS, RECORD, SUMS, TRAJECTORY, sums_text
 from codriving.runs.json_files import damaged, decode, encode, lines_text, parse_json, read_episode_text, read_lines
-from codriving.runs.redaction import scrubbed
+from codriving.runs.redaction import scrubbed, secrets_of, suspects
 from codriving.runs.trajectory_file import trajectory_text
 
 TRANSCRIPT = "transcript.jsonl"  # What a language model was asked and what it answered, one line a question
@@ -76,6 +76,11 @@ def write_episode(
         # A server may echo a key in an error or in an answer.
         record = replace(record, outcome=replace(record.outcome, message=scrubbed(record.outcome.message, secrets)))
         decisions, transcript, traceback = scrubbed((decisions, transcript, traceback), secrets)
+    if traceback:
+        # A plug-in may quote what it has read.
+        hidden = secrets_of(suspects())
+        record = replace(record, outcome=replace(record.outcome, message=scrubbed(record.outcome.message, hidden)))
+        traceback = scrubbed(traceback, hidden)
     files = {RECORD: encode(record), DECISIONS: lines_text(DECISIONS, decisions)}
     if transcript:
         files[TRANSCRIPT] = lines_text(TRANSCRIPT, transcript)

@@ -64,6 +64,11 @@ def secrets_of(variables: Iterable[str]) -> tuple[str, ...]:
     return tuple(sorted((value for value in values if len(value) >= SHORTEST), key=len, reverse=True))
 
 
+def suspects() -> tuple[str, ...]:
+    """List the environment variables that may hold secrets by their names, whatever the config says."""
+    return tuple(name for name in os.environ if _SECRET.search(name))
+
+
 def scrubbed(value: Any, secrets: Iterable[str]) -> Any:  # noqa: ANN401 - any plain value
     """Take secrets out of every text of plain values, wherever they came from."""
     if isinstance(value, str):

@@ -95,3 +95,12 @@ def test_a_fault_of_a_plugin_names_its_line(tmp_path: Path, monkeypatch: pytest.
         "mend the plug-in"
     )
     assert "ZeroDivisionError" in file.read_text()
+
+
+def test_a_fault_quotes_no_secret_of_the_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setenv("THEIR_TOKEN", "hunter2-and-more")
+    said = one_line(RuntimeError("server refused hunter2-and-more"), [])
+    (file,) = tmp_path.glob("codriving-fault-*.txt")
+    assert "(RuntimeError: server refused <redacted>)" in said
+    assert "hunter2" not in said + file.read_text()

@@ -109,6 +109,19 @@ def test_environment_variables_stay_out_of_configs(monkeypatch: pytest.MonkeyPat
         assert "sk-canary" not in text
 
 
+@pytest.mark.parametrize(
+    "token",
+    [
+        "llm.api_base=http://127.0.0.1/v1?api_key=hunter2-canary",
+        "output=http://me:hunter2-canary@host/",
+        "llm.model=sk-hunter2canary00,b",
+        "llm.extra={'my_token': hunter2-canary",
+    ],
+)
+def test_what_looks_like_a_secret_is_in_no_message(token: str) -> None:
+    assert "hunter2" not in refused(token)
+
+
 def test_an_experiment_is_a_delta_and_the_command_line_wins() -> None:
     assert compose(["experiments=ablation"])["experiment"] == "ablate"
     resolved = compose(["experiments=ablation", "episodes=2", "cda=status_sharing"])

@@ -202,7 +202,7 @@ def test_damage_is_noticed_without_a_list_of_sums_too(
         DAMAGE[how](folder / "episodes" / "toy-steady-full" / seed / name)
     again = drive(toy_plan(tmp_path), build=toy())
     assert again.driven == 2
-    assert re.search(rf"4/{name} is damaged \(.*\), and 1 more episodes: driven again\.", capsys.readouterr().err)
+    assert re.search(rf"4/{name} is damaged \(.*\), and 1 more: driven again\.", capsys.readouterr().err)
 
 
 def test_the_sums_of_an_episode_are_those_that_the_system_tells(tmp_path: Path) -> None:

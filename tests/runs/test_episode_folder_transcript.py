@@ -50,6 +50,17 @@ def test_a_damaged_transcript_is_named(tmp_path: Path) -> None:
         read_transcript(tmp_path)
 
 
+def test_an_error_quotes_no_secret_of_the_environment_that_no_config_names(
+    tmp_path: Path, record: EpisodeRecord, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("THEIR_DATABASE_PASSWORD", CANARY)
+    text = f"KeyError: tried {CANARY}"
+    record = dataclasses.replace(record, outcome=dataclasses.replace(record.outcome, message=text))
+    write_episode(tmp_path / "7", record, None, [], timing_of(1.0, []), text)
+    assert (tmp_path / "7" / "error.txt").read_text() == f"KeyError: tried {MASK}"
+    assert CANARY not in (tmp_path / "7" / "record.json").read_text()
+
+
 def test_no_file_of_an_episode_holds_a_key(
     tmp_path: Path, record: EpisodeRecord, monkeypatch: pytest.MonkeyPatch
 ) -> None:
