@@ -52,6 +52,7 @@ class Fitted:
     columns: tuple[Drawn, ...]
     widths: tuple[int, ...]
     left_out: tuple[str, ...] = ()
+    cut: tuple[str, ...] = ()  # Heads of those of whose cells the first value alone is shown
 
     def head(self) -> list[str]:
         """Draw the heads, the last line of each at the bottom."""
@@ -99,7 +100,8 @@ def fit(columns: Sequence[Drawn], room: int) -> Fitted | None:
     shown = [short[i] for i in kept]
     narrow = _widths(shown, room) or _widths(shown, room, wrap_labels=True)
     left_out = tuple(column.head for i, column in enumerate(columns) if i not in kept)
-    return Fitted(tuple(shown), tuple(narrow), left_out) if narrow else None
+    cut = tuple(columns[i].head for i in kept if columns[i].brief and columns[i].cells != short[i].cells)
+    return Fitted(tuple(shown), tuple(narrow), left_out, cut) if narrow else None
 
 
 def upright(columns: Sequence[Drawn], room: int) -> Fitted | None:

@@ -12,6 +12,7 @@ from codriving.reports.fitting import Drawn, Fitted, fit, record, upright
 _PIPE_WIDTH = 1000  # Columns of a pipe: wide enough that nothing wraps
 
 LEFT_OUT = "Left out at this width: {}; the files of the run folder have them."
+CUT = "The first value alone is shown of: {}."
 
 _Line: TypeAlias = tuple[str, str]  # A line and its style
 
@@ -101,11 +102,11 @@ def print_table(table: PrintedTable, stream: TextIO | None = None) -> None:
     stream = stream or sys.stdout
     terminal = stream.isatty()
     console = Console(file=stream, highlight=False, width=None if terminal else _PIPE_WIDTH)
-    lines, left_out = _terminal_lines(table, console.width) if terminal else (_pipe_lines(table), ())
+    lines, further = _terminal_lines(table, console.width) if terminal else (_pipe_lines(table), [])
     console.print(Text(table.title, style="bold"))
     for text, style in lines:
         console.print(Text(text, style=style, no_wrap=True, overflow="ignore"), crop=False)
-    for note in [*table.notes, *([LEFT_OUT.format(", ".join(left_out))] if left_out else [])]:
+    for note in [*table.notes, *further]:
         console.print(Text(note, style="dim"))
 
 
@@ -116,23 +117,24 @@ def _pipe_lines(table: PrintedTable) -> list[_Line]:
     return [(line, "") for line in lines]
 
 
-def _terminal_lines(table: PrintedTable, room: int) -> tuple[list[_Line], tuple[str, ...]]:
-    """Draw a table for a terminal; gives the lines with their styles, and the heads of the columns left out."""
+def _terminal_lines(table: PrintedTable, room: int) -> tuple[list[_Line], list[str]]:
+    """Draw a table for a terminal; gives the lines with their styles, and notes on what is not shown."""
     fitted = fit(table.shapes, room)
     changed = fitted is None or fitted.left_out or fitted.columns != table.shapes
     if changed and sum(row.ours for row in table.rows) == 1 and (turned := upright(table.shapes, room)):
         body = [line for index in range(len(turned.columns[0].cells)) for line in turned.row(index)]
-        return [("", ""), *((line, "bold") for line in turned.head()), *((line, "") for line in body), ("", "")], ()
+        return [("", ""), *((line, "bold") for line in turned.head()), *((line, "") for line in body), ("", "")], []
     lines: list[_Line] = [("", "")]
     if fitted is None:
         for index, row in enumerate(table.rows):
             lines += [*((line, _style(row)) for line in record(table.shapes, index, room)), ("", "")]
-        return lines, ()
+        return lines, []
     lines += [*((line, "bold") for line in fitted.head()), ("\u2500" * fitted.width, "")]
     for index, row in enumerate(table.rows):
         lines += [(line, _style(row)) for line in fitted.row(index)]
         lines += [("", "")] if row.last or index == len(table.rows) - 1 else []
-    return lines, fitted.left_out
+    notes = [(CUT, fitted.cut), (LEFT_OUT, fitted.left_out)]
+    return lines, [text.format(", ".join(heads)) for text, heads in notes if heads]
 
 
 def _style(row: PrintedRow) -> str:

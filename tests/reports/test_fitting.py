@@ -9,7 +9,7 @@ import pytest
 
 from codriving.datatypes.record import EpisodeRecord
 from codriving.reports.paper import Paper
-from codriving.reports.printed import LEFT_OUT, PrintedTable, print_table
+from codriving.reports.printed import CUT, LEFT_OUT, PrintedTable, print_table
 from codriving.reports.results import CellResults
 from codriving.reports.summary import print_summary
 from tests.reports.golden_tables import SCREENS, tables
@@ -48,8 +48,8 @@ def check(table: PrintedTable, width: int, monkeypatch: pytest.MonkeyPatch) -> l
     known |= {part for word in known if len(word) > width // 2 for part in re.findall(r"[^-]+-?", word)}
     body = [line for line in lines if set(line) - {"\u2500"}]
     texts = [word for line in body for word in line.split()]
-    said = set(re.findall(r"[^ ,;]+", LEFT_OUT)) | {"variant", "of"}
-    assert [word for word in texts if word not in known and word.rstrip(",;") not in known | said] == []
+    said = set(re.findall(r"[^ ,;.]+", f"{LEFT_OUT} {CUT}")) | {"variant", "of"}
+    assert [word for word in texts if word not in known and word.rstrip(",;.") not in known | said] == []
     rules = [index for index, line in enumerate(lines) if line and not set(line) - {"\u2500"}]
     if rules:
         assert rules[0] - lines.index("") <= 3, "a blank line, then two lines at most"
@@ -86,6 +86,12 @@ def test_of_many_rows_the_most_important_columns_stay(
         "[m/s]",
     ]
     assert any(line.startswith("Left out at this width: collision") for line in lines)
+
+
+def test_what_is_cut_is_named(make: Callable[..., EpisodeRecord], monkeypatch: pytest.MonkeyPatch) -> None:
+    cells = [CellResults([make(0, scenario=s, velocities=(7.0, 9.0))]) for s in ("intersection", "roundabout", "merge")]
+    text = " ".join(" ".join(check(print_summary(cells, Paper()), 80, monkeypatch)).split())
+    assert "The first value alone is shown of: PET mean / max / min [s], velocity mean / max / min [m/s]." in text
 
 
 def test_one_row_stands_upright_with_all_of_its_numbers(
