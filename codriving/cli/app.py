@@ -1,6 +1,7 @@
 """All commands, and the one place where a user's mistake becomes a line on the screen."""
 
 import os
+import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -15,6 +16,8 @@ from codriving.cli.commands import ablate, check, compare, learn, list_choices, 
 from codriving.cli.memory import memory
 from codriving.cli.streams import OutputError, give_up_output, mend_streams
 from codriving.errors import UserError
+
+_HOME = re.compile(r"\A(|--?[a-z-]+=)~(?=/|\Z)")
 
 USER_ERROR, INTERRUPTED, PIPE_CLOSED = 2, 130, 141
 
@@ -37,6 +40,8 @@ class _Commands(TyperGroup):
     def _run(self, args: list[str], options: dict[str, Any]) -> int:
         try:
             _refuse_unreadable(args)
+            # In options the shell leaves ~ as it is.
+            args = [_HOME.sub(lambda match: match[1] + str(Path.home()), arg) for arg in args]
             code = super().main(args, "codriving", **{**options, "standalone_mode": False})
         except UserError as error:
             return _refused(error)

@@ -16,7 +16,7 @@ KEY_VALUE = "write key=value, for instance scenario=intersection or episodes=20"
 TEXT_WITH_COMMAS = "for a text with commas write {key}='\"a,b\"'"
 
 _KEY = re.compile(r"\+{0,2}[A-Za-z_][\w./@:-]*", re.ASCII)
-_HOME = re.compile(r"(?s)([^=]*=)(~(?:/.*)?)")
+_HOME = re.compile(r"(?s)\A([^=]*=)(~(?:/.*)?)\Z")
 
 _SECRET = re.compile(r"key|token|secret|password|credential|llm\.(extra|headers)", re.IGNORECASE)
 
@@ -93,11 +93,13 @@ def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not 
     key, equals, value = token.partition("=")
     if may_be_secret(token) or not equals or not _KEY.fullmatch(key):
         raise ConfigError(f"cannot read {shown(token)!r:.200}; {KEY_VALUE}")
+    if not _reads(f"{key}=0"):
+        raise ConfigError(f"cannot read {token!r:.200}: {key:.100} is not the name of a key; {KEY_VALUE}")
     if any(not part.strip() for part in value.split(",")) and value and value[0] not in "[{(\"'":
         raise ConfigError(f"cannot read {token!r:.200}: a value is missing beside a comma; several are {key}=a,b")
     quoted = value.replace("\\", "\\\\").replace('"', '\\"')
     text = f'"{quoted}"'
-    if value and value[0] not in "[{(\"'" and _reads_as(f"{key}={text}", value):
+    if value and value[0] not in "[{(\"'" and _reads(f"{key}={text}") == value:
         raise ConfigError(
             f"cannot read {token!r}: a text with other characters than letters of a to z, digits and _-./:@%+ is "
             f"quoted; write {key}={shlex.quote(text)}"
@@ -108,13 +110,14 @@ def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not 
     )
 
 
-def _reads_as(token: str, value: str) -> bool:
+def _reads(token: str) -> object:
+    """Read a token that was made up; gives its value, None if it has none."""
     from hydra.core.override_parser.overrides_parser import OverridesParser
 
     try:
-        return len(token) < 300 and bool(OverridesParser.create().parse_override(token).value() == value)
+        return str(OverridesParser.create().parse_override(token).value()) if len(token) < 300 else None
     except Exception:
-        return False
+        return None
 
 
 def written(tokens: Iterable[object]) -> list[str]:

@@ -82,7 +82,7 @@ def unknown(key: str, known: Iterable[str], where: str) -> ConfigError:
     node, dot, last = key.rpartition(".")
     close = difflib.get_close_matches(last, names, n=1)
     hint = f"did you mean {node}{dot}{close[0]}? " if close else ""
-    return ConfigError(f"unknown key {key}; {hint}keys of {where}: {', '.join(names)}")
+    return ConfigError(f"unknown key {key}; {hint}keys of {where}: {', '.join(names) or 'none'}")
 
 
 def texts(node: object, key: str = "") -> Iterator[tuple[str, str]]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,7 +38,7 @@ class StoredEpisode:
 
 def find_run(run: Path) -> tuple[Path, Manifest]:
     """Find a run folder by its path, or by its name below ``outputs/``."""
-    named = sorted(Path("outputs").glob(f"*/{run}")) if len(run.parts) == 1 and not run.exists() else []
+    named = sorted(Path("outputs").glob(f"*/{escape(str(run))}")) if len(run.parts) == 1 and not run.exists() else []
     places = [run] if run.exists() else [place for place in named if (place / MANIFEST).is_file()]
     if len(places) > 1:
         raise RunFolderError(f"several runs are called {run}: {_names(places)}; give the path of one")
@@ -45,8 +46,12 @@ def find_run(run: Path) -> tuple[Path, Manifest]:
         nearby = sorted(p.parent for p in (run.parent if run.parent.is_dir() else Path()).glob(f"*/{MANIFEST}"))
         nearby = nearby or sorted(p.parent for p in Path("outputs").glob(f"*/*/{MANIFEST}"))
         raise RunFolderError(f"there is no run folder {run}; runs: {_names(nearby)}")
+    if not places[0].is_dir():
+        raise RunFolderError(f"{places[0]} is a file; give the folder of a run, or its name below outputs/")
     if (manifest := read_manifest(places[0])) is None:
-        inside = sorted(path.parent for path in places[0].glob(f"**/{MANIFEST}"))
+        # No deeper than outputs/<experiment>/<run>: the folder may be that of a whole disk.
+        deep = [f"{'*/' * depth}{MANIFEST}" for depth in (1, 2, 3)]
+        inside = sorted(path.parent for pattern in deep for path in places[0].glob(pattern))
         raise RunFolderError(f"{places[0]} has no {MANIFEST}, so it is no run folder; runs in it: {_names(inside)}")
     return places[0], manifest
 

@@ -149,7 +149,11 @@ def check_address(name: str, address: str | None) -> None:
     """Check the address of a server, None being the provider's own."""
     if address is None:
         return
-    parts = urlsplit(address)
+    try:
+        parts = urlsplit(address)
+        _require(parts.port != 0, f"{name} must be {_ADDRESS}, got {address}")
+    except ValueError as error:
+        raise ConfigError(f"{name} must be {_ADDRESS}, got what is no address ({error})") from error
     _require(
         parts.username is None and parts.password is None and not parts.query,
         f"{name} must be {_ADDRESS} with no name, password or key in it; put the key into the environment",
