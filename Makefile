@@ -34,11 +34,15 @@ coverage: $(READY) ## run the tests and measure which lines of codriving/ they r
 mutants: $(READY) ## change the reasoning in 300 places, one at a time, and see whether a test notices
 	$(BIN)/python -m tests.mutants $(ARGS)
 
+fuzz: $(READY) ## command lines, damaged files and odd processes drawn by a seed; none may show a traceback
+	$(BIN)/python -m tests.fuzz $(ARGS)
+
 # What takes too long for .ci/run: all tests with PyTorch, the mutants, a real training.
 check-all: $(TORCH) ## lint, all tests, mutants and a small training; takes an hour
 	$(MAKE) lint
 	SAMENESS=all SEEDS=20 $(MAKE) coverage
 	$(MAKE) mutants
+	$(MAKE) fuzz
 	$(BIN)/codriving train madqn --smoke output=$(VENV)/check
 
 hooks: $(READY) ## let git run the checks of .pre-commit-config.yaml before each commit
@@ -92,4 +96,4 @@ clean: ## remove .venv and what the tools left behind; outputs/ stays
 	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test coverage mutants check-all hooks torch train ablate compare bench pictures lint types format lock clean
+.PHONY: help install run test coverage mutants fuzz check-all hooks torch train ablate compare bench pictures lint types format lock clean

@@ -71,9 +71,9 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
     except ConfigError:
         raise
     except Exception as err:  # On odd YAML files these libraries raise whatever their code comes across
-        unread = config_dir is not None and isinstance(err, UnicodeDecodeError | OSError)
-        for file in sorted(config_dir.glob("*/*.yaml")) if unread else ():
-            read_yaml(file)
+        if config_dir is not None and isinstance(err, UnicodeDecodeError | OSError):
+            for file in sorted(config_dir.glob("*/*.yaml")):
+                read_yaml(file)
         why = "it nests too deep" if isinstance(err, RecursionError) else f"{type(err).__name__}: {one_line(err)}"
         raise ConfigError(
             f"the config cannot be composed ({why}); look at the values and at the YAML files that they name"

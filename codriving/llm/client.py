@@ -95,7 +95,7 @@ _FINISH_REASONS = {FaultKind.TOO_LONG: TOO_LONG, FaultKind.FILTERED: "content_fi
 _MORE_TOKENS = "raise llm.max_tokens, or switch thinking off, for instance by llm.extra"
 
 # Failures that no later episode would escape, if nothing has worked yet.
-_FOR_GOOD = (FaultKind.KEY, FaultKind.MODEL, FaultKind.UNREACHABLE, FaultKind.REDIRECT)
+_FOR_GOOD = (FaultKind.KEY, FaultKind.MODEL, FaultKind.UNREACHABLE, FaultKind.REDIRECT, FaultKind.VARIABLE)
 
 
 _BYTES = 4  # Of a token, where the server counts none

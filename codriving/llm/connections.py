@@ -12,7 +12,7 @@ from urllib.request import getproxies
 import httpx
 
 from codriving.llm.events import completion_of
-from codriving.llm.faults import CallError, FaultKind, fault_of_response, refusal_within
+from codriving.llm.faults import LOOPBACK, PROXIES, CallError, FaultKind, fault_of_response, refusal_within, set_of
 from codriving.llm.request import LIMIT
 
 LARGEST = 2_000_000  # More of a response is not read, counted when it is unpacked [bytes]
@@ -94,12 +94,40 @@ def changed(outgoing: Outgoing) -> Iterator[None]:
 
 def client(**settings: Any) -> httpx.AsyncClient:  # noqa: ANN401 - settings of httpx
     """Return a client for any number of requests at once; it has to be closed."""
-    if getproxies():
-        # Which proxy leads where is worked out by the client itself, and only for transports of its own.
-        return Client(limits=httpx.Limits(max_connections=None, max_keepalive_connections=100), **settings)
-    certificates = httpx.create_ssl_context()
+    try:
+        certificates = httpx.create_ssl_context()
+    except OSError:
+        names = " or ".join(set_of("SSL_CERT_FILE", "SSL_CERT_DIR")) or "its folder of certificates"
+        plain = Connections(lambda: httpx.AsyncHTTPTransport(verify=False))  # Never for https, which is refused
+        mounts = {"https://": _Refusing(f"{names} names no certificates that can be read"), **_here("http", plain)}
+        return Client(transport=plain, mounts=mounts, trust_env=False, **settings)
     transport = Connections(lambda: httpx.AsyncHTTPTransport(verify=certificates))
-    return Client(transport=transport, **settings)
+    if not getproxies():
+        return Client(transport=transport, **settings)
+    limits = httpx.Limits(max_connections=None, max_keepalive_connections=100)
+    try:
+        # Which proxy leads where is worked out by the client itself, but for this machine: no proxy leads there.
+        return Client(limits=limits, mounts=_here("all", transport), **settings)
+    except (ImportError, ValueError, TypeError, httpx.InvalidURL) as error:
+        names = " or ".join(set_of(*PROXIES))
+        why = "socks needs pip install 'httpx[socks]'" if isinstance(error, ImportError) else "no address of a proxy"
+        refusing = _Refusing(f"{names} cannot be used: {why}")
+        return Client(transport=refusing, mounts=_here("all", transport), trust_env=False, **settings)
+
+
+def _here(scheme: str, transport: httpx.AsyncBaseTransport) -> dict[str, httpx.AsyncBaseTransport]:
+    return {f"{scheme}://{host}": transport for host in LOOPBACK}
+
+
+class _Refusing(httpx.AsyncBaseTransport):
+    """In the place of a transport that the variables of other programs make impossible."""
+
+    def __init__(self, why: str) -> None:
+        self._why = why
+
+    async def handle_async_request(self, request: httpx.Request) -> httpx.Response:
+        """Refuse a request."""
+        raise CallError(FaultKind.VARIABLE, self._why)
 
 
 class Client(httpx.AsyncClient):

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
@@ -9,7 +10,7 @@ from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from enum import Enum
 from typing import Any
-from urllib.parse import quote
+from urllib.parse import quote, urlsplit
 
 import httpx
 
@@ -65,6 +66,7 @@ class FaultKind(Enum):
     OVERSIZE = "sent more than an answer can be"
     REDIRECT = "redirects"
     REFUSED = "refuses the request"
+    VARIABLE = "cannot be asked"  # For a variable of the environment, not for what a server says
 
     @property
     def passes(self) -> bool:
@@ -275,7 +277,8 @@ def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
     cure = {
         FaultKind.KEY: f"set {key} to a valid key",
         FaultKind.MODEL: "set llm.model to one that it has, or check llm.api_base",
-        FaultKind.UNREACHABLE: "start the server, or set llm.api_base to its address",
+        FaultKind.UNREACHABLE: f"start the server{_by_proxy(settings)}, or set llm.api_base to its address",
+        FaultKind.VARIABLE: "mend that environment variable, or unset it",
         FaultKind.QUOTA: f"buy some, or set {key} to another key",
         FaultKind.REDIRECT: "set llm.api_base to that address if it may have the prompts and the key",
         FaultKind.OVERSIZE: "check llm.api_base and llm.max_tokens",
@@ -286,6 +289,23 @@ def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
         FaultKind.DROPPED: "try later, or check llm.api_base",
     }.get(fault.kind) or _cure(fault.detail)
     return ModelError(f"{where} {fault.kind.value}{which}{said}; {cure}")
+
+
+PROXIES = ("HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY", "NO_PROXY")
+LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
+
+
+def set_of(*names: str) -> list[str]:
+    """Say which variables are set, in whatever case they are written."""
+    return sorted(name for name, value in os.environ.items() if value and name.upper() in names)
+
+
+def _by_proxy(settings: ModelSettings) -> str:
+    """What may be to blame in the place of a server that is not on this machine."""
+    names = set_of(*PROXIES[:3])
+    if not names or urlsplit(settings.api_base or "").hostname in {host.strip("[]") for host in LOOPBACK}:
+        return ""
+    return f" or the proxy of {' and '.join(names)} (unset to ask directly)"
 
 
 SLOW = "raise llm.deadline or lower llm.max_concurrency"

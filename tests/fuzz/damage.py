@@ -15,8 +15,16 @@ _SHOWN = ["replay", "small", "--frame", "0.5"]
 _FROZEN = ["run", "memory=frozen", "memory.file=small.sqlite", "episodes=1", "launcher=serial", "scenario.time_limit=1"]
 _ONLINE = ["run", "memory=online", "memory.file=small.sqlite", "episodes=1", "launcher=serial", "scenario.time_limit=1"]
 _OTHER = ["memory", "merge", "small.sqlite", "whole.sqlite", "--out", "both.sqlite"]
-_LEARNED = ["run", "method=madqn", "method.weights=weights.safetensors", "episodes=1", "launcher=serial", "scenario.time_limit=1"]
-_REPLAYED = ["run", "llm=custom", "llm.api_base=http://127.0.0.1:9/v1", "llm.cache=replay", "llm.cache_file=answers.sqlite",
+_LEARNED = [
+    "run",
+    "method=madqn",
+    "method.weights=weights.safetensors",
+    "episodes=1",
+    "launcher=serial",
+    "scenario.time_limit=1",
+]
+_REPLAYED = ["run", "llm=custom", "llm.api_base=http://127.0.0.1:9/v1", "llm.cache=replay",
+"llm.cache_file=answers.sqlite",
              "episodes=1", "launcher=serial", "scenario.time_limit=1"]  # fmt: skip
 _YAML = ["run", "--cfg", "--config-dir", "mine", "scenario=mine"]
 
@@ -33,13 +41,15 @@ READERS: dict[str, tuple[list[str], ...]] = {
                      _OTHER, _FROZEN, _ONLINE),
     "mine/scenario/mine.yaml": (_YAML, ["list", "scenarios", "--config-dir", "mine"]),
     "mine/train/madqn_lanes.yaml": (["train", "madqn", "--family", "lanes", "--config-dir", "mine", "nothing=0"],),
-    "prompts/decide.system.md.j2": (["run", "--cfg", "prompts=prompts", "llm=custom", "llm.api_base=http://127.0.0.1:9/v1"],),
+    "prompts/decide.system.md.j2": (["run", "--cfg", "prompts=prompts", "llm=custom",
+    "llm.api_base=http://127.0.0.1:9/v1"],),
     "answers.sqlite": (_REPLAYED,),
     "weights.safetensors": (_LEARNED,),
     "weights.json": (_LEARNED,),
 }  # fmt: skip
 
-VALUES = (b"null", b"-1", b"1e999", b"NaN", b"Infinity", b"1" + b"0" * 400, b'"text"', b"[]", b"{}", b"true", b'""', b"0",
+VALUES = (b"null", b"-1", b"1e999", b"NaN", b"Infinity", b"1" + b"0" * 400, b'"text"', b"[]", b"{}", b"true", b'""',
+b"0",
           b'"\\ud800"', b'"\\u0000"', b"0.5", b"[[1]]", b"9" * 5000, b'"' + b"x" * 5000 + b'"')  # fmt: skip
 
 
@@ -54,7 +64,21 @@ def damaged_file(draw: random.Random, folder: Path) -> tuple[str, str, list[str]
     if name.endswith(".sqlite") and draw.random() < 0.6:
         how = _in_database(draw, path)
     else:
-        ways = [_cut, _flip, _zeros, _noise, _values, _values, _values, _encoding, _lines, _twice, _deep, _emptied, _folder]
+        ways = [
+            _cut,
+            _flip,
+            _zeros,
+            _noise,
+            _values,
+            _values,
+            _values,
+            _encoding,
+            _lines,
+            _twice,
+            _deep,
+            _emptied,
+            _folder,
+        ]
         way: Callable[[random.Random, Path], None] = draw.choice(ways)
         how = way.__name__
         way(draw, path)
@@ -180,7 +204,9 @@ def make_files(folder: Path) -> None:
     for file in (package / "llm" / "prompts").glob("*.j2"):
         shutil.copy(file, folder / "prompts")
     for suffix in (".safetensors", ".json"):
-        shutil.copy(package / "methods" / "learned" / "weights" / f"madqn_junction{suffix}", folder / f"weights{suffix}")
+        shutil.copy(
+            package / "methods" / "learned" / "weights" / f"madqn_junction{suffix}", folder / f"weights{suffix}"
+        )
     with closing(open_to_write(folder / "answers.sqlite")) as connection:
         connection.execute("INSERT INTO answers VALUES ('a', '{}')")
         connection.execute("PRAGMA journal_mode = DELETE")

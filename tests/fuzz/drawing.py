@@ -17,16 +17,19 @@ GUARDED = ("episodes", "launcher", "scenario.time_limit", "workers", "render")
 PATHS = ("output", "prompts", "llm.prompts", "llm.cache_file", "memory.file", "method.weights")
 
 ODD = (
-    "", "²", "١", "1e3", "0x5", "1_0", "inf", "-inf", "nan", "-1", "-0.0", "0", "1" + "0" * 30, "1" + "0" * 400,
+    "", "²", "\u0661", "1e3", "0x5", "1_0", "inf", "-inf", "nan", "-1", "-0.0", "0", "1" + "0" * 30, "1" + "0" * 400,
     "9" * 5000, "1e400", "1e-400", "true", "null", "[]", "{}", "[1,2]", "[[[]]]", "{a:1}", "{a:{b:[c]}}", "a,b", ",",
-    "a,,b", "'", '"', "\\", "'a", "(", ")", "[" * 2000, "{a:" * 500, "${x}", "${scenario}", "${oc.env:HOME}", "${", "$x",
+    "a,,b", "'",
+    '"', "\\", "'a", "(", ")", "[" * 2000, "{a:" * 500, "${x}", "${scenario}", "${oc.env:HOME}", "${", "$x",
     "${.}", "übung", '"übung"', "'a b'", "a b", " ", "\t", "\n", "\x00", "\udcff", "\u202e", "😀", "a" * 300, "-rf",
     "--help", "%d", "%s", "a:b", "a=b", "==", "*", "range(1,3)", "range(3,1)", "range(1,1e9)", "choice()", "glob(*)",
-    "shuffle(1,2)", "interval(0,1)", "sort(2,1)", "int(a)", "all", "None", "!!python/name:os.system", "~", "~x", "@", "a@b",
+    "shuffle(1,2)", "interval(0,1)", "sort(2,1)", "int(a)", "all", "None", "!!python/name:os.system", "~", "~x",
+    "@", "a@b",
 )  # fmt: skip
 
 READABLE = (
-    "", "1e3", "0x5", "1_0", "inf", "-inf", "nan", "-1", "-0.0", "0", "1" + "0" * 30, "1" + "0" * 400, "1e400", "1e-400",
+    "", "1e3", "0x5", "1_0", "inf", "-inf", "nan", "-1", "-0.0", "0", "1" + "0" * 30, "1" + "0" * 400, "1e400",
+    "1e-400",
     "true", "null", "[]", "{}", "[1,2]", "[2,1]", "[nan,1]", "[[[]]]", "{a:1}", "a,b", "0,1", "'a'", '"übung"', "'a b'",
     "a b", "a" * 300, "-rf", "%d", "a:b", "range(1,3)", "1e9", "0.5", "3", "2.5", "-0.5", "100000", "[0.1,0.2,0.3]",
     "${scenario.cavs}", "${seed}", "${nothing}", "os.system", "codriving.errors.UserError", "{_target_:os.system,x:1}",
@@ -35,7 +38,8 @@ READABLE = (
 
 ODD_PATHS = (
     "here", "a/b/c", "..", ".", "/dev/null", "/dev/full", "/proc/self/nothing", "/dev/null/below", "~/x", "~nobody/x",
-    "x" * 300, "/".join(["y" * 200] * 25), "'with blank'", '"a\\nb"', "'%d:-'", "-x", "nothing.sqlite", "conf", "file.txt",
+    "x" * 300, "/".join(["y" * 200] * 25), "'with blank'", '"a\\nb"', "'%d:-'", "-x", "nothing.sqlite", "conf",
+    "file.txt",
     "damaged.sqlite", "other.sqlite", "small.sqlite", "loop", "forbidden/x", '"übung"', "''", "null", "3", "[a]",
 )  # fmt: skip
 
@@ -43,7 +47,8 @@ WORDS = ("nothing", "all", "null", "intersection", "a b", "²", "", "../x", "con
 
 
 BASES = ((), ("llm=custom", "llm.api_base=http://127.0.0.1:9/v1"), ("memory=online",), ("method=mcts",),
-         ("method=coop_game", "scenario=merge"), ("scenario=highway",), ("scenario=roundabout", "method=idfst"))  # fmt: skip
+         ("method=coop_game", "scenario=merge"), ("scenario=highway",), ("scenario=roundabout",
+         "method=idfst"))  # fmt: skip
 """Choices under which one key or another is there."""
 
 
@@ -70,8 +75,8 @@ def _flat(node: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str, o
 class Drawing:
     """Draws command lines."""
 
-    def __init__(self, seed: int) -> None:
-        self.random = random.Random(seed)
+    def __init__(self, draw: random.Random) -> None:
+        self.random = draw
 
     def line(self) -> list[str]:
         """Draw what is typed after ``codriving``."""
@@ -135,7 +140,10 @@ class Drawing:
     def _dir(self) -> list[str]:
         if self.random.random() < 0.8:
             return []
-        return ["--config-dir", self.random.choice(["conf", "nowhere", "file.txt", "odd", "plugin", "", "x" * 300, "~"])]
+        return [
+            "--config-dir",
+            self.random.choice(["conf", "nowhere", "file.txt", "odd", "plugin", "", "x" * 300, "~"]),
+        ]
 
     def _run(self) -> list[str]:
         if self.random.random() < 0.25:
@@ -147,7 +155,9 @@ class Drawing:
         return ["ablate", *self._short(self._few()), "--cfg"]
 
     def _compare(self) -> list[str]:
-        table = self.random.choice(["baselines", "single-vehicle"] * 4 + ["all", "load", "nothing", "", "²", "episodes=1"])
+        table = self.random.choice(
+            ["baselines", "single-vehicle"] * 4 + ["all", "load", "nothing", "", "²", "episodes=1"]
+        )
         return ["compare", table, *self._short(self._few()), "--cfg"]
 
     def _learn(self) -> list[str]:
@@ -164,20 +174,30 @@ class Drawing:
         model = self.random.choice(["offline", "custom", "openai", "anthropic", "gemini", "ollama", "vllm", "nothing"])
         address = self.random.choice(
             ["http://127.0.0.1:9/v1", "http://127.0.0.1:99999/v1", "ftp://x", "http://", "127.0.0.1:9", "http://[::1",
-             "http://a b/", "http://user:secret@127.0.0.1:9", "'http://127.0.0.1:9/?a=b'", "http://127.0.0.1:x", "''", "null"]
+             "http://a b/", "http://user:secret@127.0.0.1:9", "'http://127.0.0.1:9/?a=b'", "http://127.0.0.1:x",
+             "''", "null"]
         )  # fmt: skip
-        return ["check", f"llm={model}", f"llm.api_base={address}", "llm.deadline=1", "llm.attempts=1", *self._plain_or_odd()]
+        return [
+            "check",
+            f"llm={model}",
+            f"llm.api_base={address}",
+            "llm.deadline=1",
+            "llm.attempts=1",
+            *self._plain_or_odd(),
+        ]
 
     def _replay(self) -> list[str]:
         run = self.random.choice(
-            ["small", "outputs/run/small", "outputs", "/", ".", "..", "file.txt", "empty", "nothing", "x" * 300, "", "*",
+            ["small", "outputs/run/small", "outputs", "/", ".", "..", "file.txt", "empty", "nothing", "x" * 300, "",
+            "*",
              "[", "**", "~", "outputs/run/small/manifest.json", "loop", "forbidden", "\udcff", "a\x00b", "/dev/null"]
         )  # fmt: skip
         options = {
             "--episode": ["0", "1", "-1", "²", "nan", "1" + "0" * 30, "9" * 5000],
             "--cell": ["", "intersection", "merge", "²", "x" * 300, "../.."],
             "--format": ["mp4", "gif", "avi", "", "²"],
-            "--out": ["x.png", "x.mp4", "", "/dev/full/x.png", "x" * 300 + ".png", "-x.png", "conf", "/proc/x.png", "~/a.png"],
+            "--out": ["x.png", "x.mp4", "", "/dev/full/x.png", "x" * 300 + ".png", "-x.png", "conf", "/proc/x.png",
+            "~/a.png"],
             "--speed": ["1", "nan", "inf", "0", "-1", "1e400", "x"],
             "--fps": ["5", "nan", "inf", "0", "1e9", "1e-9"],
             "--scale": ["0.5", "nan", "0", "1e9"],
@@ -192,32 +212,54 @@ class Drawing:
         return ["replay", run, *words, name, self.random.choice(options[name])]
 
     def _pages(self) -> list[str]:
-        files = ["small.sqlite", "damaged.sqlite", "other.sqlite", "file.txt", "conf", "nothing", "/dev/null", "x" * 300,
+        files = ["small.sqlite", "damaged.sqlite", "other.sqlite", "file.txt", "conf", "nothing", "/dev/null",
+        "x" * 300,
                  "empty.sqlite", "forbidden/x", "loop", "", "~", "a?mode=rw", "a#b", "%00"]  # fmt: skip
-        most = ["--most", self.random.choice(["1", "0", "-1", "1001", "²", "1e3", "5"])] if self.random.random() < 0.4 else []
+        most = (
+            ["--most", self.random.choice(["1", "0", "-1", "1001", "²", "1e3", "5"])]
+            if self.random.random() < 0.4
+            else []
+        )
         match self.random.randrange(3):
             case 0:
                 return ["memory", "show", self.random.choice(files), *most]
             case 1:
-                text = self.random.choice(["crossing", "", "²", "9" * 400, "-" + "9" * 400, "a" * 9999, "%", "\udcff", "dTTCP 0.5"])
+                text = self.random.choice(
+                    ["crossing", "", "²", "9" * 400, "-" + "9" * 400, "a" * 9999, "%", "\udcff", "dTTCP 0.5"]
+                )
                 return ["memory", "search", text, "--file", self.random.choice(files), *most]
         pair = [self.random.choice(files), self.random.choice(files)]
-        out = self.random.choice(["new.sqlite", "small.sqlite", "conf", "x" * 300, "/dev/null/x", "nowhere/x", "forbidden/x", ""])
+        out = self.random.choice(
+            ["new.sqlite", "small.sqlite", "conf", "x" * 300, "/dev/null/x", "nowhere/x", "forbidden/x", ""]
+        )
         same = ["--duplicates", self.random.choice(["0.9", "nan", "2", "²", "1"])] if self.random.random() < 0.4 else []
         return ["memory", "merge", *pair, "--out", out, *same]
 
     def _train(self) -> list[str]:
         learner = self.random.choice(["madqn", "ppo", "tell", "nothing", "", "²", "../x"])
         family = ["--family", self.random.choice(["junction", "lanes", "nothing", "²", ""])]
-        key = self.random.choice(["seed", "decisions", "output", "run", "settings.x", "traffic.0.weight", "traffic.x", "llm", "a"])
+        key = self.random.choice(
+            ["seed", "decisions", "output", "run", "settings.x", "traffic.0.weight", "traffic.x", "llm", "a"]
+        )
         values = ODD_PATHS if key == "output" else ODD
         # A training that could begin would take minutes.
-        return ["train", learner if self.random.random() < 0.3 else "madqn", *family, f"{key}={self.random.choice(values)}", "nothing=0"]
+        return [
+            "train",
+            learner if self.random.random() < 0.3 else "madqn",
+            *family,
+            f"{key}={self.random.choice(values)}",
+            "nothing=0",
+        ]
 
     def _list(self) -> list[str]:
-        return ["list", self.random.choice([*GROUPS, "scenarios", "memories", "nothing", "", "²", "x" * 999]), *self._dir()]
+        return [
+            "list",
+            self.random.choice([*GROUPS, "scenarios", "memories", "nothing", "", "²", "x" * 999]),
+            *self._dir(),
+        ]
 
     def _nonsense(self) -> list[str]:
-        parts = [*ODD, "run", "memory", "list", "-m", "--episodes", "5", "episodes", "=", "--cfg", "-h", "--version", "--file",
+        parts = [*ODD, "run", "memory", "list", "-m", "--episodes", "5", "episodes", "=", "--cfg", "-h",
+        "--version", "--file",
                  "--install-completio", "-", "--", "---", "-1", "--episode=²"]  # fmt: skip
         return self.random.choices(parts, k=self.random.randint(1, 4))

@@ -1,6 +1,5 @@
 """A folder in which a command line is tried: a small run, a memory, and files that nobody would want to read."""
 
-import os
 import sqlite3
 from pathlib import Path
 
@@ -41,7 +40,10 @@ def make_place(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     outputs = f"output='{folder / 'outputs'}'"
     common = [outputs, "episodes=1", "launcher=serial", "scenario.time_limit=2"]
-    for line in (["run", *common, "run=small"], ["memory", "build", *common[:1], *common[2:], "interactions=1", "run=a"]):
+    for line in (
+        ["run", *common, "run=small"],
+        ["memory", "build", *common[:1], *common[2:], "interactions=1", "run=a"],
+    ):
         made = tried(line, folder)
         assert made.code == 0, made
     (memory,) = folder.glob("outputs/memory/a/memory/*.sqlite")
@@ -54,8 +56,9 @@ def make_place(folder: Path) -> None:
     connection.close()
     (folder / "file.txt").write_text("text\n")
     (folder / "empty").mkdir()
-    os.symlink("loop", folder / "loop")
+    (folder / "loop").symlink_to("loop")
     (folder / "forbidden").mkdir(mode=0)
+    (folder / "film").mkdir()
     (folder / "conf" / "scenario").mkdir(parents=True)
     (folder / "odd" / "scenario").mkdir(parents=True)
     for name, content in YAMLS.items():

@@ -29,7 +29,8 @@ LINES = (
     "--help",
 )
 
-STREAMS = ("", "<&-", ">&-", "2>&-", "<&- >&-", ">&- 2>&-", "<&- >&- 2>&-", ">/dev/full", "2>/dev/full", ">/dev/full 2>&1",
+STREAMS = ("", "<&-", ">&-", "2>&-", "<&- >&-", ">&- 2>&-", "<&- >&- 2>&-", ">/dev/full", "2>/dev/full",
+">/dev/full 2>&1",
            "| head -1", "</dev/full", ">/dev/null 2>&1 <&-")  # fmt: skip
 
 VARIABLES: tuple[dict[str, str], ...] = (
@@ -46,7 +47,12 @@ VARIABLES: tuple[dict[str, str], ...] = (
     {"PYTHONIOENCODING": "ascii"},
     {"PYTHONIOENCODING": "utf-16"},
     {"NO_COLOR": "1", "FORCE_COLOR": "1", "CLICOLOR_FORCE": "1"},
-    {"TERMINAL_WIDTH": "x", "_TYPER_FORCE_DISABLE_TERMINAL": "x", "TYPER_USE_RICH": "x", "TYPER_STANDARD_TRACEBACK": "x"},
+    {
+        "TERMINAL_WIDTH": "x",
+        "_TYPER_FORCE_DISABLE_TERMINAL": "x",
+        "TYPER_USE_RICH": "x",
+        "TYPER_STANDARD_TRACEBACK": "x",
+    },
     {"MPLBACKEND": "module://nothing.here"},
     {"MPLBACKEND": "", "MPLCONFIGDIR": "/dev/null"},
     {"MPLCONFIGDIR": "/proc/nothing", "MATPLOTLIBRC": "/nowhere"},
@@ -98,7 +104,10 @@ class Surroundings:
             timeout=180,
             check=False,
         )
-        out, err = done.stdout.decode(errors="replace").replace("\0", ""), done.stderr.decode(errors="replace").replace("\0", "")
+        out, err = (
+            done.stdout.decode(errors="replace").replace("\0", ""),
+            done.stderr.decode(errors="replace").replace("\0", ""),
+        )
         code = int((folder / "code.txt").read_text())
         errors = [text for text in err.splitlines() if text.startswith("error: ")]
         if any(word in err + out for word in ("Traceback", "unforeseen fault", "Exception ignored", "Warning: ")):
@@ -113,4 +122,6 @@ def surroundings(draw: random.Random) -> Surroundings:
     """Draw a line and its surroundings."""
     streams = draw.choice(STREAMS) if draw.random() < 0.6 else ""
     variables = draw.choice(VARIABLES)
-    return Surroundings(draw.choice(LINES), streams, {**variables, **(draw.choice(VARIABLES) if draw.random() < 0.3 else {})})
+    return Surroundings(
+        draw.choice(LINES), streams, {**variables, **(draw.choice(VARIABLES) if draw.random() < 0.3 else {})}
+    )

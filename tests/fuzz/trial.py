@@ -4,9 +4,29 @@ import contextlib
 import io
 import os
 import re
+import tempfile
 import traceback
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+
+
+@contextlib.contextmanager
+def quiet_home(home: Path) -> Iterator[None]:
+    """Put files for temporary use, a home folder, and what main changes in the environment, where they do no harm."""
+    home.mkdir()
+    before, folder = dict(os.environ), tempfile.tempdir
+    keys = [name for name in os.environ if name.endswith(("_API_KEY", "_TOKEN"))]
+    for name in keys:
+        del os.environ[name]
+    os.environ["HOME"], tempfile.tempdir = str(home), str(home)
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
+        tempfile.tempdir = folder
+
 
 CODES = (0, 1, 2)
 

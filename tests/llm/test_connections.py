@@ -82,14 +82,12 @@ def test_free_again_after_a_failure_and_after_giving_up() -> None:
     asyncio.run(ask())
 
 
-def test_a_proxy_is_left_to_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(connections, "getproxies", lambda: {"https": "http://127.0.0.1:9"})
-    asyncio.run(connections.client().aclose())
-    made: list[object] = []
-    monkeypatch.setattr(connections, "Connections", made.append)
-    asyncio.run(connections.client().aclose())
-    assert made == []
-    monkeypatch.setattr(connections, "getproxies", dict)
-    monkeypatch.setattr(connections, "Connections", lambda make: made.append(make) or httpx.AsyncHTTPTransport())
-    asyncio.run(connections.client().aclose())
-    assert len(made) == 1
+def test_a_proxy_leads_everywhere_but_to_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HTTPS_PROXY", "http://127.0.0.1:9")
+
+    async def transports() -> list[type]:
+        async with connections.client() as session:
+            urls = ["https://example.org", "https://127.0.0.1:1", "http://localhost", "http://[::1]:8000/v1"]
+            return [type(session._transport_for_url(httpx.URL(url))) for url in urls]
+
+    assert asyncio.run(transports()) == [httpx.AsyncHTTPTransport, Connections, Connections, Connections]
