@@ -28,9 +28,10 @@ def run(*overrides: str, config_dir: str | Path | None = None) -> "Results":
         >>> results = codriving.run("scenario=intersection", "episodes=5")  # doctest: +SKIP
         >>> results.summary[["success_rate", "velocity_mean"]]  # doctest: +SKIP
     """
+    from codriving.config import config_folder
     from codriving.experiment import run_frames
 
-    return run_frames(*overrides, config_dir=None if config_dir is None else Path(config_dir))
+    return run_frames(*overrides, config_dir=config_folder(config_dir))
 
 
 def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -> "Comparison":
@@ -50,9 +51,10 @@ def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -
         >>> results = codriving.compare("baselines", "episodes=20")  # doctest: +SKIP
         >>> results.table[["method", "success_rate", "mcnemar_p"]]  # doctest: +SKIP
     """
+    from codriving.config import config_folder
     from codriving.experiment import compare_frames
 
-    return compare_frames(table, *overrides, config_dir=None if config_dir is None else Path(config_dir))
+    return compare_frames(table, *overrides, config_dir=config_folder(config_dir))
 
 
 def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDriving":  # noqa: ANN401 - any setting

@@ -194,6 +194,8 @@ def coerce(value: object, wanted: Any) -> object:  # noqa: ANN401 - an annotatio
 
 
 def _plain(value: object, wanted: type) -> object:
+    if type(value) is int and wanted in (int, float) and not -(2**63) < value < 2**63:
+        raise MismatchError("a number of less than 19 digits")
     if wanted is float and type(value) is int:
         return float(value)
     if not isinstance(value, wanted) or (isinstance(value, bool) and wanted is not bool):

@@ -118,6 +118,17 @@ def default_choice(group: str) -> str | None:
     return None if choice == "null" else choice
 
 
+def config_folder(config_dir: object) -> Path | None:
+    """Read what a caller from Python gives for ``--config-dir``.
+
+    Raises:
+        ConfigError: If it is no path.
+    """
+    if config_dir is None or isinstance(config_dir, str | Path):
+        return None if config_dir is None else Path(config_dir)
+    raise ConfigError(f"config_dir must be the path of a folder or None, got {config_dir!r:.100}")
+
+
 def check_config_dir(config_dir: Path) -> None:
     """Refuse a folder of the user's that would be read otherwise than it looks.
 

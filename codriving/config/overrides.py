@@ -132,6 +132,8 @@ def written(tokens: Iterable[object]) -> list[str]:
             raise ConfigError(
                 f'a setting is a text such as "episodes=5", and each is an argument of its own; got {token!r:.100}'
             )
+        if "\0" in token or any("\ud800" <= character <= "\udfff" for character in token):
+            raise ConfigError(f"{token!a:.200} holds what is no text, so that no file could hold it; leave it out")
         found.append(token)
     for index, token in enumerate(found):
         key, equals, value = token.partition("=")

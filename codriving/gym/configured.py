@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from codriving.config import build, check_config_dir, choices, compose
+from codriving.config import build, check_config_dir, choices, compose, config_folder
 from codriving.datatypes import Scenario
 from codriving.environment import Environment
 from codriving.errors import ConfigError
@@ -22,12 +22,12 @@ def configured(
     name: str, overrides: Sequence[str], cda: str, config_dir: str | Path | None, settings: Mapping[str, Any]
 ) -> tuple[Environment, CdaLevel]:
     """Build the environment of a scenario."""
-    folder = None if config_dir is None else Path(config_dir)
+    folder = config_folder(config_dir)
     if folder is not None:
         check_config_dir(folder)
     for group, choice in (("scenario", name), ("cda", cda)):
         known = choices(group, folder)
-        if choice not in known:
+        if not isinstance(choice, str) or choice not in known:
             raise ConfigError(f"unknown {group} {choice!r}; choices: {', '.join(known)}")
     for token in overrides:
         _check_read(token)
