@@ -97,7 +97,7 @@ def _build(node: object, expected: Sequence[type], key: str, plugins: Sequence[s
         try:
             arguments[name] = coerce(made, annotation)
         except MismatchError as err:
-            raise ConfigError(f"{_join(key, name)} must be {err}, got {value!r}") from err
+            raise ConfigError(f"{_join(key, name)} must be {err}, got {value!r:.200}") from err
     try:
         return cls(**arguments, **handed)
     except ConfigError as err:

@@ -83,6 +83,21 @@ def test_odd_sides_are_made_even(tmp_path: Path) -> None:
     assert len(decoded(path, 92, 162)) == 2
 
 
+@pytest.mark.parametrize("name", ["rel:1", "-x", "file:a", "%d", "a b'", "pipe:1", "übung"])
+@pytest.mark.parametrize("format", ["mp4", "gif"])
+def test_a_path_is_never_read_as_anything_else(
+    name: str, format: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / name).mkdir()
+    (tmp_path / "temporary%03d").mkdir()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary%03d"))
+    frame = np.full((240, 320, 4), 255, np.uint8)
+    path = Path(name, f"{name}.film")
+    assert write_film(path, Reel(format, Fraction(5), 240, 320), iter([frame] * 3), [frame]) == 3
+    assert path.stat().st_size > 500
+
+
 def test_what_ffmpeg_says_is_passed_on(tmp_path: Path) -> None:
     frames = iter(np.zeros((40, 64, 64, 4), dtype=np.uint8))
     with pytest.raises(FilmError, match="No such file or directory"):

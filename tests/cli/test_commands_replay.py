@@ -121,3 +121,33 @@ def test_a_film_that_cannot_be_written_leaves_nothing(
 def test_help_shows_an_example() -> None:
     result = CliRunner().invoke(app, ["replay", "--help"])
     assert "Example: codriving replay outputs/run/first --episode 3" in result.stdout
+
+
+def test_a_file_is_no_run_folder(run: Path) -> None:
+    result = call(run / "manifest.json")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert (
+        result.stderr
+        == f"error: {run / 'manifest.json'} is a file; give the folder of a run, or its name below outputs/\n"
+    )
+
+
+def test_runs_in_a_folder_are_looked_for_where_they_can_be(run: Path, tmp_path: Path) -> None:
+    deep = tmp_path / "a" / "b" / "c" / "d" / "e"
+    deep.mkdir(parents=True)
+    shutil.copy(run / "manifest.json", deep)
+    shutil.copytree(run, tmp_path / "outputs" / "run" / "first")
+    result = call(tmp_path)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == (
+        f"error: {tmp_path} has no manifest.json, so it is no run folder; runs in it: "
+        f"{tmp_path / 'outputs' / 'run' / 'first'}\n"
+    )
+
+
+@pytest.mark.parametrize("name", ["[", "**", "*"])
+def test_a_name_is_no_pattern(name: str, run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(run.parents[2])
+    result = call(name)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith(f"error: there is no run folder {name}; runs: ")
