@@ -28,10 +28,9 @@ def run(*overrides: str, config_dir: str | Path | None = None) -> "Results":
         >>> results = codriving.run("scenario=intersection", "episodes=5")  # doctest: +SKIP
         >>> results.summary[["success_rate", "velocity_mean"]]  # doctest: +SKIP
     """
-    from codriving.config import config_folder
     from codriving.experiment import run_frames
 
-    return run_frames(*overrides, config_dir=config_folder(config_dir))
+    return run_frames(*overrides, config_dir=config_dir)
 
 
 def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -> "Comparison":
@@ -51,10 +50,9 @@ def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -
         >>> results = codriving.compare("baselines", "episodes=20")  # doctest: +SKIP
         >>> results.table[["method", "success_rate", "mcnemar_p"]]  # doctest: +SKIP
     """
-    from codriving.config import config_folder
     from codriving.experiment import compare_frames
 
-    return compare_frames(table, *overrides, config_dir=config_folder(config_dir))
+    return compare_frames(table, *overrides, config_dir=config_dir)
 
 
 def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDriving":  # noqa: ANN401 - any setting

@@ -12,6 +12,7 @@ from codriving.config import (
     Point,
     check_choice,
     choices,
+    config_folder,
     expand,
     experiments_dir,
     parse,
@@ -75,7 +76,7 @@ def comparison_command(table: str | None) -> Command:
     return Command(f"compare {table}", partial(comparison, table), make_outputs=make_outputs)
 
 
-def compare_frames(table: str, *overrides: str, config_dir: Path | None = None) -> Comparison:
+def compare_frames(table: str, *overrides: str, config_dir: str | Path | None = None) -> Comparison:
     """Drive all methods on the same seeds and give the tables as data frames; prints no table.
 
     Args:
@@ -86,8 +87,9 @@ def compare_frames(table: str, *overrides: str, config_dir: Path | None = None) 
         UserError: If the table, the config or the run folder cannot be used.
         KeyboardInterrupt: If the user stops it; finished episodes are kept.
     """
+    folder = config_folder(config_dir)
     command = comparison_command(table)
-    finished = drive(make_plan(command.points(overrides, config_dir), config_dir), command.make_outputs)
+    finished = drive(make_plan(command.points(overrides, folder), folder), command.make_outputs)
     (own,) = finished.outputs.tables
     return Comparison(own.frame(), finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from codriving.config import Point, expand, show
+from codriving.config import Point, config_folder, expand, show
 from codriving.errors import ConfigError, ModelError
 from codriving.experiment.cells import Cell
 from codriving.experiment.drive import Driven, Finished, HaltedError, Interrupted, Outputs, drive
@@ -89,7 +89,7 @@ def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> 
     return run_command(RUN, overrides, config_dir)
 
 
-def run_frames(*overrides: str, config_dir: Path | None = None) -> Results:
+def run_frames(*overrides: str, config_dir: str | Path | None = None) -> Results:
     """Run one cell, or those of a sweep, and give the tables as data frames; prints no table.
 
     Args:
@@ -99,7 +99,8 @@ def run_frames(*overrides: str, config_dir: Path | None = None) -> Results:
         UserError: If the config or the run folder cannot be used.
         KeyboardInterrupt: If the user stops it; finished episodes are kept.
     """
-    finished = drive(make_plan(expand(overrides, config_dir), config_dir))
+    folder = config_folder(config_dir)
+    finished = drive(make_plan(expand(overrides, folder), folder))
     return Results(finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
 
 
