@@ -14,7 +14,7 @@ from codriving.environment.environment import Environment
 from codriving.geometry.lane_path import lane_path
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.ordering.coordinator import RuleCoordinator
-from codriving.reasoning.perception import Moment
+from codriving.reasoning.perception import Moment, states
 from codriving.reasoning.prediction.expectation import expect
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.rollout import PLANS
@@ -171,7 +171,7 @@ class Junction:
     ) -> Thoughts:
         """Share states and intents, and find the conflicts."""
         forecast = self.forecast()
-        forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
+        forecast.begin_step(states(world, self.road_map, self.model))
         detections = (sharing or SharedStates()).detections(world, self.model)
         scenes = describe_scenes(world, detections, world.intents, tracking or Tracking(self.road_map))
         conflicts = {ego: find_conflicts(scene, self.road_map) for ego, scene in scenes.items()}
@@ -188,7 +188,7 @@ class Junction:
 
     def forecast(self) -> Forecast:
         """Predictions with every plan that the reasoning asks for."""
-        return Forecast(self.model, (*CONTINUATIONS, *PLANS))
+        return Forecast(self.model, (*CONTINUATIONS, *PLANS), self.road_map)
 
     def drive(self, *starts: Start) -> Environment:
         """An environment in which given vehicles start."""

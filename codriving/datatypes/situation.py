@@ -77,6 +77,11 @@ class SceneDescription:
     covers: tuple[tuple[str, float], ...] = ()
     must_change: LaneChange | None = None  # The lane change that its route asks for next, or None
 
+    @property
+    def where(self) -> tuple[str, float]:
+        """Its route, and its arc length along it [m]."""
+        return self.intent.route, self.place
+
     def neighbour(self, name: str) -> TrackedVehicle | None:
         """Return a neighbour by id, or None if the ego vehicle does not know of it."""
         return next((n for n in self.neighbours if n.id == name), None)

@@ -60,6 +60,8 @@ class DrivingModel:
     decision_interval: float  # Time between two decisions, a multiple of the step [s]
     detection_range: float  # Radius within which a CAV perceives other vehicles [m]
     limits: VehicleLimits | None = None  # What a vehicle can do; None if it can do anything
+    human_braking: float = 6.0  # Hardest braking of a human driver [m/s2]
+    human_acceleration: float = 1.5  # Hardest acceleration of a human driver [m/s2]; exceeded where there are no limits
 
     @property
     def top_speed(self) -> float:

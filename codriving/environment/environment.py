@@ -1,6 +1,7 @@
 """The environment module of the paper: a scene becomes a world that answers to decisions."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -47,9 +48,8 @@ class Environment(Simulator):
         self.limits = limits
         pace = scenario.pace
         step, interval = 1 / pace.simulation_frequency, 1 / pace.decision_frequency
-        self.driving_model = DrivingModel(
-            pace.target_speeds, control.speed, step, interval, pace.detection_range, limits
-        )
+        model = DrivingModel(pace.target_speeds, control.speed, step, interval, pace.detection_range)
+        self.driving_model = model if limits is None else limited_model(model, limits, drivers)
         self.road_map = road_map(scenario.road)
         profiles = self.road_map.speed_profiles(self.driving_model)
         self._network = build_network(scenario.road)
@@ -153,6 +153,12 @@ def spawn(
             if start.kind is Kind.CAV
             else HumanDriver.start(traffic, start, route_paths, drivers, corrections)
         )
+
+
+def limited_model(model: DrivingModel, limits: VehicleLimits, drivers: DriverProfile) -> DrivingModel:
+    """Return what methods may know of vehicles that have limits; human drivers may keep below them."""
+    braking, pedal = min(limits.braking, drivers.limit), min(limits.acceleration, drivers.limit, drivers.acceleration)
+    return replace(model, limits=limits, human_braking=braking, human_acceleration=pedal)
 
 
 def limit(traffic: Traffic, limits: VehicleLimits | None) -> None:

@@ -53,6 +53,10 @@ class RoadMap:
         """Width of its widest lane [m]."""
         return max(lane.width for lane in self.lanes.values())
 
+    def speed_limit(self, route_id: str) -> float:
+        """Return the highest legal speed on a route [m/s]."""
+        return max(self.lanes[lane].speed_limit for lane in self.routes[route_id].lanes)
+
     def project(self, route_id: str, x: float, y: float) -> tuple[float, float]:
         """Return arc length and lateral offset of a place on a route [m], each worked out once."""
         key = (route_id, x, y)

@@ -34,8 +34,11 @@ class SpeedProfile:
     spacing: float  # Arc length between two rows [m]
     gain: float  # Gain of the speed law [1/s]
     values: FloatArray  # Reference speed at each row (n,) [m/s]
+    speeds: FloatArray  # Speed that a vehicle keeps which is told the reference (n,) [m/s]
+    top: float  # Highest speed that CAVs drive [m/s]
     slopes: FloatArray = field(init=False, repr=False)  # Reference = base[k] + slopes[k] * x with x = s / spacing
     base: FloatArray = field(init=False, repr=False)
+    elapsed: FloatArray = field(init=False, repr=False)  # Time from the first row at least (n,) [s]
     _slopes: list[float] = field(init=False, repr=False)
     _base: list[float] = field(init=False, repr=False)
 
@@ -43,6 +46,9 @@ class SpeedProfile:
         values = np.concatenate((self.values, np.full(ceil(_BEYOND / self.spacing), self.values[-1])))
         slopes = np.diff(values)
         base = values[:-1] - slopes * np.arange(len(slopes))
+        paces = 1 / np.minimum(self.speeds, self.top)
+        elapsed = np.concatenate(([0.0], np.cumsum((paces[1:] + paces[:-1]) / 2 * self.spacing)))
+        object.__setattr__(self, "elapsed", elapsed)
         for name, value in (("slopes", slopes), ("base", base), ("_slopes", slopes.tolist()), ("_base", base.tolist())):
             object.__setattr__(self, name, value)
 
@@ -51,6 +57,19 @@ class SpeedProfile:
         x = max(s, 0.0) / self.spacing
         k = min(int(x), len(self._base) - 1)
         return self._base[k] + self._slopes[k] * x
+
+    def allows(self, speed: float, s: float, distance: float) -> bool:
+        """Whether a speed [m/s] is kept for some distance [m] from an arc length on [m]."""
+        first = min(max(int(s / self.spacing), 0), len(self.values) - 1)
+        return bool(self.values[first : first + int(distance / self.spacing) + 3].min() >= speed)
+
+    def duration(self, s: float, length: float) -> float:
+        """Return how long it takes at least to go on from an arc length [m] by a length, which may be negative [m]."""
+        end = s + length
+        rows = np.interp((s, end), np.arange(len(self.elapsed)) * self.spacing, self.elapsed)
+        last = (len(self.elapsed) - 1) * self.spacing
+        outside = end - min(max(end, 0.0), last) - (s - min(max(s, 0.0), last))
+        return float(rows[1] - rows[0] + outside / self.top)
 
     def acceleration(self, s: float, speed: float) -> float:
         """Return the acceleration at an arc length [m] below which a vehicle keeps the profile [m/s2]."""
@@ -79,7 +98,7 @@ def speed_profile(path: Path, curvature: FloatArray, model: DrivingModel, limits
     # A vehicle is told anew once a step; what holds at the end of the step is kept from its beginning on.
     for _ in range(ceil(model.top_speed * model.step / path.spacing)):
         told[:-1] = np.minimum(told[:-1], told[1:])
-    return SpeedProfile(path.spacing, model.speed_gain, np.maximum(told, 0.0))
+    return SpeedProfile(path.spacing, model.speed_gain, np.maximum(told, 0.0), speeds, model.top_speed)
 
 
 def curvature_of(path: Path) -> FloatArray:

@@ -154,7 +154,7 @@ class ModelChat(Chat):
         self._unusable += sum(answer.value is None for answer in answers)
         spent = next((True for answer in answers if answer.problem == USED_UP), False)
         if spent:
-            self._note_used_up()
+            self._note(f"{USED_UP} (llm.max_tokens={self.settings.max_tokens}); {_MORE_TOKENS}")
         if not self._usable and self._unusable >= self.settings.fallbacks_at_first:
             problem = answers[-1].problem.rstrip(".")
             cure = _MORE_TOKENS if spent else "see what codriving check says, or raise llm.fallbacks_at_first"
@@ -162,9 +162,6 @@ class ModelChat(Chat):
                 f"{self.name} gave no usable answer to the first {self._unusable} questions (llm.fallbacks_at_first), "
                 f"the last time since {problem}; {cure}"
             )
-
-    def _note_used_up(self) -> None:
-        self._note(f"{USED_UP} (llm.max_tokens={self.settings.max_tokens}); {_MORE_TOKENS}")
 
     @property
     def never_answered(self) -> int:
@@ -193,8 +190,6 @@ class ModelChat(Chat):
         else:
             kinds = [kind for kind, reason in _FINISH_REASONS.items() if reason == reply.finish_reason]
             if not kinds:
-                if used_up(reply):
-                    self._note_used_up()
                 return
             failed = CallError(kinds[0], reply.refusal)
         self._worked = False
@@ -296,8 +291,7 @@ class ModelChat(Chat):
         words = worded(request.messages, reply.form, request.schema)
         prompt = sum(len(message.content.encode()) for message in words)
         said = reply.completion_tokens or -(-len(reply.text.encode()) // _BYTES)
-        if reply.finish_reason != UNREADABLE:
-            self._note(f"the server counts no tokens; they are estimated, {_BYTES} bytes each")
+        self._note(f"the server counts no tokens; they are estimated, {_BYTES} bytes each")
         return replace(reply, prompt_tokens=-(-prompt // _BYTES), completion_tokens=said, counted=False)
 
     async def _attempt(self, request: ChatRequest, form: str) -> Reply:

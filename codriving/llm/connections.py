@@ -49,15 +49,15 @@ class Outgoing:
 
     fields: Mapping[str, Any] = field(default_factory=dict)  # Of the body, at any depth; None takes one out
     headers: Mapping[str, str] = field(default_factory=dict)
-    limit: str | None = LIMIT  # What the longest answer is called; None leaves it to the provider's library
+    limit: str | None = LIMIT  # What the longest answer is called; None sends none
     key_header: str | None = None  # Header that carries the key in the place of the provider's own
 
     def apply(self, request: httpx.Request, content: bytes) -> httpx.Request:
         """Change a request."""
         body = json.loads(content)
-        if self.limit not in (LIMIT, None):
+        if self.limit != LIMIT:
             found = [body.pop(name) for name in (LIMIT, "max_completion_tokens") if name in body]
-            body |= {self.limit: found[0]} if found else {}
+            body |= {self.limit: found[0]} if found and self.limit else {}
         merge(body, self.fields)
         headers = request.headers.copy()
         del headers["content-length"]

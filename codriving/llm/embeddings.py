@@ -2,9 +2,8 @@
 
 import asyncio
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from math import isfinite
 from typing import Any
 
@@ -48,7 +47,6 @@ class EmbeddingModel:
         if not 0.1 <= deadline <= 3600:
             raise ConfigError(f"embedding_deadline must be 0.1 to 3600 s, got {deadline:g}")
         self.model, self.api_base, self.key_env, self.deadline = model, api_base, key_env, deadline
-        self._forms: tuple[dict[str, str], ...] = ({"encoding_format": "float"}, {})
         self._retries = Retries(model, ATTEMPTS, deadline, _tell, sleep)
 
     def embed(self, texts: Sequence[str]) -> list[list[float]]:
@@ -95,23 +93,12 @@ class EmbeddingModel:
         key = read_key(self.key_env, self.api_base, *names)
         await load_litellm()
 
-        retries = replace(self._retries, attempts=attempts)
-        for form in self._forms:
-            try:
-                response, _ = await retries.run(partial(self._once, texts, key, form), lambda fault: fault.kind.passes)
-            except CallError as fault:
-                # Some servers, and LiteLLM for some, refuse to be told in which form numbers are wanted.
-                if form == self._forms[-1] or fault.kind not in (FaultKind.REFUSED, FaultKind.FORM):
-                    raise
-            else:
-                self._forms = (form,)
-                break
+        response, _ = await replace(self._retries, attempts=attempts).run(
+            lambda: self._retries.within_deadline(self._send(texts, key)), lambda fault: fault.kind.passes
+        )
         return self._vectors(response, len(texts))
 
-    async def _once(self, texts: list[str], key: str | None, form: Mapping[str, str]) -> Any:  # noqa: ANN401
-        return await self._retries.within_deadline(self._send(texts, key, form))
-
-    async def _send(self, texts: list[str], key: str | None, form: Mapping[str, str]) -> Any:  # noqa: ANN401
+    async def _send(self, texts: list[str], key: str | None) -> Any:  # noqa: ANN401
         litellm = await load_litellm()
         try:
             with at_most(min(LARGEST + _LARGEST_VECTOR * len(texts), _LARGEST)):
@@ -124,7 +111,7 @@ class EmbeddingModel:
                     timeout=self.deadline,
                     max_retries=0,
                     num_retries=0,
-                    **form,
+                    encoding_format="float",
                 )
         except Exception as error:
             fault = fault_of(error, key)

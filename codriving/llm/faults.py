@@ -41,7 +41,6 @@ def redacted(text: str, key: str | None) -> str:
     return _SECRET.sub(HIDDEN, _HEADER.sub(rf"\1\2{HIDDEN}", text))
 
 
-_NO_CREDIT = re.compile(r"(?i)credit balance is too low|insufficient (credit|balance|funds)")
 _UNREADABLE = re.compile(r"(?i)empty or invalid response|returned 'choices'|unable to (get|parse) json")
 _NO_PROVIDER = re.compile(r"(?i)LLM Provider NOT provided")
 _PREFIX = re.compile(r"^(?:(?:litellm\.)?\w*(?:Error|Exception|Timeout)(?: -|:)\s*)+")
@@ -170,7 +169,7 @@ def fault_of_response(status: int, headers: Mapping[str, str], text: str) -> Cal
 def _kind(status: int, text: str, codes: set[str] = frozenset(), wait: float | None = None) -> FaultKind:  # type: ignore[assignment]
     """Tell one refusal from another."""
     if status < 400:
-        return FaultKind.REDIRECT if status >= 300 else FaultKind.UNREADABLE
+        return FaultKind.UNREADABLE
     by_code = [kind for kind, names in _CODES.items() if any(re.fullmatch(names, code.lower()) for code in codes)]
     if status < 500 and by_code and not (status in (401, 413) or (status == 429 and by_code[0] is not FaultKind.QUOTA)):
         return by_code[0]
@@ -179,8 +178,6 @@ def _kind(status: int, text: str, codes: set[str] = frozenset(), wait: float | N
     if status == 429:
         said = wait is None and "rate_limit_exceeded" not in codes and _NO_MONEY.search(text)
         return FaultKind.QUOTA if said else FaultKind.RATE
-    if status == 400 and _NO_CREDIT.search(text):
-        return FaultKind.QUOTA
     if status in (400, 422) and _TOO_LONG.search(text):
         return FaultKind.TOO_LONG
     if status in (400, 422, 501) and _FORM.search(text):

@@ -37,7 +37,6 @@ class Sender:
     ) -> Reply:
         """Send a request once."""
         optional = {"temperature": request.temperature, "response_format": response_format(form, request.schema)}
-        optional["max_tokens"] = request.max_tokens if request.max_tokens_field else None
         bodies = keep_bodies()
         messages = spoken(worded(request.messages, form, request.schema), request.system_role)
         carried = {key_header: key} if key_header and key else {}
@@ -56,6 +55,7 @@ class Sender:
                     max_retries=0,
                     num_retries=0,
                     stream=False,
+                    max_tokens=request.max_tokens,
                     **{name: value for name, value in optional.items() if value is not None},
                 )
             return reply_of(response.model_dump(), _completion(bodies), form, key)
@@ -103,15 +103,6 @@ async def _import() -> ModuleType:
     handlers = import_module("litellm.llms.custom_httpx.http_handler")
     handlers.AsyncHTTPHandler.create_client = _client_of_litellm
     litellm.module_level_aclient.client = session
-    # A few are reached without asyncio, in threads; these follow no redirect at all.
-    made = handlers.HTTPHandler.__init__
-
-    def stay(handler: Any, *args: Any, **settings: Any) -> None:  # noqa: ANN401
-        made(handler, *args, **settings)
-        handler.client.follow_redirects = False
-
-    handlers.HTTPHandler.__init__ = stay
-    litellm.module_level_client.client.follow_redirects = False
     loop().at_close(session.aclose)
     # Nothing is sent: LiteLLM makes the reply up. It does so only if that is not empty.
     await litellm.acompletion(

@@ -55,7 +55,7 @@ class CoDriving(ModelMethod):
         """Fill the slots for a new episode."""
         super().reset(road_map, model, seed)
         coordinator, decider = ports(self._model, self.llm.ask_plain, self.cda.binding, self.cda.intent_sharing)
-        forecast = Forecast(model, (*CONTINUATIONS, *PLANS))
+        forecast = Forecast(model, (*CONTINUATIONS, *PLANS), road_map)
         states = SharedStates() if self.cda.state_sharing else SensedStates()
         intents = SHARED_INTENTS if self.cda.intent_sharing else HIDDEN_INTENTS
         perception = Perception(road_map, forecast, Tracking(road_map), states, intents)

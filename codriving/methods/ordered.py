@@ -44,7 +44,7 @@ class Ordered(Method):
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
-        forecast = Forecast(model, (*CONTINUATIONS, *PLANS, *self.executor.library))
+        forecast = Forecast(model, (*CONTINUATIONS, *PLANS, *self.executor.library), road_map)
         self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SHARED_INTENTS)
         self._requests, self._lag = LaneRequests(), round(self.executor.margin / forecast.sample)
         self.rule.reset(seed)

@@ -61,7 +61,9 @@ class ProjectedIdm(WaitingDriver):
             return Choice(change.action, change.reason, (), refused)
         met = self.met(moment, ego)
         wished, why, precedences = self.wish(moment, ego, met, waited)
-        means = mean_accelerations(moment.forecast, scene.ego.speed, scene.intent.target_speed, self.window)
+        means = mean_accelerations(
+            moment.forecast, scene.ego.speed, scene.intent.target_speed, scene.where, self.window
+        )
         action = closest_action(wished, means, self.brake_at)
         reason = f"{why}; IDM wishes {wished:+.1f} m/s2"
         return Choice(action, reason, precedences, refused, {"creeps": int(self.may_start(moment, ego, met, waited))})
@@ -105,11 +107,13 @@ class ProjectedIdm(WaitingDriver):
         return following if waiting == inf else max(following, waiting)
 
 
-def mean_accelerations(forecast: Forecast, speed: float, target: float, window: float) -> tuple[float, float, float]:
+def mean_accelerations(
+    forecast: Forecast, speed: float, target: float, where: tuple[str, float], window: float
+) -> tuple[float, float, float]:
     """Return the mean acceleration that SLOWER, IDLE and FASTER lead to, each carried out once [m/s2]."""
     model = forecast.model
     steps = max(1, round(window / model.step))
-    _, reached = rollout(model, [speed], [target], ONCE, steps)
+    _, reached = rollout(model, [speed], [target], ONCE, steps, forecast.along(speed, where))
     slower, idle, faster = ((reached[0, :, -1] - speed) / (steps * model.step)).tolist()
     return slower, idle, faster
 

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from codriving.datatypes import Action, Conflict, SceneDescription, TrackedVehicle, WorldState
+from codriving.datatypes import Action, Conflict, DrivingModel, SceneDescription, TrackedVehicle, WorldState
 from codriving.geometry import RoadMap
 from codriving.reasoning.conflicts import find_conflicts
-from codriving.reasoning.prediction.forecast import Forecast
+from codriving.reasoning.prediction.forecast import Forecast, State
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
 from codriving.reasoning.sharing.sharing import GUESSED_INTENTS, IntentSharing, SensedStates, StateSharing
 from codriving.reasoning.sharing.tracking import Tracking
@@ -38,7 +38,7 @@ class Perception:
 
     def perceive(self, world: WorldState) -> Moment:
         """Return what every CAV knows, and begin the predictions of this step."""
-        self.forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
+        self.forecast.begin_step(states(world, self.road_map, self.forecast.model))
         detections = self.state_sharing.detections(world, self.forecast.model)
         scenes = describe_scenes(world, detections, self.intent_sharing.intents(world), self.tracking)
         conflicts: dict[str, tuple[Conflict, ...]] = dict.fromkeys(scenes, ())
@@ -50,6 +50,16 @@ class Perception:
         return Moment(
             world.time, scenes, conflicts, vehicles, world.available, self.road_map, self.forecast, finds_conflicts
         )
+
+
+def states(world: WorldState, road_map: RoadMap, model: DrivingModel) -> list[State]:
+    """Return speed, target speed and place of each CAV; where vehicles have no limits the place makes no difference."""
+    found = []
+    for cav in world.cavs:
+        intent = world.intents[cav.id]
+        place = 0.0 if model.limits is None else road_map.project(intent.route, cav.x, cav.y)[0]
+        found.append((cav.speed, intent.target_speed, intent.route, place))
+    return found
 
 
 def single_vehicle_perception(road_map: RoadMap, forecast: Forecast) -> Perception:

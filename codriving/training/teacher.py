@@ -52,16 +52,18 @@ class Advisor:
         deliberation = self._alone.act(world)
         if self._decider is None:
             return deliberation.actions
-        weighed = [_weighed(situation, self._road[1]) for situation in deliberation.situations]
+        weighed = [_weighed(situation, *self._road) for situation in deliberation.situations]
         return {d.ego: d.action for d in self._decider.decide(weighed)}
 
 
-def _weighed(situation: Situation, model: DrivingModel) -> Situation:
+def _weighed(situation: Situation, road_map: RoadMap, model: DrivingModel) -> Situation:
     """Say of each action how far it gets a CAV, and when to its conflicts, as a model is told of actions elsewhere."""
     ego, target = situation.scene.ego, situation.scene.intent.target_speed
     plans = tuple((a.action, Action.FASTER) for a in situation.assessments)
     steps = round(HORIZON / model.step)
-    travelled = rollout(model, [ego.speed], [target], plans, steps)[0][0]
+    profile = road_map.speed_profiles(model).get(situation.scene.intent.route)
+    way = () if profile is None else ((profile, situation.scene.place),)
+    travelled = rollout(model, [ego.speed], [target], plans, steps, way)[0][0]
     weighed = []
     for assessment, places in zip(situation.assessments, travelled, strict=True):
         after = [int(np.searchsorted(places, c.distances[0])) for c in situation.conflicts]

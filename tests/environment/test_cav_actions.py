@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.road import Lane, Road, Route, Straight, Turn
 from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.cav import ConnectedVehicle
@@ -40,6 +41,26 @@ def test_actions_do_what_prediction_says(speed: float, by_hand: Build) -> None:
         assert np.allclose(track.x - 20.0, distances[0, k], rtol=0, atol=1e-6)
         assert np.allclose(track.speed, speeds[0, k], rtol=0, atol=1e-6)
         assert track.y == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize("speed", [0.0, 12.0, 27.0])
+def test_actions_do_what_prediction_says_at_the_limits(speed: float, by_hand: Build) -> None:
+    speeds = (0.0, 10.0, 20.0, 30.0)
+    limits = VehicleLimits(4.0, 8.0, 4.0, 3.0, 2.4)
+    start = Start("CAV1", Kind.CAV, "along", 20.0, speed)
+    env = by_hand(starts=[start], road=STREET, target_speeds=speeds, limits=limits)
+    target = env.reset(0).intents["CAV1"].target_speed
+    distances, reached = rollout(env.driving_model, [speed], [target], PLANS, 5 * env.driving_model.substeps)
+    pedals = np.diff(reached[0], axis=1) / 0.1
+    assert pedals.max() == pytest.approx(4.0)
+    assert pedals.min() == pytest.approx(-8.0) or speed == 0.0
+    for k, plan in enumerate(PLANS):
+        env.reset(0)
+        for action in plan:
+            env.step({"CAV1": action})
+        track = env.trajectory().tracks[0]
+        assert np.allclose(track.x - 20.0, distances[0, k], rtol=0, atol=1e-9)
+        assert np.allclose(track.speed, reached[0, k], rtol=0, atol=1e-9)
 
 
 def test_acceleration_is_proportional_to_the_missing_speed(by_hand: Build) -> None:

@@ -295,16 +295,6 @@ def test_preflight_is_content_with_any_completion_and_makes_one_call(said: Any) 
     assert sender.sent[0][0].schema is None
 
 
-def test_preflight_names_a_model_that_thinks_its_tokens_away() -> None:
-    client, notes = chat(FakeSender([reply("", "length")])), list[str]()
-    client.on_note = notes.append
-    client.preflight()
-    assert notes == [
-        "openai/fake: the answer was cut off at the token limit before it began, all tokens having gone into thinking "
-        "(llm.max_tokens=300); raise llm.max_tokens, or switch thinking off, for instance by llm.extra"
-    ]
-
-
 def test_preflight_without_key_or_address_sends_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("FAKE_KEY", raising=False)
     sender = FakeSender()

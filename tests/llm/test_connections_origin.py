@@ -57,15 +57,6 @@ def test_no_redirect_to_another_origin_is_followed(serve: Callable[..., Loopback
     assert other.connections == 0
 
 
-@pytest.mark.parametrize("status", [301, 302, 307, 308])
-def test_nor_by_a_client_without_asyncio(serve: Callable[..., Loopback], status: int) -> None:
-    other, server = serve(), serve()
-    server.plan = [moved(status, f"{other.url}/chat/completions")] * 9
-    with pytest.raises(ModelError, match=rf"redirects \({status}"):
-        client(server, model="oobabooga/m").preflight()
-    assert other.connections == 0
-
-
 @pytest.mark.parametrize(
     "to", ["https://127.0.0.1:{port}/v1/chat/completions", "http://localhost:{port}/v1/chat/completions"]
 )
@@ -98,14 +89,6 @@ def test_a_redirect_in_the_middle_ends_the_episode(serve: Callable[..., Loopback
     with pytest.raises(ModelUnavailableError, match=r"redirects .* asked once"):
         asked.ask([QUESTION])
     assert other.connections == 0
-
-
-@pytest.mark.parametrize("refused", ["encoding_format", "用不了"])
-def test_vectors_are_asked_for_without_a_form_where_that_is_refused(loopback: Loopback, refused: str) -> None:
-    loopback.embedding_plan = [Fault(status=400, error=refused)]
-    model = EmbeddingModel("some-embedder", loopback.url, "CANARY_KEY", 10.0)
-    assert len(model.embed(["a scene"])[0]) == len(model.embed(["another"])[0]) == 26
-    assert ["encoding_format" in request.body for request in loopback.others] == [True, False, False]
 
 
 @pytest.mark.parametrize("status", [301, 307])

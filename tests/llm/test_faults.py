@@ -117,8 +117,6 @@ QUOTA = '{"error": {"message": "%s", "type": "insufficient_quota", "code": "insu
         (429, {}, QUOTA % "nix mehr da", FaultKind.QUOTA, None),
         (429, {"retry-after": "1"}, QUOTA % "x", FaultKind.QUOTA, 1.0),
         (402, {}, "配额", FaultKind.QUOTA, None),
-        (400, {}, '{"error": {"message": "Your credit balance is too low to use this API"}}', FaultKind.QUOTA, None),
-        (307, {}, "moved", FaultKind.REDIRECT, None),
         (403, {}, QUOTA % "x", FaultKind.QUOTA, None),
         (400, {}, '{"error": {"code": "context_length_exceeded", "message": "trop long"}}', FaultKind.TOO_LONG, None),
         (400, {}, '{"error": {"code": "json_validate_failed", "message": "no"}}', FaultKind.REFUSED, None),

@@ -40,7 +40,9 @@ def test_who_wants_to_accelerate_never_slows_down(wished: float, means: tuple[fl
 
 def test_means_are_those_of_the_vehicle_model(junction: Junction) -> None:
     forecast = junction.forecast()
-    slower, idle, faster = mean_accelerations(forecast, 6.0, 6.0, 2.0)
+    slower, idle, faster = mean_accelerations(forecast, 6.0, 6.0, ("", 0.0), 2.0)
     assert (slower, idle, faster) == pytest.approx((-1.5, 0.0, 1.5), abs=0.05)
-    assert mean_accelerations(forecast, 0.0, 0.0, 2.0)[0] == 0.0
-    assert mean_accelerations(forecast, 3.0, 6.0, 2.0)[1] == pytest.approx(1.5, abs=0.05), "IDLE goes on to the target"
+    assert mean_accelerations(forecast, 0.0, 0.0, ("", 0.0), 2.0)[0] == 0.0
+    assert mean_accelerations(forecast, 3.0, 6.0, ("", 0.0), 2.0)[1] == pytest.approx(1.5, abs=0.05), (
+        "IDLE goes on to the target"
+    )

@@ -94,7 +94,7 @@ class JointActions(Executor):
             return Drive({}, {}, {}, {})
         held = min(max(round(self.hold / moment.forecast.model.decision_interval), 1), LONGEST)
         plans: list[Plan] = [(*(action,) * held, Action.FASTER) for action in OPTIONS]
-        travels = {v.id: moment.forecast.travel(v.speed, v.target, plans) for v in vehicles.values()}
+        travels = {v.id: moment.forecast.travel(v.speed, v.target, plans, v.routes[0]) for v in vehicles.values()}
         samples = round(self.horizon / moment.forecast.sample) + 1
         costs = joint_costs(moment, vehicles, travels, samples, self.weights)
         allowed = [self._allowed(moment, v) for v in vehicles.values()]
@@ -118,7 +118,8 @@ class JointActions(Executor):
         change = moment.scenes[v.id].must_change
         if change is None:
             return found
-        stops = moment.forecast.travel(v.speed, v.target, [then_stop(action) for action in OPTIONS])[:, -1]
+        plans = [then_stop(action) for action in OPTIONS]
+        stops = moment.forecast.travel(v.speed, v.target, plans, v.routes[0])[:, -1]
         return [k for k in found if stops[k] <= change.room - LANE_END_GAP] or found[-1:]
 
     def _shares(

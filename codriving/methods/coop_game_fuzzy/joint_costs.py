@@ -70,13 +70,13 @@ def human_risk(moment: Moment, ego: str, where: Poses, samples: int, top_speed: 
     for other in moment.vehicles[ego].values():
         if other.is_cav:
             continue
-        low, high = moment.forecast.likely(other.speed)
-        if other.standing >= YIELDS_AFTER:
-            low, high = np.zeros_like(low), np.zeros_like(high)
-        # The interval is up to 12 m long: its middle and its ends are close enough for a field of this length.
-        reached = np.array([low, (low + high) / 2, high])[:, :samples]
         dangers = []
         for route, place in other.routes:
+            low, high = moment.forecast.likely(other.speed, (route, place))
+            if other.standing >= YIELDS_AFTER:
+                low, high = np.zeros_like(low), np.zeros_like(high)
+            # The interval is up to 12 m long: its middle and its ends are close enough for a field of this length.
+            reached = np.array([low, (low + high) / 2, high])[:, :samples]
             source = poses(moment.road_map.paths[route], place + reached, np.full_like(reached, other.speed))
             dangers.append(risk(where.x[:, None, :], where.y[:, None, :], source, top_speed).max(axis=1))
         found += np.max(dangers, axis=0).max(axis=1)

@@ -61,7 +61,7 @@ class DiLu(ModelMethod):
         self._steps = max(1, ceil(self.hold / model.decision_interval - 1e-6))
         # A CAV that decides every second predicts what follows from deciding every second.
         held = replace(model, decision_interval=self._steps * model.decision_interval)
-        self._perception = single_vehicle_perception(road_map, Forecast(held, CONSTANT))
+        self._perception = single_vehicle_perception(road_map, Forecast(held, CONSTANT, road_map))
         self._held: dict[str, tuple[Situation, Decision]] = {}
         self._decided = 0
         self._decider: ModelDecider | None = None

@@ -73,8 +73,10 @@ class NonCooperativeGame(Driver):
             precedences = (precedence, *precedences)
             if played <= wished:
                 wished, why = played, said
-        target = moment.scenes[ego].intent.target_speed
-        means = mean_accelerations(moment.forecast, own.speed, target, self.others.window)
+        scene = moment.scenes[ego]
+        means = mean_accelerations(
+            moment.forecast, own.speed, scene.intent.target_speed, scene.where, self.others.window
+        )
         action = closest_action(wished, means, self.others.brake_at)
         counts = {"games": int(bool(partner) and not crept), "creeps": int(crept)}
         return Choice(action, f"{why}; it wishes {wished:+.1f} m/s2", precedences, refused, counts)

@@ -88,7 +88,8 @@ class Careful(Driver):
         """When an action becomes dangerous [s], why (nothing if it does not), and who would go first."""
         model, scene = moment.forecast.model, moment.scenes[ego]
         steps = round(self.look / model.step)
-        travelled, speeds = rollout(model, [scene.ego.speed], [scene.intent.target_speed], ((action,),), steps)
+        now, way = ([scene.ego.speed], [scene.intent.target_speed]), moment.forecast.along(scene.ego.speed, scene.where)
+        travelled, speeds = rollout(model, *now, ((action,),), steps, way)
         motion = _Motion(np.arange(steps + 1, dtype=np.float64) * model.step, travelled[0, 0], speeds[0, 0])
         dangers: list[tuple[float, str]] = []
         for ahead in leaders(scene, moment.road_map):

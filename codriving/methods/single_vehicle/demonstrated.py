@@ -106,7 +106,8 @@ class Demonstrated(WaitingDriver):
         """The way that each action leads over within the horizon (actions, n) [m], and the times (n,) [s]."""
         scene, forecast = moment.scenes[ego], moment.forecast
         last = min(round(self.horizon / forecast.sample), forecast.steps) + 1
-        travel = forecast.travel(scene.ego.speed, scene.intent.target_speed, tuple((a,) for a in actions))
+        plans = tuple((a,) for a in actions)
+        travel = forecast.travel(scene.ego.speed, scene.intent.target_speed, plans, scene.where)
         return travel[:, :last], forecast.times[:last]
 
     def _too_close(self, leader: Leader, travel: Array, times: Array, sample: float, headway: float) -> Flags:

@@ -114,7 +114,8 @@ class Encounter:
 
 def encounters(moment: Moment, ego: str, firm: float) -> tuple[Encounter, ...]:
     """Return everything that is open, most urgent first."""
-    stops = float(moment.forecast.reach(moment.scenes[ego].ego.speed, True).least[-1])
+    scene = moment.scenes[ego]
+    stops = float(moment.forecast.reach(scene.ego.speed, True, scene.where).least[-1])
     others = {n.id: n for n in moment.scenes[ego].neighbours}
     zones = moment.road_map.zones
     return tuple(Encounter(c, others[c.other], zones(*c.routes)[c.zone], stops, firm) for c in moment.conflicts[ego])
@@ -174,7 +175,8 @@ def _lets_start(e: Encounter, moment: Moment, ego: str, clear: float) -> bool:
         return passes_by(e, moment.road_map)
     if e.other_inside:
         return False
-    go = moment.forecast.reach(moment.scenes[ego].ego.speed, True).most
+    scene = moment.scenes[ego]
+    go = moment.forecast.reach(scene.ego.speed, True, scene.where).most
     return e.conflict.ttcp[1] > moment.forecast.time_to(e.conflict.exits[0], go) + clear
 
 

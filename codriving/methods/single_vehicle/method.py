@@ -59,7 +59,7 @@ class SingleVehicle(Method):
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
-        self._perception = single_vehicle_perception(road_map, Forecast(model))
+        self._perception = single_vehicle_perception(road_map, Forecast(model, (), road_map))
         self.driver.reset()
 
     def act(self, world: WorldState) -> ReasonedDeliberation:

@@ -46,7 +46,7 @@ class JointPlans(JointPlanner):
         self.travels: dict[str, Array] = {}
         self._alone: dict[str, Steps] = {}
         for v in self.vehicles.values():
-            travels = moment.forecast.travel(v.speed, v.target, PLANS)
+            travels = moment.forecast.travel(v.speed, v.target, PLANS, v.routes[0])
             self.travels[v.id] = np.concatenate([travels, own[v.id]]) if v.id in own else travels
         self.gains = {name: worth(travels) for name, travels in self.travels.items()}
         self._met: dict[tuple[str, str], list[Meeting]] = {}
@@ -59,7 +59,7 @@ class JointPlans(JointPlanner):
         if not names:
             return {}
         cavs = [self.vehicles[name] for name in names]
-        states, plans = [(v.speed, v.target) for v in cavs], [self._continued[name] for name in names]
+        states, plans = [(v.speed, v.target, *v.routes[0]) for v in cavs], [self._continued[name] for name in names]
         return dict(zip(names, self.moment.forecast.travel_each(states, plans)[:, None], strict=True))
 
     def plan_of(self, name: str, k: int) -> Plan:
@@ -112,7 +112,8 @@ class JointPlans(JointPlanner):
             if change is not None:
                 firsts = [self.plan_of(name, k)[0] for k in range(len(travels))]
                 kinds = sorted(set(firsts))
-                stops = self.moment.forecast.travel(v.speed, v.target, [then_stop(a) for a in kinds])[:, -1]
+                plans = [then_stop(a) for a in kinds]
+                stops = self.moment.forecast.travel(v.speed, v.target, plans, v.routes[0])[:, -1]
                 too_far = {a: stop > change.room - LANE_END_GAP for a, stop in zip(kinds, stops, strict=True)}
                 steps = np.where([too_far[a] for a in firsts], 0, steps)
             self._alone[name] = steps

@@ -80,10 +80,11 @@ def _too_close(moment: Moment, name: str, headway: float, action: Action) -> str
     """Return the vehicle that is so close ahead that after an action there is too little room to stop."""
     scene, forecast = moment.scenes[name], moment.forecast
     speed = scene.ego.speed
-    (later,) = forecast.travel(speed, scene.intent.target_speed, [then_stop(action)])[:, -1]
+    (later,) = forecast.travel(speed, scene.intent.target_speed, [then_stop(action)], scene.where)[:, -1]
     for n in scene.neighbours:
         if n.role is Role.LEADING and n.gap is not None:
-            rolls = float(forecast.reach(n.speed, moment.vehicles[name][n.id].is_cav).least[-1])
+            there = moment.vehicles[name][n.id]
+            rolls = float(forecast.reach(n.speed, there.is_cav, there.routes[0]).least[-1])
             if n.gap < max(headway * speed, later - rolls) + ROOM:
                 return n.id
     change = scene.must_change
@@ -114,5 +115,6 @@ def _held(moment: Moment, name: str, ordering: Ordering) -> str:
     distance = _distance(moment, name)
     if name not in ordering.not_before or distance <= 0:
         return ""
-    soonest = moment.forecast.time_to(distance, moment.forecast.reach(moment.scenes[name].ego.speed, True).most)
+    scene, forecast = moment.scenes[name], moment.forecast
+    soonest = forecast.time_to(distance, forecast.reach(scene.ego.speed, True, scene.where).most)
     return "its turn" if soonest < ordering.not_before[name] - LATE else ""

@@ -11,7 +11,7 @@ from codriving.datatypes import Conflict, TrackedVehicle
 from codriving.geometry import PLANNING, TRUE, ConflictZone, Footprint
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Steps, first_true
-from codriving.reasoning.prediction.expectation import CLEARS, is_behind
+from codriving.reasoning.prediction.expectation import is_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.conflict_lane import BODY
 
@@ -63,7 +63,7 @@ class Meeting:
 
 def meetings_behind(moment: Moment, behind: TrackedVehicle, ahead: TrackedVehicle, lag: int) -> list[Meeting]:
     """Return where a vehicle drives behind another one; a lane that it is leaving counts until its body is off it."""
-    n, short = moment.forecast.steps + 1, round(CLEARS / moment.forecast.sample) + 1
+    n, short = moment.forecast.steps + 1, moment.forecast.clears
     return [
         Meeting(((zone,),), place, there, short if r else n, lag, 0.0)
         for r, (route, place) in enumerate(behind.routes)
@@ -82,7 +82,7 @@ def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, 
     found: Steps = np.full(len(travels), travels.shape[1])
     people = {m.id: m for m in moment.vehicles[ego.id].values() if not m.is_cav}
     for other in people.values():
-        low, _ = moment.forecast.likely(other.speed)
+        low = np.min([moment.forecast.likely(other.speed, way)[0] for way in other.routes], axis=0)
         for meeting in meetings_behind(moment, ego, other, following):
             found = np.minimum(found, meeting.steps(travels, low))
     for c in moment.conflicts[ego.id]:
@@ -93,7 +93,7 @@ def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, 
 
 def _in_zone(moment: Moment, c: Conflict, other: TrackedVehicle, travels: Array, lag: int, pad: float) -> Steps:
     place, there = c.places
-    low, high = moment.forecast.likely(other.speed)
+    low, high = moment.forecast.likely(other.speed, (c.routes[1], there))
     yields = gives_way(c, other, moment.road_map)
     steps: Steps = np.zeros(len(travels), dtype=np.int64)
     # Beside a driver who gives way the bodies have to keep clear, no more.

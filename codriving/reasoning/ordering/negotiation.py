@@ -62,11 +62,11 @@ class OwnOrders(Negotiation):
                 continue
             shared = [c for c in conflicts if c.other == other]
             c, forecast = shared[0], moment.forecast
-            mine = forecast.time_to(c.distances[0], forecast.reach(scene.ego.speed, True).most)
+            mine = forecast.time_to(c.distances[0], forecast.reach(scene.ego.speed, True, scene.where).most)
             if self.reading == "own_view" or n.intent is None:
                 theirs = ttcp(c.distances[1], n.speed)
             else:
-                theirs = forecast.time_to(c.distances[1], forecast.reach(n.speed, True).most)
+                theirs = forecast.time_to(c.distances[1], forecast.reach(n.speed, True, n.routes[0]).most)
             times[ego], times[other] = min(mine, times.get(ego, mine)), theirs
             if n.intent is None:
                 first = passes_first(moment, ego, n, shared)

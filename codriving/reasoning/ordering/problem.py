@@ -55,7 +55,7 @@ def _approaching(moment: Moment, ego: str) -> ApproachingVehicle:
     zones = [road_map.zones(*c.routes)[c.zone] for c in conflicts]
     reference = min(zone.entry_i for zone in zones)
     ahead = reference - scene.place
-    go = moment.forecast.reach(speed, True)
+    go = moment.forecast.reach(speed, True, scene.where)
     lane = road_map.lane_at(route.id, scene.place)
     # Turning matters where ways cross; on a ring or a ramp no vehicle goes straight on.
     return ApproachingVehicle(
@@ -67,7 +67,7 @@ def _approaching(moment: Moment, ego: str) -> ApproachingVehicle:
         lane="/".join(map(str, lane)),
         stream="/".join((*map(str, lane), str(route.turn))),
         distance=max(ahead, 0.0),
-        crossing=(max(zone.exit_i for zone in zones) - reference) / top,
+        crossing=moment.forecast.duration((route.id, reference), max(zone.exit_i for zone in zones) - reference),
         remaining=max(route.goal - scene.place, 0.0),
         speed=speed,
         priority=road_map.lanes[lane].priority,
@@ -83,7 +83,8 @@ def _separations(moment: Moment, vehicles: Mapping[str, ApproachingVehicle], gap
             zone = moment.road_map.zones(*c.routes)[c.zone]
             for pair, first in (((ego, c.other), True), ((c.other, ego), False)):
                 shift = vehicles[pair[1]].reference - vehicles[pair[0]].reference
-                needed = (lag_length(zone, first) + shift) / moment.forecast.model.top_speed + gap
+                way = (c.routes[0], zone.entry_i) if first else (c.routes[1], zone.entry_j)
+                needed = moment.forecast.duration(way, lag_length(zone, first) + shift) + gap
                 found[pair] = max(needed, found.get(pair, needed))
     return found
 
@@ -124,7 +125,9 @@ def _fixed(moment: Moment, vehicles: Mapping[str, ApproachingVehicle]) -> set[Pa
 
 def _stops_at(moment: Moment, name: str, place: float) -> float:
     """Return where a CAV comes to a stop if it brakes now [m]."""
-    return place + float(moment.forecast.reach(moment.scenes[name].ego.speed, True).least[-1])
+    return place + float(
+        moment.forecast.reach(moment.scenes[name].ego.speed, True, moment.scenes[name].where).least[-1]
+    )
 
 
 def _is_ahead(c: Conflict, road_map: RoadMap) -> bool:
@@ -154,17 +157,19 @@ def window(moment: Moment, c: Conflict, human: TrackedVehicle, reference: float)
     forecast = moment.forecast
     if gives_way(c, human, moment.road_map):
         return inf, inf
-    zone, top = moment.road_map.zones(*c.routes)[c.zone], forecast.model.top_speed
-    slow, fast = forecast.likely(human.speed)
+    zone = moment.road_map.zones(*c.routes)[c.zone]
+    slow, fast = forecast.likely(human.speed, (c.routes[1], c.places[1]))
     leaves = forecast.time_to(zone.entry_i + lag_length(zone, False) - c.places[1], slow)
-    begin = forecast.time_to(c.distances[1], fast) - (zone.entry_j + lag_length(zone) - reference) / top - CERTAIN_GAP
-    return begin, leaves + GAP - (zone.entry_i - reference) / top
+    way = (c.routes[0], reference)
+    passed = forecast.duration(way, zone.entry_j + lag_length(zone) - reference)
+    begin = forecast.time_to(c.distances[1], fast) - passed - CERTAIN_GAP
+    return begin, leaves + GAP - forecast.duration(way, zone.entry_i - reference)
 
 
 def passes_first(moment: Moment, ego: str, human: TrackedVehicle, conflicts: Iterable[Conflict]) -> bool:
     """Whether a CAV that accelerates is through all its conflicts with a human driver before that one can be there."""
     scene, forecast = moment.scenes[ego], moment.forecast
-    travel = forecast.reach(scene.ego.speed, True).most
+    travel = forecast.reach(scene.ego.speed, True, scene.where).most
     return all(
         forecast.time_to(c.distances[0], travel) <= window(moment, c, human, scene.place + c.distances[0])[0]
         for c in conflicts

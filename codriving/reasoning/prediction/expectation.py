@@ -17,9 +17,6 @@ HEADWAY = 0.8
 
 EARLY = 0.3  # Weight of the mean distance within the horizon against the distance at its end
 
-# Time after which a vehicle that changes lanes is off the lane that it leaves [s]; measured at 5 to 30 m/s.
-CLEARS = 1.6
-
 
 @dataclass(frozen=True, slots=True)
 class Expected:
@@ -54,8 +51,8 @@ def expect_all(
 
 def expect_human(moment: Moment, human: TrackedVehicle) -> tuple[Expected, ...]:
     """Expect a human driver to keep its speed on each route that it may take."""
-    steady = moment.forecast.reach(human.speed, False).steady
-    return tuple(Expected(route, place + steady, True, {}) for route, place in human.routes)
+    reach = moment.forecast.reach
+    return tuple(Expected(way[0], way[1] + reach(human.speed, False, way).steady, True, {}) for way in human.routes)
 
 
 def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str, tuple[Expected, ...]]:
@@ -90,11 +87,11 @@ def plans_that_keep(
 ) -> tuple[Array, Flags]:
     """Return how far each plan takes a vehicle (plans, n) [m], and whether it keeps the order on each of its routes."""
     forecast = moment.forecast
-    travels = forecast.travel(vehicle.speed, vehicle.target, PLANS)
+    travels = forecast.travel(vehicle.speed, vehicle.target, PLANS, vehicle.routes[0])
     keeps = np.ones(len(PLANS), dtype=np.bool_)
     for k, (route, place) in enumerate(vehicle.routes):
         # A lane that the vehicle is leaving is minded until its body is off it.
-        until = forecast.steps + 1 if k == 0 else round(CLEARS / forecast.sample) + 1
+        until = forecast.steps + 1 if k == 0 else forecast.clears
         minds = moment.sees_conflicts and k == 0
         keeps &= keeps_order(moment, ego, vehicle.id, route, place + travels[:, :until], expected, order, lag, minds)
     return travels, keeps

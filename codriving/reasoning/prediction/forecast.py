@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.datatypes import Action, DrivingModel
+from codriving.geometry import RoadMap
 from codriving.reasoning.prediction.clearance import Array
+from codriving.reasoning.prediction.limited import Along, driven, fastest
 from codriving.reasoning.prediction.rollout import Plan, canonical, travelled
 
 HORIZON = 10.0  # How far ahead each vehicle is predicted [s]; a stop from top speed and a crossing both fit in
@@ -16,13 +18,21 @@ SAMPLE = 0.2  # Time between two samples of a prediction, rounded to whole simul
 
 SPEEDING = 1.0  # How much faster than the CAVs' top speed a human driver may become [m/s]
 
-HARD_BRAKING = 6.0  # Hardest braking expected of a human driver [m/s2]
-
-HARD_ACCELERATION = 1.5  # Hardest acceleration expected of a human driver [m/s2]
-
-
 # How far a driver may be from where constant speed leads: at once [m], more each second [m/s], and at most [m].
 DRIFT = (1.0, 0.75, 6.0)
+
+USUAL = 1.5  # Acceleration of a driver after a curve [m/s2]
+
+# Time after which a vehicle without limits that changes lanes is off the lane that it leaves [s]; at 5 to 30 m/s.
+CLEARS = 1.6
+
+LANE = 4.0  # Width of a lane of a road that is not given [m]
+
+# By how much the arc length of a vehicle that cuts a corner or changes lanes may differ from what it has driven: a
+# share of that, what the first second brings [m/s], and at most [m]; up to 0.28 m were seen.
+STRAYS = (0.15, 0.3, 0.8)
+
+NOWHERE = ("", 0.0)
 
 FEW = 8  # Plans that are looked up one by one in no time
 
@@ -39,20 +49,34 @@ class Reach:
     most: Array  # Distance if it accelerates as hard as it can (steps + 1,) [m]
 
 
+# Route and arc length of a vehicle [m]; where vehicles have no limits they make no difference.
+Where = tuple[str, float]
+
+# Speed and target speed of a CAV [m/s], and where it is.
+State = tuple[float, float, str, float]
+
+
 class Forecast:
-    """Predictions, each worked out once a decision step.
+    """Predictions, each worked out once a decision step; on a straight road unless a road is given.
 
     Attributes:
         sample: Time between two samples of a prediction [s].
         times: Time of each sample from now (steps + 1,) [s].
+        clears: Samples until a vehicle that changes lanes is off the lane that it leaves.
     """
 
-    def __init__(self, model: DrivingModel, library: tuple[Plan, ...] = ()) -> None:
-        self.model = model
+    def __init__(self, model: DrivingModel, library: tuple[Plan, ...] = (), road_map: RoadMap | None = None) -> None:
+        self.model, self._road_map = model, road_map
         self._stride = max(1, round(SAMPLE / model.step))
         self.sample = self._stride * model.step
         self.steps = round(HORIZON / self.sample)
         self.times: Array = np.arange(self.steps + 1, dtype=np.float64) * self.sample
+        self._profiles = {} if road_map is None else road_map.speed_profiles(model)
+        self._legal = {} if road_map is None else {route: road_map.speed_limit(route) for route in road_map.routes}
+        self._limited = bool(self._profiles)
+        widest = LANE if road_map is None else road_map.widest
+        clears = CLEARS if model.limits is None else model.limits.clears_after(widest)
+        self.clears = round(clears / self.sample) + 1
         asked = tuple(dict.fromkeys((*library, BRAKE, GO)))
         # Plans that mean the same, written differently, are worked out once.
         self._library = tuple(dict.fromkeys(canonical(plan) for plan in asked))
@@ -60,41 +84,50 @@ class Forecast:
         self._index = {plan: rows[canonical(plan)] for plan in asked}
         self._asked: tuple[Plan, ...] = ()
         self._rows: NDArray[np.intp] = np.empty(0, dtype=np.intp)
-        self._travel: dict[tuple[float, float], Array] = {}
-        self._reach: dict[tuple[bool, float], Reach] = {}
-        self._likely: dict[float, tuple[Array, Array]] = {}
+        self._travel: dict[State, Array] = {}
+        self._reach: dict[tuple[bool, float, Where], Reach] = {}
+        self._likely: dict[tuple[float, Where], tuple[Array, Array]] = {}
 
-    def begin_step(self, states: Sequence[tuple[float, float]] = ()) -> None:
-        """Forget the predictions of the step before, and predict the CAVs of this one.
-
-        Args:
-            states: Speed and target speed of each CAV [m/s].
-        """
+    def begin_step(self, states: Sequence[State] = ()) -> None:
+        """Forget the predictions of the step before, and predict the CAVs of this one."""
         self._travel.clear()
         self._reach.clear()
         self._likely.clear()
-        self._predict(states)
+        self._predict([self._state(speed, target, (route, place)) for speed, target, route, place in states])
 
-    def _predict(self, states: Sequence[tuple[float, float]]) -> None:
+    def _state(self, speed: float, target: float, where: Where) -> State:
+        """Leave out where a CAV is if that makes no difference to it."""
+        return (speed, target, *(where if self.along(speed, where) else NOWHERE))
+
+    def along(self, speed: float, where: Where) -> tuple[Along, ...]:
+        """Return the way of a CAV for `rollout`; nothing where it makes no difference within the horizon."""
+        if not self._limited or where == NOWHERE:
+            return ()
+        profile, ahead = self._profiles[where[0]], max(speed, self.model.top_speed)
+        return () if profile.allows(self.model.top_speed, where[1], ahead * HORIZON) else ((profile, where[1]),)
+
+    def _predict(self, states: Sequence[State]) -> None:
         new = list(dict.fromkeys(state for state in states if state not in self._travel))
-        if new:
-            speeds, targets = zip(*new, strict=True)
-            distances = travelled(self.model, speeds, targets, self._library, self.steps, self._stride)
-            self._travel.update(zip(new, distances, strict=True))
+        for curved in (False, True):
+            some = [state for state in new if (state[2:] != NOWHERE) == curved]
+            if some:
+                speeds, targets, *_ = zip(*some, strict=True)
+                along = tuple((self._profiles[route], place) for *_, route, place in some) if curved else ()
+                size = (self.steps, self._stride)
+                distances = travelled(self.model, speeds, targets, self._library, *size, along=along)
+                self._travel.update(zip(some, distances, strict=True))
 
-    def travel_each(self, states: Sequence[tuple[float, float]], plans: Sequence[Plan]) -> Array:
+    def travel_each(self, states: Sequence[State], plans: Sequence[Plan]) -> Array:
         """Distances of several CAVs, each for a plan of its own, which need not be in the library.
-
-        Args:
-            states: Speed and target speed of each CAV [m/s].
 
         Returns:
             Distance travelled (n, steps + 1) [m].
         """
-        speeds, targets = [speed for speed, _ in states], [target for _, target in states]
-        return travelled(self.model, speeds, targets, tuple(plans), self.steps, self._stride, paired=True)
+        speeds, targets = [state[0] for state in states], [state[1] for state in states]
+        along = [(self._profiles[route], place) for *_, route, place in states] if self._limited else []
+        return travelled(self.model, speeds, targets, tuple(plans), self.steps, self._stride, True, along)
 
-    def travel(self, speed: float, target: float, plans: Sequence[Plan]) -> Array:
+    def travel(self, speed: float, target: float, plans: Sequence[Plan], where: Where = NOWHERE) -> Array:
         """Distances of a CAV for several plans of the library.
 
         Args:
@@ -104,13 +137,14 @@ class Forecast:
         Returns:
             Distance travelled (len(plans), steps + 1) [m].
         """
-        return self._travels(speed, target)[self._rows_of(plans)]
+        return self._travels(speed, target, where)[self._rows_of(plans)]
 
-    def _travels(self, speed: float, target: float) -> Array:
+    def _travels(self, speed: float, target: float, where: Where) -> Array:
         """Distances for every plan of the library."""
-        if (speed, target) not in self._travel:
-            self._predict([(speed, target)])
-        return self._travel[speed, target]
+        state = self._state(speed, target, where)
+        if state not in self._travel:
+            self._predict([state])
+        return self._travel[state]
 
     def _rows_of(self, plans: Sequence[Plan]) -> NDArray[np.intp]:
         """Rows of several plans in the library."""
@@ -122,25 +156,49 @@ class Forecast:
             self._asked, self._rows = plans, rows
         return self._rows
 
-    def reach(self, speed: float, is_cav: bool) -> Reach:
+    def reach(self, speed: float, is_cav: bool, where: Where = NOWHERE) -> Reach:
         """Bounds of how far a vehicle comes.
 
         Args:
             speed: Speed now [m/s].
         """
-        key = (is_cav, speed)
+        key = (is_cav, speed, where if self._limited else NOWHERE)
         if key not in self._reach:
-            if is_cav:
-                # Neither depends on the present target, so that of any state with this speed will do.
-                travels = self._travels(speed, next((goal for v, goal in self._travel if v == speed), speed))
-                least, most = travels[self._index[BRAKE]], travels[self._index[GO]]
-            else:
-                least = slowest(speed, self.times)
-                most = fastest(speed, self.times, self.model.target_speeds[-1] + SPEEDING)
-            self._reach[key] = Reach(least, speed * self.times, most)
+            self._reach[key] = self._bounds(speed, is_cav, where)
         return self._reach[key]
 
-    def likely(self, speed: float) -> tuple[Array, Array]:
+    def _bounds(self, speed: float, is_cav: bool, where: Where) -> Reach:
+        steady = self._steady(speed, where)
+        if is_cav:
+            # Without limits neither depends on the present target, so that of any state with this speed will do.
+            here = self._state(speed, speed, where)[2:]
+            target = next((goal for v, goal, *there in self._travel if v == speed and (*there,) == here), speed)
+            travels = self._travels(speed, target, where)
+            rows = (self._index[BRAKE], self._index[GO]) if self.model.limits is None else (-2, -1)
+            least, most = travels[rows[0]], travels[rows[1]]
+        else:
+            pedal = self.model.human_acceleration
+            legal = self._legal[where[0]] if self._limited else self.model.top_speed + SPEEDING
+            least = slowest(speed, self.times, self.model.human_braking)
+            if self._limited:
+                most = driven((self._profiles[where[0]], where[1]), speed, legal, pedal, self.times)
+            else:
+                most = fastest(speed, self.times, legal, pedal)
+        if self.model.limits is None:
+            return Reach(least, steady, most)
+        return Reach(np.maximum(least - self._strays(least), 0.0), steady, most + self._strays(most))
+
+    def _strays(self, distance: Array) -> Array:
+        share, each_second, at_most = STRAYS
+        return np.asarray(np.minimum(share * distance + each_second * np.minimum(self.times, 1.0), at_most))
+
+    def _steady(self, speed: float, where: Where) -> Array:
+        """Distance of a vehicle that keeps its speed but for curves."""
+        if not self._limited:
+            return speed * self.times
+        return driven((self._profiles[where[0]], where[1]), speed, speed, USUAL, self.times)
+
+    def likely(self, speed: float, where: Where = NOWHERE) -> tuple[Array, Array]:
         """Distances between which a human driver is expected, apart from what it could do at the worst.
 
         Args:
@@ -149,9 +207,16 @@ class Forecast:
         Returns:
             The least and the most, each (steps + 1,) [m].
         """
-        if speed not in self._likely:
-            self._likely[speed] = likely_distances(speed, self.times)
-        return self._likely[speed]
+        key = (speed, where if self._limited else NOWHERE)
+        if key not in self._likely:
+            self._likely[key] = likely_distances(self._steady(speed, where), self.times)
+        return self._likely[key]
+
+    def duration(self, where: Where, length: float) -> float:
+        """Return how long a vehicle that is as fast as it can takes from a place on for a length [m], at least [s]."""
+        if not self._limited:
+            return length / self.model.top_speed
+        return self._profiles[where[0]].duration(where[1], length)
 
     def time_to(self, distance: float, travel: Array) -> float:
         """Return when a distance has been covered.
@@ -173,20 +238,14 @@ class Forecast:
         return float(self.times[-1] + (distance - travel[-1]) / pace) if pace > 0.05 else float("inf")
 
 
-def likely_distances(speed: float, times: Array) -> tuple[Array, Array]:
+def likely_distances(steady: Array, times: Array) -> tuple[Array, Array]:
     """Distances between which a driver is expected, who goes on at about the present speed."""
     at_once, each_second, at_most = DRIFT
     drift = np.minimum(at_once + each_second * times, at_most)
-    return np.maximum(speed * times - drift, 0.0), speed * times + drift
+    return np.maximum(steady - drift, 0.0), steady + drift
 
 
-def slowest(speed: float, times: Array) -> Array:
-    """Distance of a driver who brakes hard at once."""
-    braking = np.minimum(times, speed / HARD_BRAKING)
-    return np.asarray(speed * braking - HARD_BRAKING * braking**2 / 2)
-
-
-def fastest(speed: float, times: Array, limit: float) -> Array:
-    """Distance of a driver who accelerates hard up to the speed limit."""
-    rising = np.minimum(times, max(limit - speed, 0.0) / HARD_ACCELERATION)
-    return np.asarray(speed * times + HARD_ACCELERATION * rising**2 / 2 + HARD_ACCELERATION * rising * (times - rising))
+def slowest(speed: float, times: Array, pedal: float) -> Array:
+    """Distance of a driver who brakes hard at once [m/s2]."""
+    braking = np.minimum(times, speed / pedal)
+    return np.asarray(speed * braking - pedal * braking**2 / 2)

@@ -8,6 +8,7 @@ import numpy as np
 
 from codriving.datatypes import Action, DrivingModel
 from codriving.reasoning.prediction.clearance import Array
+from codriving.reasoning.prediction.limited import Along, limited
 
 Plan = tuple[Action, ...]  # Actions, one a decision; the last one is repeated for ever
 
@@ -87,7 +88,12 @@ def _law(model: DrivingModel) -> _Law:
 
 
 def rollout(
-    model: DrivingModel, speeds: Sequence[float], targets: Sequence[float], plans: tuple[Plan, ...], steps: int
+    model: DrivingModel,
+    speeds: Sequence[float],
+    targets: Sequence[float],
+    plans: tuple[Plan, ...],
+    steps: int,
+    along: Sequence[Along] = (),
 ) -> tuple[Array, Array]:
     """Simulate every plan from every state, along a route.
 
@@ -97,10 +103,14 @@ def rollout(
     Args:
         speeds: Speed of each state (n,) [m/s].
         targets: Target speed of each state (n,) [m/s].
+        along: The way of each state, where vehicles have limits; without it the road is straight.
 
     Returns:
         Distance travelled [m] and speed [m/s], each (n, len(plans), steps + 1), the first column being now.
     """
+    if model.limits is not None:
+        changes = _known_changes(plans, -(-steps // model.substeps))
+        return limited(model, model.limits, speeds, targets, changes, steps, 1, along)
     law = _law(model)
     shape = (len(speeds), len(plans))
     v = np.broadcast_to(np.array(speeds, dtype=np.float64)[:, None], shape)
@@ -125,11 +135,19 @@ def travelled(
     samples: int,
     stride: int,
     paired: bool = False,
+    along: Sequence[Along] = (),
 ) -> Array:
-    """Return the distances of `rollout` at every `stride`-th step, bit for bit, without working out the others."""
+    """Return the distances of `rollout` at every `stride`-th step, bit for bit, without working out the others.
+
+    Where vehicles have limits and are not paired, the lowest and the highest bound of all plans follow as two more.
+    """
     law, substeps = _law(model), model.substeps
     decisions = -(-samples * stride // substeps)
     changes = _changes(plans, decisions) if paired else _known_changes(plans, decisions)
+    if model.limits is not None:
+        return limited(
+            model, model.limits, speeds, targets, changes, samples * stride, stride, along, paired, not paired
+        )[0]
     shape = (len(speeds),) if paired else (len(speeds), len(plans))
     v, goals, excess = np.empty(shape), np.empty((decisions + 1, *shape)), np.empty((decisions, *shape))
     v.T[...], goals[-1].T[...] = speeds, targets

@@ -103,10 +103,10 @@ def _soonest(given: SafetyInput, motions: Array, guess: int) -> Steps:
         if name == scene.ego.id:
             continue
         other = given.vehicles[name]
-        reach = given.forecast.reach(other.speed, other.is_cav)
-        travel = (reach.steady, reach.least, reach.most)[guess]
-        for e in expected:
+        for k, e in enumerate(expected):
             now = float(e.places[0])
+            reach = given.forecast.reach(other.speed, other.is_cav, other.routes[0 if other.is_cav else k])
+            travel = (reach.steady, reach.least, reach.most)[guess]
             # A vehicle behind on the same lane has to mind the CAV, not the other way round.
             for zone in given.road_map.zones(scene.intent.route, e.route):
                 ahead = is_behind(zone, scene.place, now)

@@ -72,7 +72,8 @@ def expected_to_pass(given: SafetyInput, c: Conflict) -> Flags:
 
 def leaves_in_time(given: SafetyInput, c: Conflict, zone: ConflictZone) -> bool:
     """Whether the CAV, as it is expected to move, will be out of a zone before a human driver can be there."""
-    most = c.places[1] + given.forecast.reach(given.vehicles[c.other].speed, False).most
+    way = (c.routes[1], c.places[1])
+    most = c.places[1] + given.forecast.reach(given.vehicles[c.other].speed, False, way).most
     return bool(stays_ahead(zone, given.expected[c.ego][0].places[None], most, 0, 0.0)[0])
 
 
@@ -91,7 +92,8 @@ def passes_and_stops(given: SafetyInput, c: Conflict) -> tuple[Flags, Flags]:
     feared as long as the bodies keep clear when it brakes.
     """
     zone, other = given.road_map.zones(*c.routes)[c.zone], given.vehicles[c.other]
-    reach, place = given.forecast.reach(other.speed, other.is_cav), c.places[1]
+    place = c.places[1]
+    reach = given.forecast.reach(other.speed, other.is_cav, other.routes[0] if other.is_cav else (c.routes[1], place))
     relied_on = _goes_on(given, other)
     # A bound on what the other one can do is a margin in itself; an expectation needs one.
     lag = given.lag if relied_on else round(BOUND_LAG / given.forecast.sample)

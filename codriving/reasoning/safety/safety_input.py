@@ -101,8 +101,8 @@ def safety_input(
     scene = moment.scenes[ego]
     speed, target = scene.ego.speed, scene.intent.target_speed
     plain = [a if a in LONGITUDINAL else Action.IDLE for a in moment.available[ego]]
-    stops = moment.forecast.travel(speed, target, [then_stop(a) for a in plain])
-    goes = moment.forecast.travel(speed, target, [then_go(a) for a in plain])
+    stops = moment.forecast.travel(speed, target, [then_stop(a) for a in plain], scene.where)
+    goes = moment.forecast.travel(speed, target, [then_go(a) for a in plain], scene.where)
     return SafetyInput(moment, ego, order, expected, lag, scene.place + stops, scene.place + goes)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from codriving.datatypes import Action, Role, TrackedVehicle
 from codriving.reasoning.prediction.clearance import Array, stays_behind
-from codriving.reasoning.prediction.expectation import CLEARS, is_behind
+from codriving.reasoning.prediction.expectation import is_behind
 from codriving.reasoning.safety.safety_input import SafetyInput
 
 STANDSTILL_GAP = 1.0  # Free distance that must be left to the leading vehicle when both have stopped [m]
@@ -22,7 +22,7 @@ def check_ahead(given: SafetyInput) -> dict[Action, list[str]]:
     travelled = given.stops - given.scene.place
     # While it changes lanes, the CAV is on two of them.
     ways = [
-        (own, place, round(CLEARS / given.forecast.sample) + 1 if k else given.forecast.steps + 1)
+        (own, place, given.forecast.clears if k else given.forecast.steps + 1)
         for k, (own, place) in enumerate(given.vehicles[given.scene.ego.id].routes)
     ]
     for n in given.scene.neighbours:
@@ -37,7 +37,7 @@ def check_ahead(given: SafetyInput) -> dict[Action, list[str]]:
         gap = n.gap if n.role is Role.LEADING else None
         if not ahead and gap is None:
             continue
-        least = given.forecast.reach(n.speed, there.is_cav).least
+        least = given.forecast.reach(n.speed, there.is_cav, there.routes[0]).least
         keeps = np.ones(len(given.actions), dtype=np.bool_)
         if gap is not None:
             keeps &= (gap + least - travelled >= min(STANDSTILL_GAP, gap)).all(axis=1)

@@ -40,7 +40,7 @@ def moment(junction: Junction, *cars: Car) -> Moment:
     world = junction.world(*cars)
     thoughts = junction.think(world)
     forecast = Forecast(junction.model, LIBRARY)
-    forecast.begin_step([(c.speed, world.intents[c.id].target_speed) for c in world.cavs])
+    forecast.begin_step([(c.speed, world.intents[c.id].target_speed, "", 0.0) for c in world.cavs])
     return replace(thoughts.moment(), forecast=forecast)
 
 

@@ -36,7 +36,7 @@ def test_travel_is_the_rollout_at_the_samples() -> None:
 
 def test_predicting_together_changes_nothing() -> None:
     alone, together = Forecast(MODEL, (WAITS,)), Forecast(MODEL, (WAITS,))
-    together.begin_step([(8.0, 9.0), (4.2, 6.0), (1.0, 0.0)])
+    together.begin_step([(8.0, 9.0, "", 0.0), (4.2, 6.0, "", 0.0), (1.0, 0.0, "", 0.0)])
     assert np.array_equal(alone.travel(4.2, 6.0, [WAITS]), together.travel(4.2, 6.0, [WAITS]))
     assert np.array_equal(alone.reach(8.0, True).most, together.reach(8.0, True).most)
     together.begin_step()
@@ -71,7 +71,7 @@ def test_human_drivers_have_wider_bounds_than_cavs() -> None:
 
 def test_what_a_driver_is_likely_to_do_is_sampled_like_everything_else() -> None:
     forecast = Forecast(MODEL)
-    for ours, theirs in zip(forecast.likely(7.0), likely_distances(7.0, forecast.times), strict=True):
+    for ours, theirs in zip(forecast.likely(7.0), likely_distances(7.0 * forecast.times, forecast.times), strict=True):
         assert np.array_equal(ours, theirs)
     least, most = forecast.likely(7.0)
     reach = forecast.reach(7.0, False)

@@ -1,0 +1,137 @@
+"""The near future of vehicles that have limits: step by step, since the speed then depends on the place."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from codriving.datatypes import DrivingModel, VehicleLimits
+from codriving.geometry import SpeedProfile
+from codriving.reasoning.prediction.clearance import Array
+
+Along = tuple[SpeedProfile, float]  # The speed profile of a route, and the arc length of a vehicle there [m]
+
+SLOW = 0.05  # Vehicles that stand are taken to start within a row of a speed profile by this speed [m/s]
+
+
+class _Tables:
+    """Speed profiles of several states, put one after another so that all are looked up at once."""
+
+    def __init__(self, along: Sequence[Along], shape: tuple[int, ...]) -> None:
+        profiles = list({id(profile): profile for profile, _ in along}.values())
+        starts = np.cumsum([0, *(len(profile.base) for profile in profiles)])
+        first = {id(profile): start for profile, start in zip(profiles, starts.tolist(), strict=False)}
+        self.base = np.concatenate([profile.base for profile in profiles])
+        self.slopes = np.concatenate([profile.slopes for profile in profiles])
+        column = (len(along), *(1,) * (len(shape) - 1))
+        self.rows = np.array([1 / profile.spacing for profile, _ in along]).reshape(column)
+        self.now = np.array([max(s, 0.0) / profile.spacing for profile, s in along]).reshape(column)
+        self.first = np.array([first[id(profile)] for profile, _ in along], dtype=np.intp).reshape(column)
+
+    def reference(self, travelled: Array) -> Array:
+        """Return the reference speed after some distance [m/s]."""
+        x = travelled * self.rows
+        x += self.now
+        k = x.astype(np.intp)
+        k += self.first
+        found: Array = self.slopes.take(k, mode="clip")
+        found *= x
+        found += self.base.take(k, mode="clip")
+        return found
+
+
+def limited(
+    model: DrivingModel,
+    limits: VehicleLimits,
+    speeds: Sequence[float],
+    targets: Sequence[float],
+    changes: Array,
+    steps: int,
+    stride: int,
+    along: Sequence[Along],
+    paired: bool = False,
+    bounds: bool = False,
+) -> tuple[Array, Array]:
+    """Simulate states under changes of the target speed, as the environment moves them.
+
+    Args:
+        speeds: Speed of each state (n,) [m/s].
+        targets: Target speed of each state (n,) [m/s].
+        changes: Steps of the target speed at each decision (decisions, plans); each for one state if paired.
+        steps: Number of simulation steps.
+        stride: Simulation steps between two samples.
+        along: The way of each state; none at all for a straight road.
+        bounds: Whether two plans follow that no other can fall behind and outrun: the lowest and the highest of the
+            target that is kept and the one to which SLOWER and FASTER step.
+
+    Returns:
+        Distance [m] and speed [m/s], each (n, plans, samples + 1), or (n, samples + 1) if paired.
+    """
+    low, top = model.target_speeds[0], len(model.target_speeds) - 1
+    span = model.target_speeds[-1] - low
+    if bounds:
+        extremes = np.tile([-1.0, 1.0], (len(changes), 1))
+        changes = np.concatenate((changes, extremes), axis=1)
+    shape = (len(speeds),) if paired else (len(speeds), changes.shape[1])
+    v, goal, s = np.empty(shape), np.empty(shape), np.zeros(shape)
+    v.T[...], goal.T[...] = speeds, targets
+    tables = _Tables(along, shape) if along else None
+    samples = steps // stride
+    distances, reached = np.zeros((samples + 1, *shape)), np.empty((samples + 1, *shape))
+    reached[0] = v
+    moved = np.empty(shape)
+    for n in range(samples * stride):
+        if n % model.substeps == 0:
+            change = changes[n // model.substeps]
+            stepped = np.minimum(np.maximum(np.rint((v - low) / span * top), 0), top) + change
+            stepped = low + span / top * np.minimum(np.maximum(stepped, 0), top)
+            kept = goal
+            goal = np.where(change == 0, kept, stepped)
+            if bounds:
+                goal[:, -2] = np.minimum(kept[:, -2], stepped[:, -2])
+                goal[:, -1] = np.maximum(kept[:, -1], stepped[:, -1])
+        pedal = goal - v if tables is None else np.minimum(tables.reference(s), goal) - v
+        pedal *= model.speed_gain
+        np.minimum(pedal, limits.acceleration, out=pedal)
+        np.maximum(pedal, -limits.braking, out=pedal)
+        np.multiply(v, model.step, out=moved)
+        s += moved
+        pedal *= model.step
+        v += pedal
+        if (n + 1) % stride == 0:
+            distances[(n + 1) // stride], reached[(n + 1) // stride] = s, v
+    return np.moveaxis(distances, 0, -1), np.moveaxis(reached, 0, -1)
+
+
+def driven(along: Along, speed: float, most: float, pedal: float, times: Array) -> Array:
+    """Distance of a human driver who accelerates up to a speed, and slows down for curves.
+
+    No driver who keeps the profile of the route, the acceleration and the speed gets farther.
+
+    Args:
+        most: Speed that the driver wants at most [m/s].
+        pedal: Acceleration [m/s2].
+    """
+    profile, place = along
+    wanted = max(speed, most)
+    distance = wanted * float(times[-1])
+    if profile.allows(wanted, place, distance):
+        return fastest(speed, times, most, pedal)
+    count = int(distance / profile.spacing) + 3
+    ahead = profile.spacing * np.arange(count)
+    allowed = np.interp(place + ahead, profile.spacing * np.arange(len(profile.speeds)), profile.speeds)
+    # Who is too fast for the place is so for a while.
+    allowed += max(speed - float(allowed[0]), 0.0)
+    square = np.minimum(allowed, wanted) ** 2
+    square[0] = speed**2
+    ramp = 2 * pedal * ahead
+    paces = np.sqrt(np.minimum.accumulate(square - ramp) + ramp)
+    if most < speed:
+        paces = np.minimum(paces, speed)
+    elapsed = np.concatenate(([0.0], np.cumsum(2 * profile.spacing / np.maximum(paces[1:] + paces[:-1], SLOW))))
+    return np.asarray(np.interp(times, elapsed, ahead))
+
+
+def fastest(speed: float, times: Array, limit: float, pedal: float) -> Array:
+    """Distance of a driver who accelerates up to a limit on a straight road."""
+    rising = np.minimum(times, max(limit - speed, 0.0) / pedal)
+    return np.asarray(speed * times + pedal * rising**2 / 2 + pedal * rising * (times - rising))
