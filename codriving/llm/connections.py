@@ -17,6 +17,8 @@ from codriving.llm.request import LIMIT
 
 LARGEST = 2_000_000  # More of a response is not read, counted when it is unpacked [bytes]
 
+_PER_OBJECT = 400  # Of the bytes of a response for each object or list in it; an answer has a dozen
+
 _HOPS = 3  # How often a redirect within one origin is followed
 
 _PIECE = 65_536  # What is unpacked at once at most [bytes]
@@ -158,6 +160,7 @@ class Client(httpx.AsyncClient):
                 await response.aread()
                 raise fault_of_response(response.status_code, response.headers, response.text)
             if not stream:
+                _refuse_many(await response.aread())
                 if response.headers.get("content-type", "").startswith("text/event-stream"):
                     response = _at_once(response, await response.aread())
                 if (bodies := _bodies.get()) is not None:
@@ -168,6 +171,13 @@ class Client(httpx.AsyncClient):
             await response.aclose()
             raise
         return response
+
+
+def _refuse_many(body: bytes) -> None:
+    """Refuse what is short but holds so many objects that LiteLLM would be busy with them for minutes."""
+    most = _largest.get() // _PER_OBJECT
+    if body.count(b"{") + body.count(b"[") > most:
+        raise CallError(FaultKind.OVERSIZE, f"more than {most} objects")
 
 
 def _at_once(response: httpx.Response, events: bytes) -> httpx.Response:

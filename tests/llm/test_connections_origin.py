@@ -128,6 +128,8 @@ BOMBS = {
     "plain": Fault(pack=lambda body: LARGE),
     "endless": Fault(endless=b"a" * 60_000),
     "twice": packed("gzip, gzip", lambda body: gzip.compress(gzip.compress(LARGE))),
+    "many choices": Fault(pack=lambda body: b'{"choices": [' + b"{}, " * 400_000 + b"{}]}"),
+    "many lists": Fault(pack=lambda body: b"[" * 1_000_000),
     "br": packed("br", lambda body: b"\x5b" * 1000),
     "zstd": packed("zstd", lambda body: b"\x28\xb5\x2f\xfd" * 1000),
 }
@@ -140,7 +142,8 @@ def test_a_body_is_read_to_a_limit_and_the_other_questions_go_on(loopback: Loopb
     loopback.restart_plan([BOMBS[name]])
     begun = time.perf_counter()
     with pytest.raises(
-        ModelUnavailableError, match=r"sent more than an answer can be \((more than 2 MB|packed as)"
+        ModelUnavailableError,
+        match=r"sent more than an answer can be \((more than 2 MB|more than 5000 objects|packed as)",
     ) as failure:
         asked.ask([QUESTION])
     assert "\n" not in str(failure.value)
@@ -158,13 +161,10 @@ def test_a_body_that_cannot_be_unpacked_is_no_answer(loopback: Loopback, encodin
     assert len(answer.calls) == 2
 
 
-@pytest.mark.parametrize(
-    "fault", [Fault(headers={"X-Long": "a" * 1_000_000}), Fault(pack=lambda body: b"[" * 1_000_000)]
-)
-def test_other_bodies_and_headers_without_end_take_no_episode_down(loopback: Loopback, fault: Fault) -> None:
+def test_a_header_without_end_takes_no_episode_down(loopback: Loopback) -> None:
     asked = client(loopback)
     asked.preflight()
-    loopback.restart_plan([fault])
+    loopback.restart_plan([Fault(headers={"X-Long": "a" * 1_000_000})])
     assert asked.ask([QUESTION])[0].value is not None
 
 
