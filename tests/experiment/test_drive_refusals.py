@@ -31,7 +31,7 @@ class Run:
 
     def go_on(self, *more: str) -> None:
         plan = make_plan(expand([*self.tokens, *more], self.config_dir), self.config_dir)
-        with RunFolder(self.path, manifest_of(plan), {cell.folder: "" for cell in plan.cells}):
+        with RunFolder(self.path, manifest_of(plan, {}), {cell.folder: "" for cell in plan.cells}):
             pass
 
     def refused(self, *more: str) -> str:

@@ -45,6 +45,8 @@ class ToyClient:
     refuses: Exception | None = None
     on_retry: Callable[[Any], None] = lambda retry: None
     preflights: int = 0
+    served: str = ""
+    never_answered: int = 0
     asked: list[tuple[int, int]] = field(default_factory=list)
     now: int = 0
     most: int = 0
