@@ -31,6 +31,8 @@ def locked(folder: Path) -> Iterator[None]:
         RunFolderError: If another process holds it.
         OSError: If the folder cannot be written.
     """
+    # The lock is emptied when it is taken, and so would be what a link in its place leads to.
+    within(folder, folder / ".lock")
     lock = FileLock(folder / ".lock", timeout=0, mode=0o666)
     try:
         lock.acquire()

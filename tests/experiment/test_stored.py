@@ -154,9 +154,8 @@ def test_a_folder_of_a_stranger_chooses_no_code(
     single: Path, values: dict[str, object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    episode = find_episode(_settings(single, **values), None, 0)
     with contextlib.suppress(ConfigError, RunFolderError):
-        assert road_of(episode.cell).name == Intersection.name
+        assert road_of(find_episode(_settings(single, **values), None, 0).cell).name == Intersection.name
     assert not (tmp_path / "made").exists()
 
 
@@ -181,6 +180,16 @@ def test_nothing_is_read_or_written_through_a_link_out_of_the_folder(single: Pat
     with pytest.raises(RunFolderError, match="is a symbolic link out of the run folder"):
         run_experiment([*tokens, "render=true"])
     assert not (tmp_path / "elsewhere" / "replay.mp4").exists()
+
+
+def test_a_lock_that_leads_out_of_the_folder_empties_nothing(single: Path, tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("years of work")
+    (single / ".lock").unlink()
+    (single / ".lock").symlink_to(tmp_path / "thesis.tex")
+    tokens = [f"output={tmp_path}", "run=one", "episodes=4", "launcher=serial", "scenario.time_limit=1"]
+    with pytest.raises(RunFolderError, match=r"\.lock is a symbolic link out of the run folder"):
+        run_experiment(tokens)
+    assert (tmp_path / "thesis.tex").read_text() == "years of work"
 
 
 @pytest.mark.parametrize("name", ["figures", "memory", "configs"])
