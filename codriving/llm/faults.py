@@ -163,7 +163,8 @@ def fault_of_response(status: int, headers: Mapping[str, str], text: str) -> Cal
     codes = {value for name, value in told if name in ("code", "type", "status", "reason")}
     wait = _wait(headers, told, text)
     message = next((value for name, value in told if name in ("message", "detail", "msg", "error")), "") or text
-    return CallError(_kind(status, text, codes, wait), f"{status}: {message}", wait)
+    # LiteLLM takes seconds over a long one.
+    return CallError(_kind(status, text, codes, wait), f"{status}: {message[:2000]}", wait)
 
 
 def _kind(status: int, text: str, codes: set[str] = frozenset(), wait: float | None = None) -> FaultKind:  # type: ignore[assignment]
