@@ -49,6 +49,8 @@ class _Commands(TyperGroup):
             print("interrupted", file=sys.stderr)
             return INTERRUPTED
         except Exception as error:
+            if "_CODRIVING_COMPLETE" in os.environ:
+                return 1  # Whatever a shell asks after TAB, words on the screen would stand in the line being typed
             from codriving.cli.faults import one_line
 
             if type(error).__name__ == "NoArgsIsHelpError":

@@ -6,6 +6,7 @@ import multiprocessing.resource_tracker
 import os
 import signal
 import sys
+import tempfile
 import threading
 import types
 from collections import Counter, deque
@@ -14,7 +15,7 @@ from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import ForkServerContext, SpawnContext
 
-from codriving.errors import UserError
+from codriving.errors import RunFolderError, UserError
 from codriving.experiment.launchers import Launcher, Serial, worker_count
 from codriving.experiment.worker import Job, Report, Unit, Worker
 
@@ -136,6 +137,12 @@ def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
     try:
         with _without_main():
             multiprocessing.forkserver.ensure_running()
+    except OSError as error:
+        # The server is spoken to by a socket in the folder for temporary files, whose path has 107 bytes at most.
+        raise RunFolderError(
+            f"cannot start worker processes in the folder for temporary files {tempfile.gettempdir()} ({error}); set "
+            "TMPDIR to another folder with a short path, or launcher=serial"
+        ) from error
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
     return context

@@ -12,6 +12,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any, cast
 
+from codriving.errors import ModelError
 from codriving.llm.connections import Outgoing, changed, client, keep_bodies
 from codriving.llm.faults import fault_of, without_key
 from codriving.llm.loop import loop
@@ -82,10 +83,17 @@ async def load_litellm() -> ModuleType:
 
 async def _import() -> ModuleType:
     """Import LiteLLM, make it keep quiet, and give it one way of sending for all providers."""
+    given = dict(os.environ)
     os.environ.setdefault("LITELLM_LOCAL_MODEL_COST_MAP", "True")
     os.environ.setdefault("LITELLM_MODE", "PRODUCTION")  # Otherwise it reads a .env from some folder above
-    import litellm
-    import openai
+    try:
+        import litellm
+        import openai
+    except Exception as error:  # It reads numbers and names of levels from variables as it is imported
+        said = f"{type(error).__name__}: {error}"
+        suspects = [n for n, v in sorted(given.items()) if v and (n.startswith("LITELLM_") or repr(v) in said)]
+        cure = f"unset {' and '.join(suspects)}" if suspects else "install codriving again"
+        raise ModelError(f"LiteLLM, which asks language models, cannot be imported ({said:.200}); {cure}") from error
 
     litellm.suppress_debug_info = True
     litellm.telemetry = False

@@ -67,6 +67,42 @@ def test_warnings_as_errors_of_other_programs_stop_nothing(tmp_path: Path) -> No
     assert (result.returncode, result.stderr) == (0, "")
 
 
+def test_a_shell_that_asks_nonsense_after_tab_is_told_nothing(tmp_path: Path) -> None:
+    asked = {"_CODRIVING_COMPLETE": "complete_bash", "COMP_WORDS": "codriving run sc", "COMP_CWORD": "²"}
+    result = shell("codriving", tmp_path, **asked)
+    assert (result.returncode, result.stdout, result.stderr) == (1, "", "")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("LITELLM_LOG", "nothing", "AttributeError: module 'logging' has no attribute 'NOTHING'); unset LITELLM_LOG"),
+        (
+            "DEFAULT_MAX_RETRIES",
+            "many",
+            "ValueError: invalid literal for int() with base 10: 'many'); unset DEFAULT_MAX_",
+        ),
+    ],
+)
+def test_a_variable_that_stops_an_import_is_named(name: str, value: str, said: str, tmp_path: Path) -> None:
+    check = "codriving check llm=custom llm.api_base=http://127.0.0.1:9/v1"
+    result = shell(check, tmp_path, **{name: value})
+    assert (result.returncode, result.stdout) == (2, "")
+    assert result.stderr.startswith(f"error: LiteLLM, which asks language models, cannot be imported ({said}")
+    assert result.stderr.count("\n") == 1
+
+
+def test_a_temporary_folder_of_too_long_a_path_is_named(tmp_path: Path) -> None:
+    folder = tmp_path / ("x" * 120)
+    folder.mkdir()
+    result = shell("codriving run episodes=2 workers=2 scenario.time_limit=1", tmp_path, TMPDIR=str(folder))
+    assert (result.returncode, result.stdout) == (2, "")
+    assert result.stderr == (
+        f"error: cannot start worker processes in the folder for temporary files {folder} (AF_UNIX path too long); "
+        "set TMPDIR to another folder with a short path, or launcher=serial\n"
+    )
+
+
 @pytest.mark.parametrize(
     ("error", "said"),
     [
