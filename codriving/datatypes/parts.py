@@ -3,13 +3,17 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from codriving.datatypes.experience import Experience, Interaction, Memory
 from codriving.datatypes.record import Outcome, Score, Trajectory
 from codriving.datatypes.road import Road
 from codriving.datatypes.situation import Deliberation, Situation
 from codriving.datatypes.world import Action, DrivingModel, Scene, WorldState
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 # The precomputed road, of which this room may not know: ``codriving.geometry.road_map.RoadMap``.
 RoadMap: TypeAlias = Any
@@ -64,6 +68,14 @@ class Simulator(ABC):
     @abstractmethod
     def trajectory(self) -> Trajectory:
         """Return what was driven since the last reset."""
+
+    def alone(self, seed: int) -> "Mapping[str, NDArray[np.float64]]":
+        """Drive each vehicle of an episode alone, from the same start along the same route.
+
+        Returns:
+            Its arc length along the route at each step (n,) [m], by id; nothing of what cannot be driven alone.
+        """
+        return {}
 
 
 class Model(ABC):
@@ -202,6 +214,7 @@ class Metric(ABC):
     """Scores one driven episode."""
 
     name: str = ""  # Name of the definitions, for instance ``standard``
+    against_alone: bool = False  # Whether it needs ``Trajectory.alone``, which costs computing time
 
     @abstractmethod
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:

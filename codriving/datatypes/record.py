@@ -1,5 +1,6 @@
 """What is kept of an episode: what was driven, how it ended and how it scored, as tables are made from it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Literal
@@ -36,6 +37,9 @@ class Trajectory:
 
     step: float  # Time between two rows [s]
     tracks: tuple[Track, ...]
+    # Arc length along its route of each vehicle at each step from its start on (n,) [m], had it driven alone; worked
+    # out for metrics that ask for it, and not stored.
+    alone: "Mapping[str, NDArray[np.float64]]" = field(default_factory=dict)
 
 
 class Ending(StrEnum):
@@ -118,6 +122,7 @@ class Score:
     numbers: tuple[NamedNumber, ...] = ()
     # Those of the metric that gave it, as JSON by key; filled in by what calls the metric.
     settings: dict[str, str] = field(default_factory=dict)
+    clean: bool | None = None  # Whether it is a success without a near miss; None where the metric does not say
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from codriving.datatypes import (
     VehicleLimits,
     WorldState,
 )
+from codriving.environment.alone import drive_alone
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.network import build_network
 from codriving.environment.recorder import Recorder, snapshot
@@ -26,7 +27,7 @@ from codriving.environment.traffic.human_driver import HumanDriver
 from codriving.environment.traffic.route_following import RoutePath, route_path
 from codriving.environment.traffic.traffic import Traffic
 from codriving.errors import EpisodeError
-from codriving.geometry import road_map
+from codriving.geometry import FloatArray, road_map
 
 
 class Environment(Simulator):
@@ -67,10 +68,7 @@ class Environment(Simulator):
         """
         self._world = self._outcome = None
         scene = self.scenario.scene(seed)
-        rng = np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(1,)))
-        self._traffic = Traffic(self._network, rng, self.road_map, self.corrections)
-        spawn(self._traffic, scene, self._route_paths, self.driving_model.target_speeds, self.control, self.drivers)
-        limit(self._traffic, self.limits)
+        self._traffic = self._populated(scene)
         cavs = [start.id for start in scene.starts if start.kind is Kind.CAV]
         self._termination = Termination(cavs, self.scenario.pace.time_limit, self.driving_model.step)
         self._steps = self._decisions = 0
@@ -99,6 +97,25 @@ class Environment(Simulator):
                 break
         self._decisions += 1
         return self._look()
+
+    def alone(self, seed: int) -> Mapping[str, FloatArray]:
+        """Drive each vehicle of an episode alone, from the same start along the same route."""
+        scene = self.scenario.scene(seed)
+        model, time_limit = self.driving_model, self.scenario.pace.time_limit
+        return {
+            start.id: drive_alone(
+                self._populated(replace(scene, starts=(start,))), model.step, model.substeps, time_limit
+            )
+            for start in scene.starts
+        }
+
+    def _populated(self, scene: Scene) -> Traffic:
+        """Put the vehicles of a scene on the road."""
+        rng = np.random.default_rng(np.random.SeedSequence(entropy=scene.seed, spawn_key=(1,)))
+        traffic = Traffic(self._network, rng, self.road_map, self.corrections)
+        spawn(traffic, scene, self._route_paths, self.driving_model.target_speeds, self.control, self.drivers)
+        limit(traffic, self.limits)
+        return traffic
 
     @property
     def outcome(self) -> Outcome | None:

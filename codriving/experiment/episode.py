@@ -9,7 +9,7 @@ from typing import Any
 
 from codriving.datatypes import Ending, EpisodeRecord, Method, Outcome, Participant, Score, Simulator, Trajectory
 from codriving.errors import MemoryFileError, ModelError, ModelUnavailableError
-from codriving.metrics import Scorer
+from codriving.metrics import Scorer, with_alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,8 @@ def run_episode(
         log.add(*method.conclude(world, outcome))
         trajectory = environment.trajectory()
         if outcome.ending is not Ending.ERROR:
-            scores = {n: scorer.score(trajectory, outcome, environment.road_map) for n, scorer in metrics.items()}
+            measured = with_alone(trajectory, environment, seed, metrics.values())
+            scores = {n: scorer.score(measured, outcome, environment.road_map) for n, scorer in metrics.items()}
     except (ModelError, MemoryFileError):
         raise
     except Exception as error:

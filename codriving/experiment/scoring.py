@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config import TARGET, build
-from codriving.datatypes import Ending, EpisodeRecord, Metric, Scenario
+from codriving.datatypes import Ending, EpisodeRecord, Metric, Scenario, Score, Simulator
 from codriving.errors import RunFolderError
-from codriving.metrics import Scorer
+from codriving.metrics import Scorer, with_alone
 from codriving.runs import RECORD, UNNAMED, flat, read_trajectory, rewrite_record
 
 
@@ -33,7 +33,7 @@ def scored(episodes: Iterable[tuple[Path, EpisodeRecord]], config: Mapping[str, 
 
     The record is written again, whole or not at all; that of an episode of release 0.1 stays as it is.
     """
-    found, road, scorers = [], None, None
+    found, road, scorers, simulator = [], None, None, None
     for folder, record in episodes:
         lacking = [name for name, node in config["metrics"].items() if lacks(record, name, settings_of_metric(node))]
         if lacking:
@@ -42,9 +42,15 @@ def scored(episodes: Iterable[tuple[Path, EpisodeRecord]], config: Mapping[str, 
             if (trajectory := read_trajectory(folder, record)) is None:
                 raise RunFolderError(f"{folder} has no trajectory to score; delete it and run again")
             try:
+                if any(scorers[name].metric.against_alone for name in lacking):
+                    simulator = simulator or build(config["environment"], Simulator, "environment", config["plugins"])
+                    trajectory = with_alone(trajectory, simulator, record.seed, scorers.values())
                 new = {name: scorers[name].score_stored(trajectory, record.outcome, road) for name in lacking}
                 if (kept := record.scores.get(UNNAMED)) is not None:
-                    new = {name: replace(kept, settings=s.settings) if alike(s, kept) else s for name, s in new.items()}
+                    new = {
+                        name: replace(kept, settings=s.settings) if same_metric(s, kept) else s
+                        for name, s in new.items()
+                    }
                 record = replace(record, scores={**record.scores, **new})
                 if UNNAMED not in record.scores:
                     rewrite_record(folder, record)
@@ -62,6 +68,14 @@ def lacks(record: EpisodeRecord, name: str, settings: Mapping[str, str]) -> bool
         return False
     score = record.scores.get(name)
     return score is None or score.settings != settings
+
+
+def same_metric(new: Score, kept: Score) -> bool:
+    """Tell whether a score that release 0.1 kept is by the same metric as a new one.
+
+    Where vehicles merge, that release took PETs at another place, and it had no further numbers.
+    """
+    return alike(*(replace(score, pets=(), numbers=(), clean=None) for score in (new, kept)))
 
 
 def alike(one: object, other: object) -> bool:

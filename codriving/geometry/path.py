@@ -141,8 +141,9 @@ def progress(path: Path, x: FloatArray, y: FloatArray, heading: FloatArray) -> F
     """
     px, py = path.points.T
     ux, uy = np.cos(path.headings), np.sin(path.headings)
-    square = (x[:, None] - px) ** 2 + (y[:, None] - py) ** 2
-    towards = np.outer(np.cos(heading), ux) + np.outer(np.sin(heading), uy)
+    # Squared distance, but for what is the same at all points of the path.
+    square = px * px + py * py - 2 * (np.column_stack((x, y)) @ np.array((px, py)))
+    towards = np.column_stack((np.cos(heading), np.sin(heading))) @ np.array((ux, uy))
     square[towards < math.cos(math.pi / 3)] += 1e6
     nearest = square.argmin(axis=1)
     # Linear refinement: how far past the nearest point, along the path there.

@@ -1,6 +1,6 @@
 """From a driven trajectory to its score: success, post-encroachment time, travel velocity."""
 
 from codriving.metrics.intervals import FEWEST, RESAMPLES, mcnemar, mean_interval, wilson_interval
-from codriving.metrics.scorer import Scorer
+from codriving.metrics.scorer import Scorer, with_alone
 
-__all__ = ["FEWEST", "RESAMPLES", "Scorer", "mcnemar", "mean_interval", "wilson_interval"]
+__all__ = ["FEWEST", "RESAMPLES", "Scorer", "mcnemar", "mean_interval", "wilson_interval", "with_alone"]

@@ -1,5 +1,8 @@
 """Post-encroachment time: how long the conflict area stayed empty between two vehicles."""
 
+import math
+from collections.abc import Sequence
+from functools import cache
 from itertools import combinations
 from typing import NamedTuple
 
@@ -7,6 +10,7 @@ import numpy as np
 
 from codriving.datatypes import Kind, Pet, Relation, Track, Trajectory
 from codriving.geometry import TRUE, ConflictZone, FloatArray, Path, RoadMap, progress
+from codriving.metrics.merging import merging_gap
 
 BESIDE = 2.0  # Farther than this from the centre line of its route a vehicle is on another lane [m]
 
@@ -25,39 +29,70 @@ def post_encroachment_times(trajectory: Trajectory, road: RoadMap) -> tuple[Pet,
     Counted are pairs with at least one CAV whose routes cross or merge; each conflict area of a pair, first pass only.
     A pair of which one did not pass the area is absent. The value is negative if both were in the area at once.
     """
-    places = {t.id: progress(road.paths[t.route], t.x, t.y, t.heading) for t in trajectory.tracks}
+
+    @cache
+    def places(track_id: str) -> FloatArray:
+        track = tracks[track_id]
+        return progress(road.paths[track.route], track.x, track.y, track.heading)
+
+    tracks = {track.id: track for track in trajectory.tracks}
     pets = []
     for one, other in combinations(trajectory.tracks, 2):
         if Kind.CAV not in (one.kind, other.kind):
             continue
-        for zone in road.zones(one.route, other.route, TRUE):
-            areas = _areas(zone, one.length, other.length)
-            if areas is None:
-                continue
-            passages = [
-                _passage(track, places[track.id], area, road.paths[track.route], trajectory.step)
-                for track, area in zip((one, other), areas, strict=True)
-            ]
-            complete = sorted(passage for passage in passages if passage is not None)
-            if len(complete) == 2:
-                first, second = complete
-                pets.append(Pet(first.id, second.id, str(zone.relation), second.entry - first.exit))
+        zones = road.zones(one.route, other.route, TRUE)
+        for zone in filter(has_area, zones):
+            measure = _merging if zone.merge_i is not None else _crossing
+            found = measure(zone, zones, (one, other), (places(one.id), places(other.id)), road, trajectory.step)
+            if found is not None:
+                pets.append(Pet(*found[:2], str(zone.relation), found[2]))
     return tuple(pets)
 
 
-def _areas(
-    zone: ConflictZone, length_i: float, length_j: float
-) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Return the stretch of each route [m] on which a centre is while the vehicle is in the conflict area."""
-    if zone.relation is Relation.CROSSING:
-        return (zone.entry_i, zone.exit_i), (zone.entry_j, zone.exit_j)
-    # Only routes that converge or weave have a merge point.
-    if zone.merge_i is not None and zone.merge_j is not None:
-        return (
-            (zone.merge_i - length_i / 2, zone.merge_i + length_i / 2),
-            (zone.merge_j - length_j / 2, zone.merge_j + length_j / 2),
+def has_area(zone: ConflictZone) -> bool:
+    """Tell whether two routes cross or merge in a zone, and do not only follow one another or part."""
+    return zone.relation is Relation.CROSSING or zone.merge_i is not None
+
+
+def _merging(
+    zone: ConflictZone,
+    zones: Sequence[ConflictZone],
+    tracks: tuple[Track, Track],
+    places: tuple[FloatArray, FloatArray],
+    road: RoadMap,
+    step: float,
+) -> tuple[str, str, float] | None:
+    """Who merged first, who second, and the time between; between the zone before and the end of this one."""
+    start_i = max((z.exit_i for z in zones if z.exit_i <= zone.entry_i), default=-math.inf)
+    start_j = max((z.exit_j for z in zones if z.exit_j <= zone.entry_j), default=-math.inf)
+    end_i, end_j = (math.inf if split is None else split for split in (zone.split_i, zone.split_j))
+    rows, other_rows = (
+        slice(int(np.searchsorted(s, start)), int(np.searchsorted(s, end)))
+        for s, start, end in zip(places, (start_i, start_j), (end_i, end_j), strict=True)
+    )
+    return merging_gap(*tracks, rows, other_rows, step)
+
+
+def _crossing(
+    zone: ConflictZone,
+    zones: Sequence[ConflictZone],
+    tracks: tuple[Track, Track],
+    places: tuple[FloatArray, FloatArray],
+    road: RoadMap,
+    step: float,
+) -> tuple[str, str, float] | None:
+    """Who crossed first, who second, and the time from the one's leaving the area to the other's entering it."""
+    passages = [
+        _passage(track, s, area, road.paths[track.route], step)
+        for track, s, area in zip(
+            tracks, places, ((zone.entry_i, zone.exit_i), (zone.entry_j, zone.exit_j)), strict=True
         )
-    return None
+    ]
+    complete = sorted(passage for passage in passages if passage is not None)
+    if len(complete) < 2:
+        return None
+    first, second = complete
+    return first.id, second.id, second.entry - first.exit
 
 
 def _passage(track: Track, s: FloatArray, area: tuple[float, float], path: Path, step: float) -> Passage | None:

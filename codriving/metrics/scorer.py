@@ -1,9 +1,10 @@
 """A metric with the settings that it was built with, which its scores hold."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
-from codriving.datatypes import Metric, Outcome, Road, Score, Trajectory
+from codriving.datatypes import Metric, Outcome, Road, Score, Simulator, Trajectory
 from codriving.geometry import RoadMap, road_map
 
 
@@ -20,3 +21,10 @@ class Scorer(NamedTuple):
     def score_stored(self, trajectory: Trajectory, outcome: Outcome, road: Road) -> Score:
         """Return the score of an episode that was driven on a road, without its environment."""
         return self.score(trajectory, outcome, road_map(road))
+
+
+def with_alone(trajectory: Trajectory, simulator: Simulator, seed: int, scorers: Iterable[Scorer]) -> Trajectory:
+    """Add to a trajectory how each vehicle drives alone, if a metric asks for it."""
+    if not any(scorer.metric.against_alone for scorer in scorers):
+        return trajectory
+    return replace(trajectory, alone=simulator.alone(seed))

@@ -1,32 +1,89 @@
 """Our own metrics: every quantity by its definition, undefined where it does not apply."""
 
+from itertools import combinations
+
 import numpy as np
 
-from codriving.datatypes import Ending, Kind, Metric, Outcome, Score, Trajectory, TravelScore
+from codriving.datatypes import Ending, Kind, Metric, NamedNumber, Outcome, Score, Trajectory, TravelScore
 from codriving.errors import ConfigError
-from codriving.geometry import RoadMap
-from codriving.metrics.pet import post_encroachment_times
+from codriving.geometry import TRUE, RoadMap
+from codriving.metrics.comfort import hard_braking, jerk, reversals, stops
+from codriving.metrics.delay import drives, jain
+from codriving.metrics.following import Closest, closest
+from codriving.metrics.pet import has_area, post_encroachment_times
 
 
 class StandardMetrics(Metric):
-    """Success, post-encroachment time of the true footprints, and travel velocity of the CAVs (paper Section IV-A)."""
+    """Success, post-encroachment time and travel velocity (paper Section IV-A), near misses, comfort and delay.
+
+    Args:
+        free_speed: Speed that ``TravelScore.delay`` is counted against [m/s]; None takes the speed limits.
+        near_miss: Least PET of a clean success [s]; least TTC on a road where no routes cross or merge.
+        hard_braking: Braking above this is hard [m/s2].
+    """
 
     name = "standard"
+    against_alone = True
 
-    def __init__(self, free_speed: float | None = None) -> None:
+    def __init__(self, free_speed: float | None = None, near_miss: float = 1.5, hard_braking: float = 3.4) -> None:
         if free_speed is not None and not free_speed > 0:
             raise ConfigError(
                 f"metrics.free_speed must be > 0 m/s, got {free_speed:g}; leave it null for the speed limits"
             )
-        self.free_speed = free_speed
+        for name, value, unit in (("near_miss", near_miss, "s"), ("hard_braking", hard_braking, "m/s2")):
+            if not value > 0:
+                raise ConfigError(f"metrics.{name} must be > 0 {unit}, got {value:g}")
+        self.free_speed, self.near_miss, self.hard_braking = free_speed, near_miss, hard_braking
 
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
         """Return the score of an episode."""
+        success = outcome.ending is Ending.SUCCESS
+        pets, nearest = post_encroachment_times(trajectory, road), closest(trajectory)
+        if meets(road):
+            missed = any(pet.value < self.near_miss for pet in pets)
+        else:
+            missed = nearest.ttc is not None and nearest.ttc < self.near_miss
         return Score(
-            success=outcome.ending is Ending.SUCCESS,
-            pets=post_encroachment_times(trajectory, road),
+            success=success,
+            pets=pets,
             travels=travels(trajectory, road, self.free_speed),
+            numbers=self._numbers(trajectory, road, nearest, success),
+            clean=success and not missed,
         )
+
+    def _numbers(
+        self, trajectory: Trajectory, road: RoadMap, nearest: Closest, success: bool
+    ) -> tuple[NamedNumber, ...]:
+        step = trajectory.step
+        cavs, hdvs = ([t for t in trajectory.tracks if t.kind is kind] for kind in (Kind.CAV, Kind.HDV))
+        # How much time was lost is known once all have arrived.
+        driven = drives(trajectory, road) if success else ()
+        cav_delay, hdv_delay = ([d.delay for d in driven if d.kind is kind] for kind in (Kind.CAV, Kind.HDV))
+        return (
+            NamedNumber("ttc_min", nearest.ttc, "s", "higher"),
+            NamedNumber("drac_max", nearest.drac, "m/s2", "lower"),
+            NamedNumber("hard_braking_cavs", hard_braking(cavs, step, self.hard_braking), "", "lower"),
+            NamedNumber("hard_braking_hdvs", hard_braking(hdvs, step, self.hard_braking), "", "lower"),
+            NamedNumber("jerk_cavs", jerk(cavs, step), "m/s3", "lower"),
+            NamedNumber("jerk_hdvs", jerk(hdvs, step), "m/s3", "lower"),
+            NamedNumber("stops_cavs", stops(cavs), "", "lower"),
+            NamedNumber("stops_hdvs", stops(hdvs), "", "lower"),
+            NamedNumber("reversals", reversals(cavs, step), "1/min", "lower"),
+            NamedNumber("delay_cavs", _mean(cav_delay), "s", "lower"),
+            NamedNumber("delay_hdvs", _mean(hdv_delay), "s", "lower"),
+            NamedNumber("fairness", jain([d.alone / d.time for d in driven]), "", "higher"),
+            NamedNumber("time_all", _mean([d.whole for d in driven]), "s", "lower"),
+        )
+
+
+def meets(road: RoadMap) -> bool:
+    """Tell whether two routes of a road cross or merge anywhere."""
+    pairs = combinations(road.routes, 2)
+    return any(has_area(zone) for i, j in pairs for zone in road.zones(i, j, TRUE))
+
+
+def _mean(values: list[float]) -> float | None:
+    return sum(values) / len(values) if values else None
 
 
 def travels(trajectory: Trajectory, road: RoadMap, free_speed: float | None = None) -> tuple[TravelScore, ...]:

@@ -34,15 +34,44 @@ def test_two_metrics_drive_once_and_are_two_rows(tmp_path: Path, monkeypatch: py
 
     one = run("metrics=authors")
     assert (one.driven, one.kept, one.left_out) == (0, 2, 0)
-    assert {key: one.tables.summary.rows[0][key] for key in table if key != "metrics"} == {
-        key: value for key, value in table.items() if key != "metrics"
+    row = one.tables.summary.rows[0]
+    assert {key: value for key, value in row.items() if key != "metrics"} == {
+        key: table[key] for key in row if key != "metrics"
     }
+    assert {table[key] for key in table if key not in row and key != "metrics"} == {None}
 
     other = run("metrics.free_speed=3")
     assert other.driven == 0
     found = scores(other.folder)
-    assert {name: score["settings"] for name, score in found.items()}["standard"] == {"free_speed": "3"}
+    assert {name: score["settings"] for name, score in found.items()}["standard"] == {
+        "free_speed": "3",
+        "hard_braking": "3.4",
+        "near_miss": "1.5",
+    }
     assert set(found) == {"standard", "authors"}
+
+
+def test_new_numbers_are_worked_out_of_what_is_stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    driven = scores(run("method=codriving").folder)["standard"]
+    (path,) = Path("outputs").glob("*/x/episodes/*/0/record.json")
+    record = json.loads(path.read_text())
+    # As a version wrote it that did not know them yet.
+    record["scores"]["standard"] |= {"numbers": [], "settings": {"free_speed": "null"}}
+    del record["scores"]["standard"]["clean"]
+    path.write_text(json.dumps(record, indent=2))
+    (path.parent / "SHA256SUMS").unlink()
+    again = run("method=codriving")
+    assert again.driven == 0
+    found = scores(again.folder)["standard"]
+    assert found["clean"] == driven["clean"]
+    numbers, before = (
+        {n["name"]: n["value"] for n in score["numbers"]}  # type: ignore[attr-defined]
+        for score in (found, driven)
+    )
+    assert numbers == pytest.approx(before, abs=0.02)
+    assert numbers["delay_cavs"] > 0
+    assert numbers["ttc_min"] > 0
 
 
 def test_scores_are_named_by_their_metric_and_by_settings_where_two_are_of_one() -> None:

@@ -1,5 +1,6 @@
 """Post-encroachment times of tracks with known answers."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -9,7 +10,6 @@ from hypothesis import strategies as st
 
 from codriving.datatypes.record import Track, Trajectory
 from codriving.datatypes.world import Kind
-from codriving.geometry.box import TRUE
 from codriving.geometry.road_map import RoadMap
 from codriving.metrics.pet import post_encroachment_times
 
@@ -67,15 +67,18 @@ def test_a_later_start_shifts_the_clock(road: RoadMap, drive: Drive) -> None:
     assert later[0][3] == pytest.approx(at_once[0][3] + 20 * STEP)
 
 
-def test_merging_is_measured_at_the_merge_point(road: RoadMap, drive: Drive) -> None:
-    (zone,) = road.zones("east", "merge", TRUE)
-    assert zone.merge_i is not None
-    assert zone.merge_j is not None
-    assert zone.merge_i == pytest.approx(60, abs=1.5)
+def test_merging_is_measured_where_the_two_come_together(road: RoadMap, drive: Drive) -> None:
+    """`merge` comes at an angle with tan = 30 / 58 and touches the ground of `east`, y = 1 m, with a corner first.
+
+    Its centre is then at y = 1 + 2.5 sin + cos = 3.04 m, 6.6 m before its lane ends at x = -2 m, at 5 m/s.
+    """
     east, merge = drive("a", "east", 10.0 * TIME), drive("b", "merge", 5.0 * TIME)
     ((first, second, kind, value),) = _pets(east, merge, road=road)
     assert (first, second, kind) == ("a", "b", "converging")
-    assert value == pytest.approx((zone.merge_j - 2.5) / 5.0 - (zone.merge_i + 2.5) / 10.0, abs=0.005)
+    sin, cos = 30 / math.hypot(58, 30), 58 / math.hypot(58, 30)
+    before = (1 + 2.5 * sin + cos) / sin
+    corner = -2 - before * cos + 2.5 * cos - sin
+    assert value == pytest.approx((math.hypot(58, 30) - before) / 5 - (60 + corner + 2.5) / 10, abs=0.1)
 
 
 def test_a_passage_that_never_completes_leaves_the_pair_out(road: RoadMap, drive: Drive) -> None:

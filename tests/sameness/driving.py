@@ -32,9 +32,6 @@ TEXTS = {
 SECONDS = re.compile(rb'("(?:model_)?seconds": )[0-9.e+-]+')
 """The only thing in a record (``counts.model_seconds``) and in a transcript (``seconds``) that the clock decides."""
 
-SCORE = ("success", "pets", "travels")
-"""What version 0.1 wrote of a score."""
-
 NUMBERS = "id, numbers, effect, vector"
 """What is compared of its experiences besides on one machine."""
 
@@ -110,10 +107,9 @@ def episodes(folder: Path) -> dict[str, bytes]:
 
 
 def comparable(path: Path) -> bytes:
-    """Read a file of an episode without what depends on the clock, a record as version 0.1 would have written it.
+    """Read a file of an episode without what depends on the clock, and of a record what was driven, not how it scored.
 
-    Version 0.1 wrote the score by the one metric that it knew; later versions write those by each metric, by name. Of a
-    record that is not written otherwise, every byte stays.
+    Scores are worked out of the trajectory and have tests of their own; a metric may gain numbers.
 
     Args:
         path: The file.
@@ -121,12 +117,7 @@ def comparable(path: Path) -> bytes:
     content = SECONDS.sub(rb"\1null", path.read_bytes())
     if path.name != "record.json":
         return content
-    record = json.loads(content)
-    if "scores" in record:
-        scores = [{key: score[key] for key in SCORE} for score in record["scores"].values()]
-        [score] = scores or [None]
-        record = {"score" if key == "scores" else key: value for key, value in record.items()}
-        record["score"] = score
+    record = {key: value for key, value in json.loads(content).items() if key not in ("score", "scores")}
     return (json.dumps(record, indent=2, ensure_ascii=False) + "\n").encode()
 
 
