@@ -57,7 +57,7 @@ def _of_usage(error: TyperException, args: list[str]) -> str:
         example = f"{key}={given or '<value>'}"
         return f"{option} is not an option; settings are written without dashes: {example}; commas make a sweep"
     command = getattr(getattr(error, "ctx", None), "command_path", "codriving")
-    return f"{error.format_message().rstrip('.')}; {command} --help shows what there is"
+    return f"{error.format_message().rstrip('.'):.300}; {command} --help shows what there is"
 
 
 def _unforeseen(error: Exception) -> str:

@@ -66,7 +66,9 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
         with open_dict(config):
             del config["hydra"]
         resolved = resolve(config)
-    except (HydraException, OmegaConfBaseException, YAMLError) as err:
+    except YAMLError as err:
+        raise ConfigError(f"{one_line(err)}; mend the YAML there") from err
+    except (HydraException, OmegaConfBaseException) as err:
         raise ConfigError(one_line(err)) from err
     except ConfigError:
         raise

@@ -1,5 +1,6 @@
 """The folder of one run: opened under a lock, checked against the config, resumed where it was left."""
 
+import errno
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
@@ -178,8 +179,9 @@ def removed(path: Path, what: str = "") -> RunFolderError:
 
 def unwritable(path: Path, error: OSError) -> RunFolderError:
     """The error for a folder that cannot be written."""
+    cure = "a shorter run=<name> or" if error.errno == errno.ENAMETOOLONG else "another"
     return RunFolderError(
-        f"cannot write the run folder {path}: {error.strerror or error}; choose another output=<folder>"
+        f"cannot write the run folder {path}: {error.strerror or error}; choose {cure} output=<folder>"
     )
 
 

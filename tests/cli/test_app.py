@@ -207,6 +207,7 @@ def test_a_bug_is_one_line_that_names_the_file_of_its_traceback(
             ("run", "plugins=[nope]"),
             "plugins: there is no module nope; install it, or put it beside the folder that --config-dir ",
         ),
+        (("x" * 5000,), "No such command 'xxxxxx"),
         (("run", "run=a\0b"), "'run=a\\x00b' holds bytes that are no text in "),
         (("replay", "a\udcff"), "'a\\udcff' holds bytes that are no text in "),
     ],

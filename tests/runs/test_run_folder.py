@@ -170,3 +170,8 @@ def test_rows_of_a_manifest_are_among_its_cells(tmp_path: Path) -> None:
     (tmp_path / "manifest.json").write_text("[" * 100_000)
     with pytest.raises(RunFolderError, match=r"manifest\.json is damaged"):
         read_manifest(tmp_path)
+
+
+def test_a_name_that_is_too_long_is_to_be_shortened(tmp_path: Path) -> None:
+    with pytest.raises(RunFolderError, match=r"File name too long; choose a shorter run=<name> or output=<folder>$"):
+        RunFolder(tmp_path / ("x" * 300), None, {})  # type: ignore[arg-type]
