@@ -39,11 +39,16 @@ class SpeedProfile:
     slopes: FloatArray = field(init=False, repr=False)  # Reference = base[k] + slopes[k] * x with x = s / spacing
     base: FloatArray = field(init=False, repr=False)
     elapsed: FloatArray = field(init=False, repr=False)  # Time from the first row at least (n,) [s]
+    _padded: FloatArray = field(init=False, repr=False)
     _slopes: list[float] = field(init=False, repr=False)
     _base: list[float] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        values = np.concatenate((self.values, np.full(ceil(_BEYOND / self.spacing), self.values[-1])))
+        values, padded = (
+            np.concatenate((rows, np.full(ceil(_BEYOND / self.spacing), rows[-1])))
+            for rows in (self.values, self.speeds)
+        )
+        object.__setattr__(self, "_padded", padded)
         slopes = np.diff(values)
         base = values[:-1] - slopes * np.arange(len(slopes))
         paces = 1 / np.minimum(self.speeds, self.top)
@@ -62,6 +67,13 @@ class SpeedProfile:
         """Whether a speed [m/s] is kept for some distance [m] from an arc length on [m]."""
         first = min(max(int(s / self.spacing), 0), len(self.values) - 1)
         return bool(self.values[first : first + int(distance / self.spacing) + 3].min() >= speed)
+
+    def kept(self, s: float, count: int) -> FloatArray:
+        """Return the speed that is kept at an arc length and at so many rows' distances from it (count,) [m/s]."""
+        x = max(s, 0.0) / self.spacing
+        k = int(x)
+        rows = self._padded[k : k + count + 1]
+        return np.asarray(rows[:-1] + (x - k) * (rows[1:] - rows[:-1]))
 
     def duration(self, s: float, length: float) -> float:
         """Return how long it takes at least to go on from an arc length [m] by a length, which may be negative [m]."""

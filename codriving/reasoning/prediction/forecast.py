@@ -108,14 +108,12 @@ class Forecast:
 
     def _predict(self, states: Sequence[State]) -> None:
         new = list(dict.fromkeys(state for state in states if state not in self._travel))
-        for curved in (False, True):
-            some = [state for state in new if (state[2:] != NOWHERE) == curved]
-            if some:
-                speeds, targets, *_ = zip(*some, strict=True)
-                along = tuple((self._profiles[route], place) for *_, route, place in some) if curved else ()
-                size = (self.steps, self._stride)
-                distances = travelled(self.model, speeds, targets, self._library, *size, along=along)
-                self._travel.update(zip(some, distances, strict=True))
+        if new:
+            new.sort(key=lambda state: state[2:] == NOWHERE)
+            along = [(self._profiles[route], place) for *_, route, place in new if (route, place) != NOWHERE]
+            speeds, targets, *_ = zip(*new, strict=True)
+            distances = travelled(self.model, speeds, targets, self._library, self.steps, self._stride, along=along)
+            self._travel.update(zip(new, distances, strict=True))
 
     def travel_each(self, states: Sequence[State], plans: Sequence[Plan]) -> Array:
         """Distances of several CAVs, each for a plan of its own, which need not be in the library.

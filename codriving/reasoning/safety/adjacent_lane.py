@@ -18,8 +18,6 @@ SIDE_GAP = 8.0
 
 SEEN_AFTER = 1.0  # Time after which the one behind brakes for a vehicle that changed onto the lane with it [s]
 
-END = 4.0  # Distance from the centre of a vehicle to what stands where its lane ends, its own front included [m]
-
 HELD_UP = -0.3  # Below this acceleration a human driver is held up and may want to change lanes [m/s2]
 
 
@@ -34,9 +32,6 @@ def check_adjacent(given: SafetyInput) -> dict[Action, list[str]]:
         if there is None:
             found[action] = ["adjacent lane: it does not lead where the CAV goes"]
             continue
-        if (ends := _ends_before(given, action)) is not None:
-            found[action] = [f"adjacent lane: the present lane ends in {ends:.0f} m, before the change is done"]
-            continue
         reasons = [*check_ahead(there).get(Action.IDLE, ()), *check_conflicts(there).get(Action.IDLE, ())]
         reasons = [reason.split(": ", 1)[-1].replace(Action.IDLE, action) for reason in reasons]
         reasons += [
@@ -45,19 +40,6 @@ def check_adjacent(given: SafetyInput) -> dict[Action, list[str]]:
         if reasons:
             found[action] = [f"adjacent lane: {reason}" for reason in reasons]
     return found
-
-
-def _ends_before(given: SafetyInput, action: Action) -> float | None:
-    """Return after how far the present lane ends, if the body would still be on it then; None if it would not [m].
-
-    Without limits a lane change is so quick that it is done as soon as it has to be begun.
-    """
-    scene, forecast = given.scene, given.forecast
-    change = given.road_map.changes.ahead(*scene.where)
-    if forecast.model.limits is None or change is None:
-        return None
-    reached = float(given.goes[given.actions.index(action), min(forecast.clears, forecast.steps)])
-    return change[2] - scene.place if reached + END > change[2] else None
 
 
 def _cuts_in(there: SafetyInput, n: TrackedVehicle) -> str:

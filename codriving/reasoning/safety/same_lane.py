@@ -11,6 +11,9 @@ STANDSTILL_GAP = 1.0  # Free distance that must be left to the leading vehicle w
 
 LANE_END_GAP = 2.0  # Room that a CAV which has to change lanes and cannot must still have when it has stopped [m]
 
+# Distance from the centre of a vehicle to the end of a lane at which it is clear of what may stand there [m].
+END = 4.0
+
 ABRUPT = 4.0  # Braking that must not be forced on the rearing vehicle [m/s2]
 
 REACTION = 0.5  # Time after which the rearing vehicle begins to brake [s]
@@ -47,6 +50,14 @@ def check_ahead(given: SafetyInput) -> dict[Action, list[str]]:
             if not safe:
                 found.setdefault(action, []).append(
                     f"same lane: {action} leaves too little room to stop behind {n.id} at {n.speed:.1f} m/s"
+                )
+    # Without limits a body is off the lane that it leaves before anything has to be minded there.
+    for own, place, until in ways[1:] if given.forecast.model.limits is not None else ():
+        left = given.road_map.changes.ahead(own, place)
+        for action, reached in zip(given.actions, place + travelled[:, until - 1], strict=True):
+            if left is not None and reached + END > left[2]:
+                found.setdefault(action, []).append(
+                    f"same lane: {action} leaves too little room to stop where the lane ends that the CAV leaves"
                 )
     change = given.scene.must_change
     if change is not None:

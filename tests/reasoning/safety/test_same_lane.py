@@ -1,5 +1,6 @@
 """First layer: no vehicle on the ego lane is run into, or made to brake abruptly."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
@@ -8,6 +9,8 @@ from worlds import Junction, car
 
 from codriving.datatypes.situation import Role
 from codriving.datatypes.world import Action
+from codriving.environment.environment import Environment
+from codriving.reasoning.safety.adjacent_lane import check_adjacent
 from codriving.reasoning.safety.assessment import ThreeLayers
 from codriving.reasoning.safety.safety_input import SafetyInput
 from codriving.reasoning.safety.same_lane import check_ahead, check_behind, forced_braking
@@ -154,3 +157,25 @@ def test_what_is_left_can_stop_before_the_lane_ends(merge: Junction) -> None:
     for farther, nearer in pairwise(removed):
         assert farther <= nearer
     assert check_ahead(merge.safety_input(car("CAV1", "main-1", 290.0, 12.0))) == {}, "its lane goes on"
+
+
+@pytest.mark.parametrize(
+    ("limits", "room", "safe"), [("road", 60.0, True), ("road", 15.0, False), ("none", 15.0, True)]
+)
+def test_who_leaves_a_lane_that_ends_could_stop_before_it(
+    limits: str, room: float, safe: bool, configured: Callable[..., Environment]
+) -> None:
+    merge = Junction(configured("scenario=merge", f"limits={limits}"))
+    # The ramp lane ends at 330 m; the CAV is on the main lane, its body still half on the ramp's.
+    given = merge.safety_input(car("CAV1", "main-1", 330.0 - room, 15.0, offset=1.8))
+    assert [route for route, _ in given.vehicles["CAV1"].routes] == ["main-1", "ramp"]
+    assert (Action.IDLE not in check_ahead(given)) is safe
+
+
+def test_a_lane_change_is_begun_only_where_the_cav_could_still_stop_beside(
+    configured: Callable[..., Environment],
+) -> None:
+    merge = Junction(configured("scenario=merge", "limits=road"))
+    for place, safe in ((240.0, True), (312.0, False)):
+        given = merge.safety_input(car("CAV1", "ramp", place, 12.0))
+        assert (Action.LANE_LEFT in given.actions, Action.LANE_LEFT not in check_adjacent(given)) == (True, safe)
