@@ -62,7 +62,7 @@ def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDrivin
 
     Args:
         name: Name of the scenario, for instance ``"roundabout"``.
-        *overrides: ``key=value`` tokens, for instance ``"environment.drivers.headway=1.2"``.
+        *overrides: ``key=value`` tokens, for instance ``"drivers.headway=1.2"``.
         **settings: ``cda``, ``rows``, ``coordinates``, ``normalise``, ``reward``, ``render_mode`` and ``config_dir``,
             as :class:`codriving.gym.parallel.ParallelDriving` describes them; all others are keys of the scenario,
             for instance ``cavs=4``.

@@ -36,6 +36,7 @@ PLURALS = {
     "metrics": "metrics",
     "launchers": "launcher",
     "limits": "limits",
+    "drivers": "drivers",
     "experiments": EXPERIMENTS,
     "trainings": TRAININGS,
 }

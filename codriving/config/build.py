@@ -14,6 +14,7 @@ from codriving.config.target import find_class
 from codriving.datatypes import (
     CaseMemory,
     Cooperation,
+    Drivers,
     EpisodeLauncher,
     Method,
     Metric,
@@ -246,6 +247,7 @@ EXPECTED |= {
     "launcher": EpisodeLauncher,
     "environment": Simulator,
     "limits": VehicleLimits,
+    "drivers": Drivers,
 }
 """What each node has to be, known before its class is called: a file chooses no other code than a part of its kind."""
 

@@ -34,6 +34,7 @@ FIRST = {
     "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
     "llm": ("offline",),
     "limits": ("none", "road"),
+    "drivers": ("simulator", "attentive", "mixed", "rough"),
     "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),
 }

@@ -52,7 +52,8 @@ def prepare(token: str, config_dir: Path | None = None) -> str:
     if head == "method" and rest in SHOWN:
         raise ConfigError(f"{key} is no setting of a run, but what a YAML says for tables; leave it out")
     if head not in GROUPS[2:] and (slot := rest.partition(".")[0]) in GROUPS:
-        raise ConfigError(f"{key} is {slot} itself; set {rest} instead")
+        why = "has moved in release 0.2" if slot == "drivers" else f"is {slot} itself"
+        raise ConfigError(f"{key} {why}; set {rest} instead")
     if key in ROOT and ROOT[key].kind is str and not isinstance(override.value(), str | None):
         # Hydra reads run=2026_01 as a number; a name stays what was typed.
         return f"++{key}='{plain.partition('=')[2]}'"

@@ -10,7 +10,7 @@ from typing import Any
 from codriving.errors import ConfigError
 
 # The choices that the command line names; one YAML a choice.
-GROUPS = ("scenario", "method", "executor", "cda", "llm", "memory", "metrics", "launcher", "limits")
+GROUPS = ("scenario", "method", "executor", "cda", "llm", "memory", "metrics", "launcher", "limits", "drivers")
 
 NODES = (*GROUPS, "environment")  # The keys of the root that hold a constructor call
 

@@ -17,6 +17,7 @@ from codriving.datatypes.parts import (
     CaseMemory,
     Chat,
     Cooperation,
+    Drivers,
     EpisodeLauncher,
     Method,
     Metric,
@@ -69,7 +70,7 @@ from codriving.datatypes.world import Action, DrivingModel, Intent, Kind, Scene,
 
 __all__ = [
     "Account", "Action", "ActionAssessment", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat", "Collision",
-    "Conflict", "Cooperation", "Decision", "Deliberation", "Description", "DrivingModel", "Effect", "Ending",
+    "Conflict", "Cooperation", "Decision", "Deliberation", "Description", "Drivers", "DrivingModel", "Effect", "Ending",
     "EpisodeLauncher", "EpisodeRecord", "Experience", "Instance", "Intent", "Interaction", "Kind", "Lane", "LaneChange",
     "LaneId", "LaneShape", "Line", "Memory", "Method", "Metric", "Model", "NamedNumber", "OrderExecutor", "Outcome",
     "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence", "ReasonedDeliberation", "Relation", "Road",

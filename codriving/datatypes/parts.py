@@ -46,6 +46,10 @@ class Scenario(ABC):
         """
 
 
+class Drivers:
+    """What ``drivers=`` chooses: how human drivers drive."""
+
+
 class Simulator(ABC):
     """A world that takes actions, from a seed to an outcome."""
 

@@ -29,6 +29,7 @@ class Track:
     arrived: float | None  # Time of arrival [s], or None
     length: float = 5.0  # [m]
     width: float = 2.0  # [m]
+    style: str = ""  # Style of a human driver, where drivers have one
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +134,7 @@ class Participant:
     kind: str  # ``CAV`` or ``HDV``
     route: str
     arrived: float | None  # Time of arrival [s], or None
+    style: str = ""  # Style of a human driver, where drivers have one
 
 
 @dataclass(frozen=True, slots=True)

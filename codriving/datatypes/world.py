@@ -1,7 +1,7 @@
 """The world at one moment, as it is handed to a method: vehicles, their intents and actions, and where they start."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from codriving.datatypes.limits import VehicleLimits
@@ -105,6 +105,9 @@ class WorldState:
     vehicles: tuple[VehicleState, ...]
     intents: Mapping[str, Intent]
     available: Mapping[str, tuple[Action, ...]]
+    signals: Mapping[str, str] = field(
+        default_factory=dict
+    )  # ``left`` or ``right`` of each vehicle that signals a turn
 
     @property
     def cavs(self) -> tuple[VehicleState, ...]:

@@ -19,6 +19,7 @@ from codriving.datatypes import (
 )
 from codriving.environment.alone import drive_alone
 from codriving.environment.cav import ConnectedVehicle
+from codriving.environment.drivers.style import DriverMix
 from codriving.environment.network import build_network
 from codriving.environment.recorder import Recorder, snapshot
 from codriving.environment.settings import ControlGains, Corrections, DriverProfile
@@ -41,7 +42,7 @@ class Environment(Simulator):
         self,
         scenario: Scenario,
         control: ControlGains,
-        drivers: DriverProfile,
+        drivers: DriverProfile | DriverMix,
         corrections: Corrections,
         limits: VehicleLimits | None = None,
     ) -> None:
@@ -50,6 +51,8 @@ class Environment(Simulator):
         pace = scenario.pace
         step, interval = 1 / pace.simulation_frequency, 1 / pace.decision_frequency
         model = DrivingModel(pace.target_speeds, control.speed, step, interval, pace.detection_range)
+        if isinstance(drivers, DriverMix):
+            model = replace(model, human_braking=drivers.limit, human_acceleration=drivers.acceleration)
         self.driving_model = model if limits is None else limited_model(model, limits, drivers)
         self.road_map = road_map(scenario.road)
         profiles = self.road_map.speed_profiles(self.driving_model)
@@ -112,7 +115,8 @@ class Environment(Simulator):
     def _populated(self, scene: Scene) -> Traffic:
         """Put the vehicles of a scene on the road."""
         rng = np.random.default_rng(np.random.SeedSequence(entropy=scene.seed, spawn_key=(1,)))
-        traffic = Traffic(self._network, rng, self.road_map, self.corrections)
+        styled = isinstance(self.drivers, DriverMix)
+        traffic = Traffic(self._network, rng, self.road_map, self.corrections, styled)
         spawn(traffic, scene, self._route_paths, self.driving_model.target_speeds, self.control, self.drivers)
         limit(traffic, self.limits)
         return traffic
@@ -160,19 +164,20 @@ def spawn(
     route_paths: Mapping[str, RoutePath],
     target_speeds: tuple[float, ...],
     control: ControlGains,
-    drivers: DriverProfile,
+    drivers: DriverProfile | DriverMix,
 ) -> None:
     """Put all vehicles on the road, in the order of the scene."""
     corrections = traffic.corrections
     for start in scene.starts:
-        traffic.vehicles.append(
-            ConnectedVehicle.start(traffic, start, route_paths, target_speeds, control, corrections)
-            if start.kind is Kind.CAV
-            else HumanDriver.start(traffic, start, route_paths, drivers, corrections)
-        )
+        if start.kind is Kind.CAV:
+            cav = ConnectedVehicle.start(traffic, start, route_paths, target_speeds, control, corrections)
+            traffic.vehicles.append(cav)
+            continue
+        traits = drivers.draw(scene.seed, start.id) if isinstance(drivers, DriverMix) else None
+        traffic.vehicles.append(HumanDriver.start(traffic, start, route_paths, drivers, corrections, traits))
 
 
-def limited_model(model: DrivingModel, limits: VehicleLimits, drivers: DriverProfile) -> DrivingModel:
+def limited_model(model: DrivingModel, limits: VehicleLimits, drivers: DriverProfile | DriverMix) -> DrivingModel:
     """Return what methods may know of vehicles that have limits; human drivers may keep below them."""
     braking, pedal = min(limits.braking, drivers.limit), min(limits.acceleration, drivers.limit, drivers.acceleration)
     return replace(model, limits=limits, human_braking=braking, human_acceleration=pedal)

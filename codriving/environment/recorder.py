@@ -15,6 +15,7 @@ class _Log:
     first_step: int
     kind: Kind
     route: str
+    style: str
     rows: list[tuple[float, float, float, float, float]] = field(default_factory=list)
     actions: list[str] = field(default_factory=list)
 
@@ -30,7 +31,7 @@ class Recorder:
         for v in vehicles:
             log = self.logs.get(v.id)
             if log is None:
-                log = self.logs[v.id] = _Log(step, v.kind, v.route_path.route.id)
+                log = self.logs[v.id] = _Log(step, v.kind, v.route_path.route.id, v.style)
             x, y = v.position
             log.rows.append((float(x), float(y), float(v.heading), float(v.speed), acceleration(v)))
             log.actions.append(actions.get(v.id, ""))
@@ -41,7 +42,8 @@ class Recorder:
         for name, log in sorted(self.logs.items()):
             x, y, heading, speed, accelerations = np.array(log.rows).T
             motion = (x, y, heading, speed, accelerations, tuple(log.actions))
-            tracks.append(Track(name, log.kind, log.route, log.first_step, *motion, arrivals.get(name)))
+            arrived = arrivals.get(name)
+            tracks.append(Track(name, log.kind, log.route, log.first_step, *motion, arrived, style=log.style))
         return Trajectory(step, tuple(tracks))
 
 
@@ -64,4 +66,5 @@ def snapshot(traffic: Traffic, time: float, step: int) -> WorldState:
     cavs = [v for v in vehicles if isinstance(v, ConnectedVehicle)]
     intents = {v.id: Intent(v.route_path.route.id, float(v.target_speed), plain(v.target_lane_index)) for v in cavs}
     states, available = tuple(state_of(v) for v in vehicles), {v.id: v.available() for v in cavs}
-    return WorldState(time, step, states, intents, available)
+    signals = {v.id: v.signal for v in vehicles if v.signal} if traffic.past is not None else {}
+    return WorldState(time, step, states, intents, available, signals)

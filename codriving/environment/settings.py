@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.controller import ControlledVehicle
 
+from codriving.datatypes import Drivers
 from codriving.errors import require, require_range
 
 
@@ -49,7 +50,7 @@ class Corrections:
 
 
 @dataclass(frozen=True, slots=True)
-class DriverProfile:
+class DriverProfile(Drivers):
     """Parameters of the Intelligent Driver Model and of MOBIL."""
 
     acceleration: float  # IDM's comfortable acceleration a [m/s2]

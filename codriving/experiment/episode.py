@@ -137,7 +137,7 @@ def _record(
         seed=seed,
         outcome=outcome,
         scores=scores or {},
-        participants=tuple(Participant(track.id, track.kind.value, track.route, track.arrived) for track in tracks),
+        participants=tuple(Participant(t.id, t.kind.value, t.route, t.arrived, t.style) for t in tracks),
         decisions=decisions,
         counts=counts or {},
     )

@@ -13,7 +13,14 @@ from codriving.environment import Environment
 from codriving.errors import ConfigError
 from codriving.reasoning import CdaLevel
 
-READ = ("scenario", "environment", "limits", "cda", "plugins")  # Keys of the root that make a difference here
+READ = (
+    "scenario",
+    "environment",
+    "limits",
+    "drivers",
+    "cda",
+    "plugins",
+)  # Keys of the root that make a difference here
 
 CHOSEN = ("scenario", "cda")  # Groups that are chosen by an argument, and not by an override
 
@@ -42,7 +49,7 @@ def configured(
 def _check_read(token: str) -> None:
     """Refuse what would have no effect, such as a key that is not read here."""
     if not isinstance(token, str):
-        raise ConfigError(f"an override is a text such as 'environment.drivers.headway=1.2', got {token!r}")
+        raise ConfigError(f"an override is a text such as 'drivers.headway=1.2', got {token!r}")
     key = token.lstrip("+").partition("=")[0]
     if key in CHOSEN:
         way = "the first argument" if key == "scenario" else "cda='<preset>'"

@@ -10,6 +10,7 @@ from codriving.geometry import TRUE, RoadMap
 from codriving.metrics.comfort import hard_braking, jerk, reversals, stops
 from codriving.metrics.delay import drives, jain
 from codriving.metrics.following import Closest, closest
+from codriving.metrics.from_behind import struck_from_behind
 from codriving.metrics.pet import has_area, post_encroachment_times
 
 
@@ -47,7 +48,7 @@ class StandardMetrics(Metric):
             success=success,
             pets=pets,
             travels=travels(trajectory, road, self.free_speed),
-            numbers=self._numbers(trajectory, road, nearest, success),
+            numbers=(*self._numbers(trajectory, road, nearest, success), *_forgiving(trajectory, outcome, success)),
             clean=success and not missed,
         )
 
@@ -74,6 +75,15 @@ class StandardMetrics(Metric):
             NamedNumber("fairness", jain([d.alone / d.time for d in driven]), "", "higher"),
             NamedNumber("time_all", _mean([d.whole for d in driven]), "s", "lower"),
         )
+
+
+def _forgiving(trajectory: Trajectory, outcome: Outcome, success: bool) -> tuple[NamedNumber, ...]:
+    """Success if collisions in which a human driver hits a CAV from behind are forgiven, and whether this was one."""
+    from_behind = struck_from_behind(trajectory, outcome)
+    return (
+        NamedNumber("struck_from_behind", float(from_behind), better="lower"),
+        NamedNumber("success_forgiving", float(success or from_behind), better="higher"),
+    )
 
 
 def meets(road: RoadMap) -> bool:

@@ -43,6 +43,8 @@ _CAME_LATER |= {"extra": {}, "headers": {}}
 # Groups whose choice stands for a class; all choices of ``cda`` are one class, so that their values tell them.
 CHOICES = ("scenario", "method", "executor", "llm", "memory")
 
+DRIVERS, ENVIRONMENT = "drivers", "environment"  # Drivers are told by their values in the environment, as before
+
 LIMITS = "limits"  # Without limits a world is that of a run whose config did not know them yet
 
 MEMORY = "memory"
@@ -87,6 +89,9 @@ def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     values = {key: _plain(node, resolved) for key, node in resolved.items() if key not in WITHOUT_EFFECT}
     if values.get(LIMITS) is None:
         values.pop(LIMITS, None)
+    environment = values.get(ENVIRONMENT)
+    if DRIVERS in values and isinstance(environment, Mapping) and environment.get(DRIVERS) == values[DRIVERS]:
+        values.pop(DRIVERS)
     dropped: dict[str, Sequence[str]] = {"llm": HOW_A_MODEL_IS_ASKED}
     if snapshot_of(resolved):
         dropped[MEMORY] = (SNAPSHOT, "file")

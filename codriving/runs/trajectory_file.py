@@ -79,7 +79,6 @@ def _trajectory(rows: Sequence[Mapping[str, str]], record: EpisodeRecord) -> Tra
             raise ValueError(f"the rows of {name} are not complete")
         x, y, heading, speed, acceleration = numbers.T
         kind, member, actions = Kind(own[0]["kind"]), members[name], tuple(row["action"] for row in own)
-        tracks.append(
-            Track(name, kind, member.route, first, x, y, heading, speed, acceleration, actions, member.arrived)
-        )
+        motion = (x, y, heading, speed, acceleration, actions, member.arrived)
+        tracks.append(Track(name, kind, member.route, first, *motion, style=member.style))
     return Trajectory(step, tuple(tracks))

@@ -105,6 +105,7 @@ def test_list_without_a_group_shows_all_groups() -> None:
         "metrics",
         "launchers",
         "limits",
+        "drivers",
         "experiments",
         "trainings",
     ]

@@ -10,6 +10,7 @@ from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.parts import Scenario
 from codriving.datatypes.road import Road
 from codriving.datatypes.world import Scene, Start
+from codriving.environment.drivers.style import DriverMix
 from codriving.environment.environment import Environment
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.environment.scenarios.pace import Pace
@@ -96,10 +97,11 @@ def by_hand() -> Drive:
         time_limit: float = 30.0,
         drivers: dict[str, float] | None = None,
         limits: VehicleLimits | None = None,
+        people: DriverMix | DriverProfile | None = None,
     ) -> Environment:
         road = road or Intersection(**INTERSECTION).road
         scenario = ByHand(road, Pace(10.0, 2.0, time_limit, target_speeds, 50.0), tuple(starts))
-        profile = DriverProfile(**{**DRIVERS, **(drivers or {})})
+        profile = people or DriverProfile(**{**DRIVERS, **(drivers or {})})
         return Environment(scenario, GAINS, profile, corrections(*off), limits)
 
     return build

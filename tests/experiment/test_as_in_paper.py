@@ -33,7 +33,7 @@ def test_other_seeds_are_not(seeds: range) -> None:
         "scenario.cavs=8",
         "scenario.hdvs=[0,0]",
         "scenario.time_limit=20",
-        "environment.drivers.headway=1.2",
+        "drivers.headway=1.2",
         "environment.corrections.no_reverse=false",
     ],
 )

@@ -23,7 +23,7 @@ def test_keywords_are_keys_of_the_scenario() -> None:
 
 
 def test_overrides_reach_scenario_and_environment() -> None:
-    env = codriving.parallel_env("intersection", "scenario.cavs=5", "environment.drivers.headway=1.2")
+    env = codriving.parallel_env("intersection", "scenario.cavs=5", "drivers.headway=1.2")
     assert len(env.possible_agents) == 5
     assert env.environment.drivers.headway == 1.2
 

@@ -119,7 +119,7 @@ def test_several_at_once() -> None:
 
 
 def test_settings_and_overrides_reach_the_environment() -> None:
-    env = make(overrides=("environment.drivers.headway=1.2",), cavs=3, rows=5, cda="status_sharing")
+    env = make(overrides=("drivers.headway=1.2",), cavs=3, rows=5, cda="status_sharing")
     assert env.observation_space.shape == (3, 5, 6)
     assert env.parallel.environment.drivers.headway == 1.2
     with pytest.raises(ConfigError, match=r"unknown key scenario\.cvas"):

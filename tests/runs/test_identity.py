@@ -57,6 +57,17 @@ def test_a_config_that_does_not_know_limits_is_one_without_them() -> None:
     assert told("limits=road") != told("limits=none") != told("limits=road", "limits.braking=7")
 
 
+def test_a_config_that_does_not_know_the_group_of_drivers_is_one_with_those_of_the_simulator() -> None:
+    resolved = compose(["drivers=simulator"])
+    before = {key: value for key, value in resolved.items() if key != "drivers"}
+    assert before["environment"]["drivers"]["jam_distance"] == 7.0
+    assert fingerprint(NAMES, {}, resolved, ()) == fingerprint(NAMES, {}, before, ())
+    assert settings_of(resolved) == settings_of(before)
+    assert settings_of(resolved)["environment.drivers.headway"] == "1.5"
+    assert told("drivers=mixed") != told("drivers=simulator") != told("drivers=simulator", "drivers.headway=1.2")
+    assert told("drivers=mixed") != told("drivers=rough")
+
+
 def test_labels_and_files_tell() -> None:
     assert told(names=("merge", *NAMES[1:])) != told()
     assert told(files=(DECIDE,)) != told()

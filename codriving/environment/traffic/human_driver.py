@@ -9,6 +9,8 @@ from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.objects import Obstacle, RoadObject
 
 from codriving.datatypes import LaneId, Start
+from codriving.environment.drivers.attention import Judgement
+from codriving.environment.drivers.style import DriverMix, DriverTraits
 from codriving.environment.motion import STANDSTILL, clip
 from codriving.environment.settings import Corrections, DriverProfile
 from codriving.environment.traffic.route_following import RouteFollower, RoutePath
@@ -23,6 +25,8 @@ class HumanDriver(RouteFollower, IDMVehicle):
 
     waits_at: float | None = None  # Arc length of the line at which the driver has to wait [m], or None
     sight: float  # How far ahead along the route it looks for bodies [m]
+    traits: DriverTraits | None = None
+    judgement: Judgement | None = None
 
     @classmethod
     def start(
@@ -30,11 +34,19 @@ class HumanDriver(RouteFollower, IDMVehicle):
         road: Road,
         start: Start,
         route_paths: Mapping[str, RoutePath],
-        profile: DriverProfile,
+        profile: DriverProfile | DriverMix,
         corrections: Corrections,
+        traits: DriverTraits | None = None,
     ) -> "HumanDriver":
         """Put a human driver on the road; the start speed is the speed that the driver wants."""
         driver = cls.place(road, start, route_paths, corrections)
+        if traits is not None:
+            traits.profile.apply(driver, to_class=False)
+            driver.sight, driver.DELTA, driver.target_speed = profile.sight, traits.exponent, start.speed * traits.speed
+            driver.traits, driver.style, driver.signals = traits, traits.style, traits.signals
+            driver.judgement = Judgement(traits)
+            return driver
+        assert isinstance(profile, DriverProfile)
         profile.apply(driver, to_class=not corrections.own_parameters)
         driver.sight = profile.sight
         driver.randomize_behavior()
@@ -58,11 +70,16 @@ class HumanDriver(RouteFollower, IDMVehicle):
     def step(self, dt: float) -> None:
         """Move by one simulation step [s]."""
         self.timer += dt
+        if self.judgement is not None:
+            self.judgement.watch(self, dt)
         super().step(dt)
 
     def following_acceleration(self) -> float:
         """Return IDM's acceleration to the nearest body on the route and the line to wait at, unclipped [m/s2]."""
-        leader, gap = body_ahead(self, self.road.vehicles + self.road.objects, self.sight)
+        vehicles = self.road.vehicles
+        if self.traits is not None:
+            vehicles = self.road.past.seen(self, vehicles, self.traits.reaction)
+        leader, gap = body_ahead(self, vehicles + self.road.objects, self.sight)
         changing = self.lane_index != self.target_lane_index
         wanted = [0.0]
         if leader is not None and not (changing and self._leaves(leader)):

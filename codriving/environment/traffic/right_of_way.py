@@ -12,6 +12,7 @@ from codriving.environment.traffic.route_following import RouteFollower
 from codriving.geometry import RoadMap
 
 Array = NDArray[np.float64]
+Spot = tuple[str, float]  # A route, and the arc length on it [m]
 
 # Times at which the right of way looks for a conflict; highway-env looks as far [s].
 HORIZON = np.arange(0.25, 3.0, 0.25)
@@ -40,11 +41,17 @@ def will_meet(road_map: RoadMap, one: RouteFollower, other: RouteFollower) -> bo
 
 def meet(road_map: RoadMap, one: RouteFollower, other: RouteFollower, ones: Array, others: Array) -> bool:
     """Whether two vehicles would be in a conflict zone together, by where each may be soon."""
+    places = ((one.route_path.route.id, one.s), (other.route_path.route.id, other.s))
+    return meet_on(road_map, *places, ones, others)
+
+
+def meet_on(road_map: RoadMap, one: Spot, other: Spot, ones: Array, others: Array) -> bool:
+    """Whether two vehicles would be in a conflict zone together, by the routes on which they are taken to be."""
     reach_one, reach_other = ones[-1, -1] + GRID, others[-1, -1] + GRID
-    for zone in road_map.zones(one.route_path.route.id, other.route_path.route.id):
+    for zone in road_map.zones(one[0], other[0]):
         if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
             continue
-        if one.s > zone.exit_i or other.s > zone.exit_j or reach_one < zone.entry_i or reach_other < zone.entry_j:
+        if one[1] > zone.exit_i or other[1] > zone.exit_j or reach_one < zone.entry_i or reach_other < zone.entry_j:
             continue
         for places in others:
             if np.any((ones >= zone.back(places)) & (ones <= zone.front(places))):
@@ -52,14 +59,14 @@ def meet(road_map: RoadMap, one: RouteFollower, other: RouteFollower, ones: Arra
     return False
 
 
-def motions(vehicle: RouteFollower) -> Array:
-    """Where a vehicle may be on its route at the times of the horizon."""
-    steady: Array = vehicle.s + pace(vehicle) * HORIZON
+def motions(vehicle: RouteFollower, times: Array = HORIZON) -> Array:
+    """Where a vehicle may be on its route at some times [s]."""
+    steady: Array = vehicle.s + pace(vehicle) * times
     if not isinstance(vehicle, IDMVehicle):
         return steady[None]
     gain = max(min(vehicle.target_speed, vehicle.lane.speed_limit) - vehicle.speed, 0.0)
-    rising = np.minimum(HORIZON, gain / vehicle.COMFORT_ACC_MAX)
-    faster = vehicle.s + vehicle.speed * HORIZON + vehicle.COMFORT_ACC_MAX * rising * (HORIZON - rising / 2)
+    rising = np.minimum(times, gain / vehicle.COMFORT_ACC_MAX)
+    faster = vehicle.s + vehicle.speed * times + vehicle.COMFORT_ACC_MAX * rising * (times - rising / 2)
     return np.stack((steady, np.maximum(steady, faster)))
 
 
@@ -70,21 +77,30 @@ def pace(vehicle: RouteFollower) -> float:
 
 def can_wait(driver: RouteFollower) -> bool:
     """Whether a driver can still stop before the junction, its front over the line by a metre at most."""
-    room = driver.route_path.route.entry + OVERSHOOT - driver.s - driver.LENGTH / 2
-    return bool(room > 0 and driver.speed**2 / (2 * driver.ACC_MAX) <= room)
+    return stops_before_junction(driver, driver.ACC_MAX)
+
+
+def stops_before_junction(vehicle: RouteFollower, braking: float) -> bool:
+    """Whether a vehicle can still stop before the junction with some braking [m/s2]."""
+    room = vehicle.route_path.route.entry + OVERSHOOT - vehicle.s - vehicle.LENGTH / 2
+    return bool(room > 0 and vehicle.speed**2 / (2 * braking) <= room)
 
 
 def occupied_ahead(road_map: RoadMap, driver: RouteFollower, others: Iterable[RouteFollower]) -> float | None:
     """Find the nearest occupied conflict zone on a driver's route, if the driver can still stop before it."""
+    spots = ((other.route_path.route.id, other.s) for other in others if other is not driver)
+    return occupied_by(road_map, driver, spots)
+
+
+def occupied_by(road_map: RoadMap, driver: RouteFollower, others: Iterable[Spot]) -> float | None:
+    """Find the nearest conflict zone that is occupied, by where the others are taken to be."""
     stop = driver.s + driver.speed**2 / (2 * driver.ACC_MAX)
     nearest = math.inf
-    for other in others:
-        if other is driver:
-            continue
-        for zone in road_map.zones(driver.route_path.route.id, other.route_path.route.id):
+    for route, place in others:
+        for zone in road_map.zones(driver.route_path.route.id, route):
             if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
                 continue
-            inside = zone.entry_j < other.s < (zone.exit_j if zone.merge_j is None else zone.merge_j)
+            inside = zone.entry_j < place < (zone.exit_j if zone.merge_j is None else zone.merge_j)
             if inside and stop < zone.entry_i + OVERSHOOT and zone.entry_i < min(driver.s + SIGHT, nearest):
                 nearest = zone.entry_i
     return nearest if nearest < math.inf else None

@@ -128,6 +128,14 @@ class RouteFollower(PlainMotion):
     # Lateral offset of the present lane's centre from the route [m]; 0 on the lane of the route itself.
     shift: float = 0.0
     corrections: Corrections
+    style: str = ""  # Style of a human driver, where drivers have one
+    signals: bool = True  # Whether it signals its turns
+
+    @property
+    def signal(self) -> str:
+        """The side that it signals: ``left``, ``right`` or nothing."""
+        shown: str = self.road.road_map.signals.shown(self.route_path.route.id, self.s) if self.signals else ""
+        return shown
 
     @classmethod
     def place(

@@ -12,6 +12,7 @@ from highway_env.vehicle.kinematics import Vehicle
 from highway_env.vehicle.objects import Landmark, Obstacle, RoadObject
 
 from codriving.datatypes import Block
+from codriving.environment.drivers.attention import Past, look_round
 from codriving.environment.network import connected
 from codriving.environment.settings import Corrections
 from codriving.environment.traffic.human_driver import HumanDriver
@@ -26,9 +27,15 @@ class Traffic(RegulatedRoad):
     """All bodies on the road, and the rules that human drivers obey."""
 
     def __init__(
-        self, network: RoadNetwork, np_random: np.random.Generator, road_map: RoadMap, corrections: Corrections
+        self,
+        network: RoadNetwork,
+        np_random: np.random.Generator,
+        road_map: RoadMap,
+        corrections: Corrections,
+        styled: bool = False,
     ) -> None:
         super().__init__(network, np_random=np_random)
+        self.past = Past() if styled else None  # What drivers with a style have seen
         self.road_map, self.corrections = road_map, corrections
         self.objects = [_obstacle(self, block) for block in road_map.road.blocks]
         self._connected: dict[tuple[Any, ...], list[tuple[AbstractLane, float]]] = {}
@@ -41,7 +48,12 @@ class Traffic(RegulatedRoad):
         self.steps += 1
         # A driver who looks only twice a second is in the way before it can wait.
         frequency = ATTENTION if self.corrections.yield_at_entry else self.REGULATION_FREQUENCY
-        if self.steps % max(int(1 / dt / frequency), 1) == 0:
+        every = max(int(1 / dt / frequency), 1)
+        if self.past is not None:
+            if self.steps % every == 0 and self.road_map.road.regulated:
+                look_round(self.road_map, self.vehicles, every * dt)
+            self.past.note(self.vehicles, dt)
+        elif self.steps % every == 0:
             self.enforce_road_rules()
         for vehicle in self.vehicles:
             vehicle.step(dt)

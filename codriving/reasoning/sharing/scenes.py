@@ -54,7 +54,15 @@ def describe_scenes(
             covers=road_map.changes.covered(intent.route, road_map.lane_at(intent.route, place), ego.x, ego.y),
             must_change=None if change is None else LaneChange(change[0], change[1] - place),
             neighbours=tuple(
-                _neighbour(other, intents.get(other.id), tracking, ego.id, world.time, *roles.get(other.id, NO_ROLE))
+                _neighbour(
+                    other,
+                    intents.get(other.id),
+                    world.signals.get(other.id, ""),
+                    tracking,
+                    ego.id,
+                    world.time,
+                    *roles.get(other.id, NO_ROLE),
+                )
                 for other in seen
             ),
         )
@@ -110,10 +118,17 @@ def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
 
 
 def _neighbour(
-    n: TrackedVehicle, intent: Intent | None, tracking: Tracking, ego: str, time: float, role: Role, gap: float | None
+    n: TrackedVehicle,
+    intent: Intent | None,
+    signal: str,
+    tracking: Tracking,
+    ego: str,
+    time: float,
+    role: Role,
+    gap: float | None,
 ) -> TrackedVehicle:
     # A vehicle that shares an intent has said that it is a CAV.
     kind = Kind.CAV if intent is not None else n.kind
-    routes, standing = tracking.places(ego, n, intent), tracking.standing(ego, n, time)
+    routes, standing = tracking.places(ego, n, intent, signal), tracking.standing(ego, n, time)
     motion = (n.x, n.y, n.speed, n.heading, n.acceleration, n.lane, n.length)
     return TrackedVehicle(n.id, kind, *motion, routes, intent, standing, role, gap)

@@ -27,7 +27,7 @@ class Tracking:
         # Only for one step, in which many ask for the same: by place, and what was possible before if that counts.
         self._near: dict[Spot, Places] = {}
         self._shared: dict[tuple[str, float, float], Places] = {}
-        self._narrowed: dict[tuple[Spot, frozenset[str] | None], tuple[frozenset[str], Places]] = {}
+        self._narrowed: dict[tuple[Spot, frozenset[str] | None, str], tuple[frozenset[str], Places]] = {}
 
     def begin_step(self) -> None:
         """Forget what was only worked out for the step before."""
@@ -35,11 +35,12 @@ class Tracking:
         self._shared.clear()
         self._narrowed.clear()
 
-    def places(self, ego: str, seen: TrackedVehicle, intent: Intent | None) -> Places:
+    def places(self, ego: str, seen: TrackedVehicle, intent: Intent | None, signal: str = "") -> Places:
         """Return the routes on which a vehicle may be.
 
         A shared route is believed. Otherwise every route that fits the position (and the heading, if it is known) and
-        has fitted it so far is possible. After these come the lanes beside onto which the body reaches.
+        has fitted it so far is possible, and of these the ones that agree with a turn signal; without one, all, since
+        not every driver signals. After these come the lanes beside onto which the body reaches.
         """
         if intent is not None:
             told = (intent.route, seen.x, seen.y)
@@ -47,18 +48,19 @@ class Tracking:
                 s, _ = self.road_map.project(*told)
                 self._shared[told] = ((intent.route, s), *self._covered(intent.route, s, seen.x, seen.y))
             return self._shared[told]
-        key = ((seen.x, seen.y, seen.heading), self._routes.get((ego, seen.id)))
+        key = ((seen.x, seen.y, seen.heading), self._routes.get((ego, seen.id)), signal)
         if key not in self._narrowed:
             self._narrowed[key] = self._narrow(*key)
         self._routes[ego, seen.id], places = self._narrowed[key]
         return places
 
-    def _narrow(self, spot: Spot, before: frozenset[str] | None) -> tuple[frozenset[str], Places]:
+    def _narrow(self, spot: Spot, before: frozenset[str] | None, signal: str) -> tuple[frozenset[str], Places]:
         """Return the routes that are still possible, and these with the lanes beside onto which the body reaches."""
         if spot not in self._near:
             self._near[spot] = self._fitting(*spot)
         near = self._near[spot]
         kept = tuple(p for p in near if before is None or p[0] in before) or near
+        kept = (self.road_map.signals.agreeing(kept, signal) if signal else ()) or kept
         # A body that reaches onto the lane beside is there as well, whatever its route.
         covered = {p for route, s in kept for p in self._covered(route, s, spot[0], spot[1])}
         beside = sorted(p for p in covered if all(p[0] != route for route, _ in kept))

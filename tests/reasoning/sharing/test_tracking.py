@@ -131,3 +131,15 @@ def test_where_routes_part_the_others_are_ruled_out_at_two_steps_of_misfit(
     route: str, place: float, full: bool, possible: set[str], junction: Junction
 ) -> None:
     assert routes(Tracking(junction.road_map), perceived(junction, route, place, full=full)) == possible
+
+
+@pytest.mark.parametrize("signal", ["left", "right"])
+def test_a_turn_signal_narrows_the_possible_routes_and_is_remembered(signal: str, junction: Junction) -> None:
+    tracking = Tracking(junction.road_map)
+    told = {"left": ("south-west",), "right": ("south-east",)}[signal]
+    near, far = perceived(junction, told[0], 85.0), perceived(junction, told[0], 60.0)
+    assert len(tracking.places("CAV1", far, None, signal)) == 3, "no route is signalled so early; it is not believed"
+    assert tuple(route for route, _ in tracking.places("CAV1", near, None, signal)) == told
+    assert tuple(route for route, _ in tracking.places("CAV1", near, None)) == told
+    # Without a signal all stay possible: not every driver signals.
+    assert len(Tracking(junction.road_map).places("CAV1", near, None)) == 3

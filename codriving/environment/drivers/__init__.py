@@ -1,0 +1,1 @@
+"""People: how human drivers differ, when they see what, and what they make of it."""
