@@ -44,12 +44,21 @@ class VehicleLimits:
         lateral = sqrt(self.comfort_lateral / (4 * width))
         return 4 * lateral, lateral
 
-    def clears_after(self, width: float) -> float:
-        """Return how long after the beginning of a lane change the body is off the lane that is left [s]."""
-        rate = self.change_gains(width)[0] / 2
-        left, most = (width / 2 - BODY / 2) / width, 20.0
-        low, high = 0.0, most
-        for _ in range(40):  # (1 + x) exp(-x) falls; halving finds where it is `left`
-            middle = (low + high) / 2
-            low, high = (middle, high) if (1 + middle) * exp(-middle) > left else (low, middle)
-        return high / rate
+    def clears_after(self, width: float, offset: float | None = None) -> float:
+        """Return how long it takes until the body of a vehicle that changes lanes is off the lane that it leaves [s].
+
+        Args:
+            width: Width of the lane [m].
+            offset: Distance that is left to the centre of the new lane [m]; None for all of the width.
+        """
+        ends, begins = ((_way(share / width)) for share in (width / 2 - BODY / 2, width if offset is None else offset))
+        return max(ends - begins, 0.0) / (self.change_gains(width)[0] / 2)
+
+
+def _way(share: float) -> float:
+    """Return where (1 + x) exp(-x), the share of a critically damped motion that is left, has fallen to a value."""
+    low, high = 0.0, 20.0
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (1 + middle) * exp(-middle) > share else (low, middle)
+    return high

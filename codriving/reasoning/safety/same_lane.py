@@ -1,5 +1,7 @@
 """First layer: no collision with the vehicles of the same lane, ahead or behind (Section III-C.4)."""
 
+from math import ceil
+
 import numpy as np
 
 from codriving.datatypes import Action, Role, TrackedVehicle
@@ -51,14 +53,10 @@ def check_ahead(given: SafetyInput) -> dict[Action, list[str]]:
                 found.setdefault(action, []).append(
                     f"same lane: {action} leaves too little room to stop behind {n.id} at {n.speed:.1f} m/s"
                 )
-    # Without limits a body is off the lane that it leaves before anything has to be minded there.
-    for own, place, until in ways[1:] if given.forecast.model.limits is not None else ():
-        left = given.road_map.changes.ahead(own, place)
-        for action, reached in zip(given.actions, place + travelled[:, until - 1], strict=True):
-            if left is not None and reached + END > left[2]:
-                found.setdefault(action, []).append(
-                    f"same lane: {action} leaves too little room to stop where the lane ends that the CAV leaves"
-                )
+    for action in _meets_the_end(given, travelled):
+        found.setdefault(action, []).append(
+            f"same lane: {action} leaves too little room to stop where the lane ends that the CAV leaves"
+        )
     change = given.scene.must_change
     if change is not None:
         for action, reached in zip(given.actions, travelled[:, -1], strict=True):
@@ -66,6 +64,25 @@ def check_ahead(given: SafetyInput) -> dict[Action, list[str]]:
                 found.setdefault(action, []).append(
                     f"same lane: after {action} the CAV could not stop before its lane ends, {change.room:.0f} m ahead"
                 )
+    return found
+
+
+def _meets_the_end(given: SafetyInput, travelled: Array) -> list[Action]:
+    """Return the actions after which a CAV that changes lanes could not stop before the end of the lane it leaves.
+
+    Without limits a body is off that lane before there is anything to mind.
+    """
+    forecast, scene = given.forecast, given.scene
+    if forecast.model.limits is None:
+        return []
+    found: list[Action] = []
+    for name, place in scene.covers:
+        left = given.road_map.changes.ahead(name, place)
+        if left is not None:
+            _, offset = given.road_map.project(scene.intent.route, scene.ego.x, scene.ego.y)
+            takes = forecast.model.limits.clears_after(given.road_map.widest, abs(offset))
+            reached = place + travelled[:, min(ceil(takes / forecast.sample), forecast.steps)]
+            found += [a for a, s in zip(given.actions, reached.tolist(), strict=True) if s + END > left[2]]
     return found
 
 
