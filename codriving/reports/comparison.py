@@ -13,7 +13,17 @@ from codriving.reports.pairs import PAIRED, PairedCells
 from codriving.reports.paper import Paper, PaperRow
 from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.results import CellResults, named_numbers
-from codriving.reports.summary import BY_KEY, FALLBACK_NOTE, FALLBACKS, MEASURED, NOTE, number_notes, paper_row
+from codriving.reports.summary import (
+    BY_KEY,
+    CLEAN,
+    FALLBACK_NOTE,
+    FALLBACKS,
+    MEASURED,
+    NOTE,
+    clean_notes,
+    number_notes,
+    paper_row,
+)
 from codriving.reports.wording import (
     metrics_text,
     milliseconds,
@@ -41,7 +51,8 @@ CPU_NOTE = "CPU: computing time of one decision for all CAVs, of this machine; i
 QUOTED = ("success_rate", "pet_mean", "pet_max", "pet_min", "velocity_mean", "velocity_max", "velocity_min")
 
 PAIRED_NOTES = (
-    "Each difference is the method minus codriving on the same seeds. Success: exact McNemar test, two-sided.",
+    "Each difference is the method minus codriving on the same seeds. Success and clean success: exact McNemar test, "
+    "two-sided.",
     "Velocity and PET: means of an episode, over seeds on which both succeed; 95 % bootstrap intervals of "
     f"{RESAMPLES} resamples, where there are {FEWEST} pairs or more.",
     "Better or worse: p below 0.05, or an interval without 0; each by itself, not corrected for their number.",
@@ -117,7 +128,7 @@ def comparison_table(rows: Sequence[Compared], swept: Sequence[str] = ()) -> Tab
         *status_columns(len({row.scenario for row in rows}) > 1),
         *swept_columns(swept),
         reasoner_column(rows),
-        *(column.of(lambda row: row.cell) for column in MEASURED if column.key not in rates),
+        *(column.of(lambda row: row.cell) for column in (*MEASURED, *CLEAN) if column.key not in rates),
         *(column.of(lambda row: row.cell) for column in number_columns(named_numbers(_cells(rows)), MEASURED)),
         *([FALLBACKS.of(lambda row: row.cell)] if any(row.cell and row.cell.asked for row in rows) else []),
         Column("cpu", lambda r: milliseconds(r.cell.cpu) if r.cell else "", CPU, csv=False, page=False, rank=7),
@@ -135,7 +146,8 @@ def comparison_rows(block: Sequence[CellResults], methods: Sequence[str], paper:
     """Compare the methods of one block: cells on the same seeds that differ in the method alone.
 
     Returns:
-        The rows: ``methods`` in their order, then all others as they come.
+        The rows, best first by clean success and then by the mean time of all vehicles; those that are alike, and all
+        where it is not known: ``methods`` in their order, then all others as they come.
     """
     reference = next((cell for cell in block if cell.first.method == REFERENCE), None)
     scenario, setting = block[0].first.scenario, setting_of(block[0].swept)
@@ -156,7 +168,15 @@ def comparison_rows(block: Sequence[CellResults], methods: Sequence[str], paper:
         guided = quoted is not None and quoted.reasoner == "model" and method != REFERENCE
         if found and guided and not any(row.quoted for row in found):
             rows.append(Compared(scenario, method, QUOTED_ALONE, quoted=quoted, swept=setting))
-    return rows + [driven(cell) for cell in block if takes_place_of(cell) not in methods]
+    return _ranked(rows + [driven(cell) for cell in block if takes_place_of(cell) not in methods])
+
+
+def _ranked(rows: Sequence[Compared]) -> list[Compared]:
+    """Put the best first, and last what was not driven; the order stays where clean success is not known."""
+    if not any(cell.judged for cell in _cells(rows)):
+        return list(rows)
+    driven = [(row.cell.standing, row) for row in rows if row.cell]
+    return [*(row for _, row in sorted(driven, key=lambda pair: pair[0])), *(row for row in rows if not row.cell)]
 
 
 def takes_place_of(cell: CellResults | None, name: str = "") -> str:
@@ -175,7 +195,12 @@ def print_comparison(
     theirs = {index: paper_row(row.quoted) for index, row in enumerate(rows) if row.quoted}
     reasoners = [row.cell.first.reasoner for row in rows if row.cell]
     heading = title("comparison of methods", [row.scenario for row in rows], reasoners, metrics)
-    notes = (NOTE, *number_notes(_cells(rows)), *notes_of([(row.method, row.status, row.cell) for row in rows], screen))
+    notes = (
+        NOTE,
+        *clean_notes(_cells(rows)),
+        *number_notes(_cells(rows)),
+        *notes_of([(row.method, row.status, row.cell) for row in rows], screen),
+    )
     return printed(heading, comparison_table(rows, swept), [row.block for row in rows], notes, theirs, screen)
 
 
@@ -213,7 +238,7 @@ def print_pairs(rows: Sequence[Compared], metrics: str, swept: Sequence[str] = (
         *(column.of(lambda r: r.pairs) for column in PAIRED),
     ]
     notes = [_better_note(row, row.pairs, swept) for row in found if row.pairs and row.pairs.better] or [
-        "No method is shown to be better than codriving in success, velocity or PET on these seeds."
+        "No method is shown to be better than codriving in clean success, success, velocity or PET on these seeds."
     ]
     scenarios = ", ".join(dict.fromkeys(row.scenario for row in rows))
     heading = f"against {REFERENCE} on the same seeds - {scenarios}{metrics_text(metrics)}"
@@ -223,6 +248,7 @@ def print_pairs(rows: Sequence[Compared], metrics: str, swept: Sequence[str] = (
 def _better_note(row: Compared, pairs: PairedCells, swept: Sequence[str]) -> str:
     texts = {column.key: column.text(column.value(pairs)) for column in PAIRED}
     shown = {
+        "clean": f"clean success by {texts['clean_text']} points (p = {texts['clean_p_text']})",
         "success": f"success by {texts['success_difference']} points (p = {texts['mcnemar_p']})",
         "velocity": f"velocity by {texts['velocity']} m/s",
         "PET": f"PET by {texts['pet']} s",
@@ -236,7 +262,10 @@ LOAD_NOTE = (
 )
 
 # What the CSV gives at each number of CAVs.
-AT_EACH = ("completed", "success_rate", "success_low", "success_high", "pet_mean", "pet_below_1_5", "velocity_mean")
+AT_EACH = (
+    *("completed", "success_rate", "success_low", "success_high", "pet_mean", "pet_below_1_5", "velocity_mean"),
+    *("clean_rate", "clean_low", "clean_high"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,7 +320,8 @@ def _in_order(rows: Sequence[LoadRow], methods: Sequence[str]) -> list[LoadRow]:
 def _measured(rows: Sequence[LoadRow]) -> list[Column[CellResults]]:
     """What people read at each number of CAVs."""
     return [
-        Column("success", _success, "success (95 %)", csv=False),
+        Column("success", lambda c: _rate(c, "success"), "success (95 %)", csv=False),
+        *([Column("clean", lambda c: _rate(c, "clean"), "clean (95 %)", csv=False)] if _known_clean(rows) else []),
         Column("velocity", lambda c: two_digits(BY_KEY["velocity_mean"].value(c)) or "-", "velocity [m/s]", csv=False),
         *([FALLBACKS] if any(cell.asked for row in rows for cell in row.at.values()) else []),
         Column("cpu", lambda c: milliseconds(c.cpu), CPU, csv=False, page=False),
@@ -341,7 +371,12 @@ def _load_blocks(rows: Sequence[LoadRow]) -> list[tuple[object, ...]]:
 
 
 def _load_notes(rows: Sequence[LoadRow], screen: bool) -> list[str]:
-    return notes_of([(row.method, row.status, cell) for row in rows for cell in row.at.values() or [None]], screen)
+    found = notes_of([(row.method, row.status, cell) for row in rows for cell in row.at.values() or [None]], screen)
+    return [*clean_notes(cell for row in rows for cell in row.at.values()), *found]
+
+
+def _known_clean(rows: Iterable[LoadRow]) -> bool:
+    return any(cell.judged for row in rows for cell in row.at.values())
 
 
 def load_title(rows: Sequence[LoadRow], metrics: str) -> str:
@@ -349,6 +384,6 @@ def load_title(rows: Sequence[LoadRow], metrics: str) -> str:
     return title("load", [row.scenario for row in rows], [row.cell.first.reasoner for row in rows if row.cell], metrics)
 
 
-def _success(cell: CellResults) -> str:
-    rate, low, high = (percent(BY_KEY[key].value(cell)) for key in ("success_rate", "success_low", "success_high"))
+def _rate(cell: CellResults, which: str) -> str:
+    rate, low, high = (percent(BY_KEY[f"{which}_{key}"].value(cell)) for key in ("rate", "low", "high"))
     return f"{rate} ({low.removesuffix(' %')} to {high.removesuffix(' %')})" if low else "-"

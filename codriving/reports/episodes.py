@@ -35,6 +35,7 @@ FURTHER: tuple[Column[ScoredEpisode], ...] = (
     Column("struck", lambda e: c.struck if (c := e.record.outcome.collision) else None, words=True),
     Column("bystander_collisions", lambda e: len(e.record.outcome.bystander_collisions)),
     Column("off_road", lambda e: " ".join(e.record.outcome.off_road) or None, words=True),
+    Column("clean", lambda e: None if e.clean is None else int(e.clean)),
     Column("message", lambda e: e.record.outcome.message or None, words=True),
 )
 

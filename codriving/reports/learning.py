@@ -40,7 +40,11 @@ class LearningRow:
     @property
     def gain(self) -> str:
         """The gain in success, with its p-value."""
-        return f"{points(self.pairs.success)} ({fixed(self.pairs.p, 3)})" if self.pairs and self.pairs.driven else ""
+        return (
+            f"{points(self.pairs.success.difference)} ({fixed(self.pairs.success.p, 3)})"
+            if self.pairs and self.pairs.driven
+            else ""
+        )
 
 
 def learning_rows(cells: Sequence[LearningRow], paper: Sequence[LearningStatement]) -> list[LearningRow]:
@@ -88,10 +92,10 @@ def learning_table(rows: Sequence[LearningRow], swept: Sequence[str] = ()) -> Ta
         replace(*cell("velocity_mean"), head="velocity [m/s]", text=two_digits, rank=4),
         counted("recalled"),
         counted("reconsidered"),
-        gain("success_gain", lambda pairs: pairs.success),
-        gain("seeds_gained", lambda pairs: pairs.gained),
-        gain("seeds_lost", lambda pairs: pairs.lost),
-        gain("mcnemar_p", lambda pairs: pairs.p),
+        gain("success_gain", lambda pairs: pairs.success.difference),
+        gain("seeds_gained", lambda pairs: pairs.success.gained),
+        gain("seeds_lost", lambda pairs: pairs.success.lost),
+        gain("mcnemar_p", lambda pairs: pairs.success.p),
         gain("velocity_gain", lambda pairs: pairs.velocity.mean),
         gain("velocity_gain_low", lambda pairs: pairs.velocity.low),
         gain("velocity_gain_high", lambda pairs: pairs.velocity.high),
@@ -117,7 +121,7 @@ def _shown(rows: Sequence[LearningRow], swept: Sequence[str]) -> str:
     """Say where the most interactions are shown to differ from the fewest, and that nothing is shown elsewhere."""
     shown, several = [], len({row.cell.first.reasoner for row in rows}) > 1
     for row in {_setting(row, swept): row for row in rows}.values():
-        gain, p = (row.pairs.success, row.pairs.p) if row.pairs else (None, None)
+        gain, p = (row.pairs.success.difference, row.pairs.success.p) if row.pairs else (None, None)
         if gain is not None and p is not None and p < SIGNIFICANT:
             how, first = "raise" if gain > 0 else "lower", row.cell.first
             named = ", ".join(filter(None, (first.variant, first.reasoner if several else "")))

@@ -1,6 +1,6 @@
 """One method against codriving on the same seeds: where which succeeds, and how far apart they are where both do."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -34,6 +34,34 @@ class Difference:
 
 
 @dataclass(frozen=True)
+class PairedRate:
+    """On how many seeds either of two methods has what the other has not."""
+
+    pairs: int
+    gained: int  # The method alone
+    lost: int  # codriving alone
+
+    @classmethod
+    def of(cls, pairs: Sequence[tuple[object, object]]) -> "PairedRate":
+        """Count the pairs."""
+        return cls(len(pairs), sum(bool(a and not b) for a, b in pairs), sum(bool(b and not a) for a, b in pairs))
+
+    @property
+    def difference(self) -> float | None:
+        """Difference of the rates."""
+        return (self.gained - self.lost) / self.pairs if self.pairs else None
+
+    @cached_property
+    def p(self) -> float | None:
+        """p-value of the exact McNemar test."""
+        return mcnemar(self.gained, self.lost) if self.pairs else None
+
+    def shown(self, sign: int) -> bool:
+        """Tell whether the method is shown to be better (1) or worse (-1)."""
+        return self.p is not None and self.p < SIGNIFICANT and (self.gained - self.lost) * sign > 0
+
+
+@dataclass(frozen=True)
 class PairedCells:
     """The episodes of a method and those of codriving; pairs of which one ended in an error are left out."""
 
@@ -48,24 +76,14 @@ class PairedCells:
         return [(a, b) for a, b in pairs if Ending.ERROR not in (a.record.outcome.ending, b.record.outcome.ending)]
 
     @cached_property
-    def gained(self) -> int:
-        """On how many seeds the method succeeds alone."""
-        return sum(a.success and not b.success for a, b in self.driven)
+    def success(self) -> "PairedRate":
+        """Which of them succeeds."""
+        return PairedRate.of([(a.success, b.success) for a, b in self.driven])
 
     @cached_property
-    def lost(self) -> int:
-        """On how many seeds codriving succeeds alone."""
-        return sum(b.success and not a.success for a, b in self.driven)
-
-    @property
-    def success(self) -> float | None:
-        """Difference of the success rates."""
-        return (self.gained - self.lost) / len(self.driven) if self.driven else None
-
-    @cached_property
-    def p(self) -> float | None:
-        """p-value of the exact McNemar test."""
-        return mcnemar(self.gained, self.lost) if self.driven else None
+    def clean(self) -> "PairedRate":
+        """Which of them succeeds without a near miss, where that is known of both."""
+        return PairedRate.of([(a.clean, b.clean) for a, b in self.driven if None not in (a.clean, b.clean)])
 
     @cached_property
     def pet(self) -> Difference:
@@ -85,17 +103,21 @@ class PairedCells:
 
     @property
     def better(self) -> tuple[str, ...]:
-        """Of success, velocity and PET those in which the method is shown to be better."""
+        """Of clean success, success, velocity and PET those in which the method is shown to be better."""
         return self._shown(1)
 
     @property
     def worse(self) -> tuple[str, ...]:
-        """Of success, velocity and PET those in which it is shown to be worse."""
+        """Of clean success, success, velocity and PET those in which it is shown to be worse."""
         return self._shown(-1)
 
     def _shown(self, sign: int) -> tuple[str, ...]:
-        success = self.p is not None and self.p < SIGNIFICANT and (self.success or 0.0) * sign > 0
-        found = {"success": success, "velocity": self.velocity.shown(sign), "PET": self.pet.shown(sign)}
+        found = {
+            "clean": self.clean.shown(sign),
+            "success": self.success.shown(sign),
+            "velocity": self.velocity.shown(sign),
+            "PET": self.pet.shown(sign),
+        }
         return tuple(name for name, shown in found.items() if shown)
 
     def __str__(self) -> str:
@@ -117,11 +139,21 @@ def p_text(value: Value) -> str:
 # Columns of the paired comparison; every difference is the method minus codriving.
 PAIRED: tuple[Column[PairedCells], ...] = (
     Column("pairs", lambda p: len(p.driven), "pairs", rank=5),
-    Column("success_difference", lambda p: p.success, "success [points]", points),
-    Column("only_method_succeeds", lambda p: p.gained),
-    Column("only_codriving_succeeds", lambda p: p.lost),
-    Column("alone", lambda p: f"{p.gained} / {p.lost}", "alone: it / codriving", csv=False, rank=6),
-    Column("mcnemar_p", lambda p: p.p, "McNemar p", p_text, rank=4),
+    Column(
+        "clean_text",
+        lambda p: points(p.clean.difference) if p.clean.pairs else "",
+        "clean [points]",
+        csv=False,
+        sparse=True,
+    ),
+    Column(
+        "clean_p_text", lambda p: p_text(p.clean.p) if p.clean.pairs else "", "clean p", csv=False, sparse=True, rank=4
+    ),
+    Column("success_difference", lambda p: p.success.difference, "success [points]", points),
+    Column("only_method_succeeds", lambda p: p.success.gained),
+    Column("only_codriving_succeeds", lambda p: p.success.lost),
+    Column("alone", lambda p: f"{p.success.gained} / {p.success.lost}", "alone: it / codriving", csv=False, rank=6),
+    Column("mcnemar_p", lambda p: p.success.p, "McNemar p", p_text, rank=4),
     Column(
         "velocity",
         lambda p: str(p.velocity),
@@ -139,6 +171,11 @@ PAIRED: tuple[Column[PairedCells], ...] = (
     Column("velocity_difference", lambda p: p.velocity.mean),
     Column("velocity_difference_low", lambda p: p.velocity.low),
     Column("velocity_difference_high", lambda p: p.velocity.high),
+    Column("clean_pairs", lambda p: p.clean.pairs),
+    Column("clean_difference", lambda p: p.clean.difference),
+    Column("only_method_clean", lambda p: p.clean.gained if p.clean.pairs else None),
+    Column("only_codriving_clean", lambda p: p.clean.lost if p.clean.pairs else None),
+    Column("clean_mcnemar_p", lambda p: p.clean.p),
     Column("better_in", lambda p: " ".join(p.better), words=True),
     Column("worse_in", lambda p: " ".join(p.worse), words=True),
     Column("against", str, AGAINST, words=True, csv=False, rank=1),

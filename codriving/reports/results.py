@@ -89,6 +89,23 @@ class CellResults:
         return success_interval(len(self.successes), len(self.completed))
 
     @cached_property
+    def judged(self) -> "list[ScoredEpisode]":
+        """The completed episodes of which it is known whether they are clean."""
+        return [episode for episode in self.completed if episode.clean is not None]
+
+    @cached_property
+    def clean(self) -> tuple[float | None, float | None, float | None]:
+        """Rate of clean success over the judged episodes, and its Wilson 95 % interval."""
+        clean, judged = sum(bool(episode.clean) for episode in self.judged), len(self.judged)
+        return share(clean, judged), *success_interval(clean, judged)
+
+    @property
+    def standing(self) -> tuple[float, float]:
+        """By what it is ranked, the best first: clean success, then the mean time of all vehicles."""
+        rate, time = self.clean[0], self.numbers.get("time_all")
+        return (math.inf if rate is None else -rate), (math.inf if time is None else time)
+
+    @cached_property
     def pets(self) -> list[float]:
         """All PETs of successful episodes [s]."""
         return [pet for episode in self.successes for pet in episode.pets]
@@ -145,6 +162,11 @@ class ScoredEpisode:
     def success(self) -> bool:
         """Whether it succeeded."""
         return self.score is not None and self.score.success
+
+    @property
+    def clean(self) -> bool | None:
+        """Whether it is a success without a near miss; None where that is not known."""
+        return self.score.clean if self.score else None
 
     @property
     def pets(self) -> list[float]:

@@ -21,6 +21,10 @@ SEVERE_PET = 1.5  # Below this a PET counts as severe in the paper [s]
 
 NOTE = "Rates are over completed episodes, intervals are Wilson 95 %; PET and velocity are over successful episodes."
 
+CLEAN_NOTE = (
+    "Clean: success with every PET at least metrics.near_miss (1.5 s); where no routes cross or merge, every TTC."
+)
+
 # Share of the questions that the model gave no usable answer to.
 FALLBACK_RATE = "fallback_rate"
 
@@ -44,6 +48,9 @@ MEASURED: tuple[Column[CellResults], ...] = (
     Column("success_low", lambda c: c.interval[0]),
     Column("success_high", lambda c: c.interval[1]),
     Column("interval", lambda c: interval_text(c.interval), "95 % interval", csv=False, rank=2),
+    # As texts, so that none or 0 % is told from what is not known.
+    Column("clean", lambda c: percent(c.clean[0]), "clean", csv=False, sparse=True),
+    Column("clean_interval", lambda c: interval_text(c.clean[1:]), "clean 95 %", csv=False, sparse=True, rank=3),
     Column("collision_rate", lambda c: c.rate(Ending.COLLISION), "collision", percent, rank=7),
     Column("timeout_rate", lambda c: c.rate(Ending.TIMEOUT), "timeout", percent, rank=9),
     Column("off_road", lambda c: c.rate(Ending.OFF_ROAD), "off road", percent, csv=False, sparse=True, rank=9),
@@ -79,6 +86,12 @@ MEASURED: tuple[Column[CellResults], ...] = (
     ),
 )
 
+CLEAN: tuple[Column[CellResults], ...] = (
+    Column("clean_rate", lambda c: c.clean[0]),
+    Column("clean_low", lambda c: c.clean[1]),
+    Column("clean_high", lambda c: c.clean[2]),
+)
+
 FURTHER: tuple[Column[CellResults], ...] = (
     Column("off_road_rate", lambda c: c.rate(Ending.OFF_ROAD)),
     Column("success_planned", lambda c: share(len(c.successes), len(c.records))),
@@ -94,6 +107,7 @@ FURTHER: tuple[Column[CellResults], ...] = (
     Column("collision_cav_block", lambda c: c.collisions["CAV-block"]),
     Column("bystander_collisions", lambda c: sum(len(e.record.outcome.bystander_collisions) for e in c.completed)),
     Column("decisions", lambda c: sum(record.decisions for record in c.records)),
+    *CLEAN,
 )
 
 MEMORY: Column[CellResults] = Column(
@@ -176,9 +190,14 @@ def print_summary(
     rows = tuple({**row, "claim": claim} for row, claim in zip(made.rows, claims, strict=True))
     scenarios, reasoners = ([row[key] for row in rows] for key in ("scenario", "reasoner"))
     models = stand_in_notes((row["method"], row["reasoner"]) for row in rows)
-    said = (NOTE, *number_notes(cells), *models, *model_notes(cells), *notes)
+    said = (NOTE, *clean_notes(cells), *number_notes(cells), *models, *model_notes(cells), *notes)
     heading, shown = title("", scenarios, reasoners, metrics), Table((*made.columns, *claimed), rows)
     return printed(heading, shown, scenarios, said, _beside(cells, paper), screen)
+
+
+def clean_notes(cells: Iterable[CellResults]) -> list[str]:
+    """Say what a clean success is, where it is shown."""
+    return [CLEAN_NOTE] if any(cell.judged for cell in cells) else []
 
 
 def number_notes(cells: Iterable[CellResults]) -> list[str]:

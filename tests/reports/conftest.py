@@ -4,7 +4,17 @@ from collections.abc import Callable
 
 import pytest
 
-from codriving.datatypes.record import Collision, Ending, EpisodeRecord, Outcome, Participant, Pet, Score, TravelScore
+from codriving.datatypes.record import (
+    Collision,
+    Ending,
+    EpisodeRecord,
+    NamedNumber,
+    Outcome,
+    Participant,
+    Pet,
+    Score,
+    TravelScore,
+)
 
 Make = Callable[..., EpisodeRecord]
 
@@ -23,12 +33,16 @@ def make() -> Make:
         delay: float | None = 1.0,
         method: str = "codriving",
         reasoner: str = "rules",
+        clean: bool | None = None,
+        time: float | None = None,
     ) -> EpisodeRecord:
         hit = Collision(3.0, "CAV0", "HDV0", pair) if ending is Ending.COLLISION else None
         score = Score(
             ending is Ending.SUCCESS,
             tuple(Pet("CAV0", "CAV1", "crossing", pet) for pet in pets),
             tuple(TravelScore(f"CAV{i}", velocity, 10.0, delay) for i, velocity in enumerate(velocities)),
+            () if time is None else (NamedNumber("time_all", time, "s", "lower"),),
+            clean=clean,
         )
         return EpisodeRecord(
             scenario=scenario,

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.columns import Row, table
-from codriving.reports.pairs import PAIRED, Difference, PairedCells
+from codriving.reports.pairs import PAIRED, Difference, PairedCells, PairedRate
 from codriving.reports.results import CellResults
 
 Make = Callable[..., EpisodeRecord]
@@ -60,11 +60,20 @@ def test_the_interval_is_of_the_pairs_and_not_of_the_methods(make: Make) -> None
     assert paired(ours, theirs)["worse_in"] == "velocity"
 
 
-def shown(p: float = 1.0, success: float = 0.0, **limits: tuple[float, float]) -> tuple[tuple[str, ...], ...]:
+def rate(p: float, difference: float) -> PairedRate:
+    """A difference of 100 pairs with a p-value of its own."""
+    found = PairedRate(100, max(round(100 * difference), 0), max(round(-100 * difference), 0))
+    found.__dict__["p"] = p
+    return found
+
+
+def shown(
+    p: float = 1.0, success: float = 0.0, clean: float = 0.0, **limits: tuple[float, float]
+) -> tuple[tuple[str, ...], ...]:
     """In what a method is better and worse."""
     pairs = PairedCells(CellResults([]), CellResults([]))
     cached = {what: Difference(20, 0.0, *limits.get(what, (None, None))) for what in ("pet", "velocity")}
-    pairs.__dict__.update(cached, p=p, gained=round(100 * success), lost=0, driven=[None] * 100)
+    pairs.__dict__.update(cached, success=rate(p, success), clean=rate(p, clean))
     return pairs.better, pairs.worse
 
 
@@ -73,6 +82,7 @@ def test_better_and_worse_need_a_p_below_005_or_an_interval_without_0() -> None:
     assert shown(p=0.049, success=0.1) == (("success",), ())
     assert shown(p=0.05, success=0.1) == ((), ())
     assert shown(p=0.01, success=-0.1) == ((), ("success",))
+    assert shown(p=0.01, clean=0.1) == (("clean",), ())
     assert shown(velocity=(0.1, 0.2)) == (("velocity",), ())
     assert shown(velocity=(-0.1, 0.2)) == ((), ())
     assert shown(pet=(-0.2, -0.1)) == ((), ("PET",))

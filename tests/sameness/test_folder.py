@@ -1,5 +1,6 @@
 """Run folders of version 0.1: they are reported and replayed, and not extended, since behaviour 1 drove them."""
 
+import csv
 import shutil
 from pathlib import Path
 
@@ -27,6 +28,7 @@ def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "outputs" / "run"
 
 
+TABLES = ("episodes.csv", "summary.csv")
 LOCAL = ("timing.json", "decisions.jsonl", "SHA256SUMS")
 
 
@@ -51,8 +53,12 @@ def test_the_same_command_finds_nothing_to_do(folders: Path, name: str, command:
     assert f"Nothing to do: all {count} episodes of this run are finished already." in said
     before, now = everything(MADE / name), everything(folders / name)
     assert sorted(before) == sorted(now)
-    # What people read may be worded anew.
-    assert [path for path in before if before[path] != now[path] and path != "summary.md"] == []
+    # What people read may be worded anew, and later columns are empty.
+    assert [path for path in before if before[path] != now[path] and path not in ("summary.md", *TABLES)] == []
+    for path in TABLES:
+        old, new = (list(csv.DictReader(files[path].decode().splitlines())) for files in (before, now))
+        assert [{key: row[key] for key in old[0]} for row in new] == old
+        assert {row[key] for row in new for key in row if key not in old[0]} == {""}
 
 
 @pytest.mark.parametrize(("name", "command", "seeds"), [("plain", PLAIN, 3), ("frozen", FROZEN, 2)])

@@ -1,0 +1,97 @@
+"""Clean success in tables: rate, interval, rank and test."""
+
+from collections.abc import Callable
+
+import pytest
+
+from codriving.datatypes.record import Ending, EpisodeRecord
+from codriving.reports.columns import table
+from codriving.reports.comparison import (
+    Compared,
+    comparison_rows,
+    load_rows,
+    print_comparison,
+    print_each_load,
+    print_pairs,
+)
+from codriving.reports.pairs import PAIRED, PairedCells
+from codriving.reports.paper import Paper
+from codriving.reports.results import CellResults
+from tests.reports.making import column_of, print_cells, summary_row
+
+Make = Callable[..., EpisodeRecord]
+
+
+def _cell(make: Make, method: str, clean: int, of: int, time: float | None = 10.0) -> CellResults:
+    return CellResults([make(k, method=method, variant="", clean=k < clean, time=time) for k in range(of)])
+
+
+def test_rate_and_wilson_interval_are_over_completed_episodes(make: Make) -> None:
+    """18 of 20 have 69.9 to 97.2 %; the error counts nowhere, the failure counts as not clean."""
+    records = [make(k, clean=k < 18) for k in range(19)]
+    records += [make(19, Ending.COLLISION, clean=False), make(20, Ending.ERROR)]
+    row = summary_row(records)
+    assert row["clean_rate"] == 0.9
+    assert (row["clean_low"], row["clean_high"]) == pytest.approx((0.699, 0.972), abs=6e-4)
+    shown = print_cells(records)
+    assert column_of(shown, "clean") == ["90 %"]
+    assert column_of(shown, "clean 95 %") == ["69.9 to 97.2 %"]
+    assert any(note.startswith("Clean: success with every PET at least") for note in shown.notes)
+
+
+def test_none_clean_is_shown_and_not_known_is_not(make: Make) -> None:
+    assert column_of(print_cells([make(0, clean=False)]), "clean") == ["0 %"]
+    old = print_cells([make(0)])
+    assert "clean" not in old.columns
+    assert not any(note.startswith("Clean") for note in old.notes)
+    row = summary_row([make(0)])
+    assert (row["clean_rate"], row["clean_low"], row["clean_high"]) == (None, None, None)
+
+
+def test_methods_are_ranked_by_clean_success_and_then_by_the_time_of_all(make: Make) -> None:
+    cells = [
+        _cell(make, "a", 2, 4),
+        _cell(make, "b", 3, 4, 12.0),
+        _cell(make, "c", 3, 4, 11.0),
+        _cell(make, "codriving", 1, 4),
+    ]
+    rows = comparison_rows(cells, ["missing", "a", "b", "codriving"], Paper())
+    assert [row.method for row in rows] == ["c", "b", "a", "codriving", "missing"]
+
+
+def test_old_records_stay_in_the_order_of_the_table(make: Make) -> None:
+    cells = [CellResults([make(0, method=name, variant="")]) for name in ("a", "b")]
+    assert [row.method for row in comparison_rows(cells, ["b", "missing", "a"], Paper())] == ["b", "missing", "a"]
+
+
+def test_pairs_are_tested_as_success_is(make: Make) -> None:
+    """Of 8 seeds on which one of the two alone is clean it is always codriving: p = 2 / 2^8 = 0.0078."""
+    theirs, ours = _cell(make, "a", 1, 10), _cell(make, "codriving", 9, 10)
+    row = table(PAIRED, [PairedCells(theirs, ours)]).rows[0]
+    assert (row["only_method_clean"], row["only_codriving_clean"], row["clean_difference"]) == (0, 8, -0.8)
+    assert row["clean_mcnemar_p"] == pytest.approx(0.0078, abs=5e-5)
+    assert (row["worse_in"], row["success_difference"]) == ("clean", 0.0)
+    printed = print_pairs([Compared("intersection", "a", cell=theirs, reference=ours)], "standard")
+    assert printed is not None
+    assert column_of(printed, "clean [points]") == ["-80.0"]
+    assert column_of(printed, "clean p") == ["0.0078"]
+    better = print_pairs([Compared("intersection", "a", cell=ours, reference=theirs)], "standard")
+    assert better is not None
+    assert (
+        better.notes[0]
+        == "Better than codriving: codriving in clean success by +80.0 points (p = 0.0078) - intersection."
+    )
+
+
+def test_pairs_of_old_records_have_none(make: Make) -> None:
+    old = CellResults([make(0, method="a")])
+    row = table(PAIRED, [PairedCells(old, _cell(make, "codriving", 1, 1))]).rows[0]
+    assert (row["clean_pairs"], row["clean_difference"], row["only_method_clean"]) == (0, None, None)
+
+
+def test_comparison_and_loads_show_it(make: Make) -> None:
+    cell = _cell(make, "codriving", 3, 4)
+    shown = print_comparison(comparison_rows([cell], ["codriving"], Paper()), "standard")
+    assert column_of(shown, "clean") == ["75 %"]
+    loads = print_each_load(load_rows([(4, cell)], ["codriving"]), [4], "standard")
+    assert "clean (95 %)" in [each.title for each in loads]
