@@ -245,9 +245,9 @@ EXPECTED |= {
     "memory": CaseMemory,
     "metrics": Metric,
     "launcher": EpisodeLauncher,
-    "environment": Simulator,
     "limits": VehicleLimits,
     "drivers": Drivers,
+    "environment": Simulator,  # Last, so that refusals name limits.lateral, as a user does
 }
 """What each node has to be, known before its class is called: a file chooses no other code than a part of its kind."""
 

@@ -115,6 +115,9 @@ def check_root(resolved: Mapping[str, Any]) -> None:
     for name in NODES:
         node = resolved[name]
         if isinstance(node, Mapping) and "_target_" not in node:
-            raise ConfigError(f"{name} has no _target_, so no class would read {', '.join(map(str, node)) or 'it'}")
+            cure = f"; choose one with {name}=<name> first" if name in OPTIONAL else ""
+            raise ConfigError(
+                f"{name} has no _target_, so no class would read {', '.join(map(str, node)) or 'it'}{cure}"
+            )
         if not (isinstance(node, Mapping) or (node is None and name in OPTIONAL)):
             raise ConfigError(f"{name} must name one of its YAML files or hold a _target_, got {node!r}")

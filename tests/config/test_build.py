@@ -4,7 +4,8 @@ from typing import Any
 
 import pytest
 
-from codriving.config.build import asks_for, build
+from codriving.config.build import asks_for, build, validate
+from codriving.config.compose import compose
 from codriving.datatypes.parts import Model
 from codriving.errors import ConfigError, ScenarioError
 
@@ -152,3 +153,8 @@ def test_what_is_handed_in_is_not_set_in_a_yaml(garage: str) -> None:
         build(node, object, "car", [garage], {type(wheel): None})
     assert asks_for([{"inner": node}], type(wheel), [garage])
     assert not asks_for(node, Model, [garage])
+
+
+def test_a_limit_is_named_as_it_is_set() -> None:
+    with pytest.raises(ConfigError, match=r"^limits\.lateral must be 2 to 12 m/s2, got 1$"):
+        validate(compose(["limits=road", "limits.lateral=1"]))

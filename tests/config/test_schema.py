@@ -73,7 +73,9 @@ def test_good_values_pass(key: str, value: object) -> None:
 
 def test_a_node_without_class_is_refused() -> None:
     check_root({**PLAIN, "memory": None})
-    with pytest.raises(ConfigError, match="memory has no _target_, so no class would read shots"):
+    with pytest.raises(
+        ConfigError, match="memory has no _target_, so no class would read shots; choose one with memory=<name> first"
+    ):
         check_root({**PLAIN, "memory": {"shots": 3}})
 
 
