@@ -61,6 +61,17 @@ class LaneChange:
 
     lane: LaneId
     room: float  # Distance within which it has to be begun, since the present lane ends [m]
+    action: Action  # LANE_LEFT or LANE_RIGHT, seen from the lane that is then left
+
+
+@dataclass(frozen=True, slots=True)
+class LaneNeighbour:
+    """The vehicle next ahead or next behind on an adjacent lane, before its beginning and past its end, too."""
+
+    id: str
+    lane: LaneId  # The adjacent lane
+    role: Role
+    gap: float  # Free distance along the lane [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +87,7 @@ class SceneDescription:
     # Other routes onto whose lanes its body reaches while it changes lanes, with its arc length there [m].
     covers: tuple[tuple[str, float], ...] = ()
     must_change: LaneChange | None = None  # The lane change that its route asks for next, or None
+    beside: tuple[LaneNeighbour, ...] = ()
 
     @property
     def where(self) -> tuple[str, float]:

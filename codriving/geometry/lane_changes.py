@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from codriving.datatypes import Lane, LaneId, Route, beside
+from codriving.datatypes import Action, Lane, LaneId, Route, beside
 from codriving.geometry.box import TRUE
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.path import Path
@@ -24,6 +24,7 @@ class LaneChanges:
         self._lane_paths: dict[LaneId, Path] = {}
         self._on_lanes: dict[tuple[LaneId, float, float], tuple[float, float]] = {}
         self._beside: dict[tuple[str, LaneId], tuple[tuple[str, LaneId], ...]] = {}
+        self._along: dict[LaneId, tuple[tuple[str, frozenset[LaneId]], ...]] = {}
 
     def ahead(self, route_id: str, s: float) -> tuple[LaneId, float, float] | None:
         """Return the next lane change that a route asks for."""
@@ -33,6 +34,27 @@ class LaneChanges:
             if beside(lane, other) and s < latest + route.taper / 2:
                 return other, latest, latest + route.taper / 2
         return None
+
+    def action(self, route_id: str, lane: LaneId) -> Action:
+        """Return the action by which a route changes onto one of its lanes."""
+        lanes = self.routes[route_id].lanes
+        return Action.LANE_LEFT if lane[2] < lanes[lanes.index(lane) - 1][2] else Action.LANE_RIGHT
+
+    def routes_along(self, lane: LaneId) -> tuple[tuple[str, frozenset[LaneId]], ...]:
+        """Return each route along a lane, with the lanes before and after it that the route takes without a change."""
+        if lane not in self._along:
+            self._along[lane] = tuple(
+                (route.id, frozenset(_unchanged(route.lanes, lane)))
+                for route in self.routes.values()
+                if lane in route.lanes
+            )
+        return self._along[lane]
+
+    def leads_into(self, route_id: str, entry: float, merge: float | None) -> bool:
+        """Whether a route gets into a zone, between its entry and where ways merge [m], by changing lanes."""
+        route = self.routes[route_id]
+        changes = (self._starts[route_id, other] for lane, other in pairwise(route.lanes) if beside(lane, other))
+        return merge is not None and any(entry <= start + route.taper and start <= merge for start in changes)
 
     def routes_beside(self, route_id: str, lane: LaneId) -> tuple[tuple[str, LaneId], ...]:
         """Return the routes along the lanes next to a lane which end where a route does."""
@@ -70,6 +92,16 @@ class LaneChanges:
                 self._on_lanes.clear()
             found = self._on_lanes[key] = self._lane_paths[lane].project(x, y)
         return found
+
+
+def _unchanged(lanes: Sequence[LaneId], lane: LaneId) -> Sequence[LaneId]:
+    """The stretch of a route around one of its lanes on which it changes none."""
+    first = last = lanes.index(lane)
+    while first > 0 and not beside(lanes[first - 1], lanes[first]):
+        first -= 1
+    while last + 1 < len(lanes) and not beside(lanes[last], lanes[last + 1]):
+        last += 1
+    return lanes[first : last + 1]
 
 
 def _changes(lanes: Sequence[LaneId]) -> int:

@@ -1,6 +1,7 @@
 """All that geometry knows of a road, worked out once."""
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -120,7 +121,15 @@ class RoadMap:
             # Computed in one direction only, so that both vehicles see exactly the same zone.
             mirrored = (zone.mirrored() for zone in self.zones(route_j, route_i, footprint))
             return tuple(sorted(mirrored, key=lambda zone: (zone.entry_i, zone.entry_j)))
-        return find_zones(self.paths[route_i], self.paths[route_j], footprint)
+        zones = find_zones(self.paths[route_i], self.paths[route_j], footprint)
+        return tuple(
+            replace(
+                zone,
+                changes_i=self.changes.leads_into(route_i, zone.entry_i, zone.merge_i),
+                changes_j=self.changes.leads_into(route_j, zone.entry_j, zone.merge_j),
+            )
+            for zone in zones
+        )
 
 
 @lru_cache(maxsize=64)

@@ -103,6 +103,9 @@ class ConflictZone:
     split_j: float | None
     over_i: Band | FollowingBand  # What is blocked on route j, tabulated over route i
     over_j: Band | FollowingBand
+    # Whether the vehicle gets into the zone by changing lanes, so that its place does not tell if it is there already.
+    changes_i: bool = False
+    changes_j: bool = False
 
     def front(self, s_j: ArrayLike) -> FloatArray:
         """Return the front function [m]: if i goes first, j may be at s_j [m] only while s_i is greater.
@@ -126,7 +129,7 @@ class ConflictZone:
         """Return the same zone seen from route j."""
         places = (self.entry_j, self.exit_j, self.entry_i, self.exit_i, self.point_j, self.point_i)
         shared = (self.merge_j, self.merge_i, self.split_j, self.split_i)
-        return ConflictZone(self.relation, *places, *shared, self.over_j, self.over_i)
+        return ConflictZone(self.relation, *places, *shared, self.over_j, self.over_i, self.changes_j, self.changes_i)
 
 
 def following_zone(path: Path, footprint: Footprint) -> ConflictZone:

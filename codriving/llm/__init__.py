@@ -15,7 +15,7 @@ from codriving.llm.prompts.replies import (
     first_of_pairs,
     order_reply,
 )
-from codriving.llm.prompts.variables import decision_view, lane_views, negotiation_view, reflection_view, side_name
+from codriving.llm.prompts.variables import decision_view, lane_views, negotiation_view, reflection_view
 from codriving.llm.prompts.views import MeaningView, SeenView, WayView
 from codriving.llm.question import Answer, Chat, Question
 from codriving.llm.sqlite_file import connect_sqlite, create_sqlite
@@ -28,7 +28,7 @@ __all__ = [
     "MeaningView", "Names", "OrderReply", "Prompts", "Question", "SeenView", "WayView", "connect_sqlite",
     "correction_reply", "create_sqlite", "decision_reply", "decision_view", "first_of_pairs", "lane_views",
     "load_prompts", "names_for", "negotiation_view", "one_line", "order_reply", "reflection_view", "seen_names",
-    "side_name", "template_files",
+    "template_files",
 ]  # fmt: skip
 
 

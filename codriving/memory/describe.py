@@ -42,12 +42,11 @@ def _beside(scene: SceneDescription, numbers: dict[str, float]) -> list[str]:
     for lane in scene.adjacent_lanes:
         side = "left" if lane[2] < scene.ego.lane[2] else "right"
         numbers[f"{side}_lane"] = 1.0
-        gaps: dict[str, tuple[float, float]] = {}
-        for n in (n for n in scene.neighbours if n.lane == lane):
-            along, _ = scene.offset(n)
-            gap = max(abs(along) - (n.length + scene.ego.length) / 2, 0.0)
-            where = "ahead" if along > 0 else "behind"
-            gaps[where] = min(gaps.get(where, (gap, n.speed)), (gap, n.speed))
+        gaps = {
+            "ahead" if b.role is Role.LEADING else "behind": (b.gap, n.speed)
+            for b in scene.beside
+            if b.lane == lane and (n := scene.neighbour(b.id)) is not None
+        }
         for where, (gap, speed) in sorted(gaps.items()):
             numbers[f"{side}_{where}"], numbers[f"{side}_{where}_speed"] = gap, speed
             words.append(f"on the {side} lane a vehicle {gap:.0f} m {where} at {speed:.1f} m/s")

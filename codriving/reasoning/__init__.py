@@ -1,6 +1,6 @@
 """The paper's reasoning module: share states, share intents, negotiate, check, decide."""
 
-from codriving.reasoning.conflicts import OPEN, SLOWEST, find_conflicts, is_open, ttcp
+from codriving.reasoning.conflicts import OPEN, SLOWEST, find_conflicts, is_behind, is_open, ttcp
 from codriving.reasoning.decision.cases import favour
 from codriving.reasoning.decision.rules import Decider, RuleDecider, decide_one, is_plain
 from codriving.reasoning.execution.lane_requests import LaneRequests
@@ -35,7 +35,7 @@ from codriving.reasoning.ordering.schedule import (
 from codriving.reasoning.ordering.tickets import CONTROL_RADIUS, TicketBook, by_slot, by_ticket, reasons
 from codriving.reasoning.perception import Moment, Perception, single_vehicle_perception
 from codriving.reasoning.prediction.clearance import stays_behind
-from codriving.reasoning.prediction.expectation import Expected, expect_all, is_behind
+from codriving.reasoning.prediction.expectation import Expected, expect_all
 from codriving.reasoning.prediction.forecast import HORIZON, Forecast
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.prediction.rollout import CHANGE, PLANS, Plan, rollout

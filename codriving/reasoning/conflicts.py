@@ -24,7 +24,8 @@ def find_conflicts(scene: SceneDescription, road_map: RoadMap) -> tuple[Conflict
 def is_open(zone: ConflictZone, place_i: float, place_j: float) -> bool:
     """Whether two vehicles still have a zone ahead of which it is open, or matters, who goes first.
 
-    Vehicles that have already merged follow one another, whatever the map says.
+    Where ways merge this is open until one of the two has passed the beginning of the zone. From there on the other one
+    cannot get past it any more, and follows or leads it. A vehicle that comes by a lane change may still be beside.
 
     Args:
         place_i: Arc length of i on its route [m].
@@ -32,7 +33,39 @@ def is_open(zone: ConflictZone, place_i: float, place_j: float) -> bool:
     """
     if zone.relation not in OPEN or place_i > zone.exit_i or place_j > zone.exit_j:
         return False
-    return zone.merge_i is None or zone.merge_j is None or place_i < zone.merge_i or place_j < zone.merge_j
+    if zone.merge_i is None or zone.merge_j is None:
+        return True
+    if zone.changes_i or zone.changes_j:
+        merged_i, merged_j = place_i >= zone.merge_i, place_j >= zone.merge_j
+        settled = (merged_i and merged_j) or (merged_i and not zone.changes_i) or (merged_j and not zone.changes_j)
+        return not settled
+    return place_i <= zone.entry_i and place_j <= zone.entry_j
+
+
+def is_behind(zone: ConflictZone, place: float, other: float) -> bool:
+    """Whether a vehicle follows another one on a stretch that both routes share, or into it.
+
+    Args:
+        place: Arc length of the vehicle [m].
+        other: Arc length of the other vehicle [m].
+    """
+    if place > zone.exit_i or other > zone.exit_j:
+        return False
+    if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
+        return place < other
+    if zone.merge_i is None or zone.merge_j is None or is_open(zone, place, other) or other <= zone.entry_j:
+        return False
+    if place <= zone.entry_i:
+        return True
+    begin, end = zone.over_i.blocked(place)
+    if begin <= other <= end:
+        return place - zone.merge_i < other - zone.merge_j
+    return bool(other > end)
+
+
+def has_joined(zone: ConflictZone, place: float) -> bool:
+    """Whether a vehicle at a place on route i [m] is on the stretch itself where both drive one behind the other."""
+    return zone.merge_i is None or place >= zone.merge_i
 
 
 def _conflict(

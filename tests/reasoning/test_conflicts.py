@@ -81,13 +81,20 @@ def test_no_conflict_past_the_zone(junction: Junction) -> None:
     assert between(junction, car("CAV1", "south-north", zone.exit_i + 0.5, 8.0), far) == ((), ())
 
 
-def test_no_conflict_once_both_have_merged(junction: Junction) -> None:
-    (zone,) = junction.road_map.zones("south-north", "west-north")
-    assert zone.merge_i is not None
-    assert zone.merge_j is not None
-    ahead = car("CAV1", "south-north", zone.merge_i + 15.0, 8.0)
-    assert between(junction, ahead, car("CAV2", "west-north", zone.merge_j - 1.0, 8.0))[0]
-    assert between(junction, ahead, car("CAV2", "west-north", zone.merge_j + 1.0, 8.0)) == ((), ())
+@pytest.mark.parametrize("name", ["CAV2", "HDV2"])
+def test_where_ways_merge_nothing_is_open_once_one_has_passed_the_beginning(name: str, junction: Junction) -> None:
+    # The zone begins at 109.4 m of one way and at 108.7 m of the other.
+    far, near = car(name, "west-north", 80.0, 8.0), car(name, "west-north", 110.0, 8.0)
+    for place, other, is_open in ((109.0, far, True), (110.0, far, False), (180.0, far, False), (100.0, near, False)):
+        found, _ = between(junction, car("CAV1", "south-north", place, 8.0), other)
+        assert any(c.relation is Relation.CONVERGING for c in found) is is_open
+
+
+def test_a_vehicle_that_comes_by_a_lane_change_may_still_be_beside(merge: Junction) -> None:
+    # By its place the one on the ramp is in the zone from 299.5 m on, but it has not changed lanes yet.
+    for place, other, is_open in ((250.0, 312.0, True), (310.0, 305.0, True), (325.0, 305.0, False)):
+        found, _ = between(merge, car("CAV1", "main-1", place, 15.0), car("CAV2", "ramp", other, 15.0, offset=3.0))
+        assert bool(found) is is_open
 
 
 def test_most_urgent_first(junction: Junction) -> None:

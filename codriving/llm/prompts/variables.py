@@ -60,7 +60,7 @@ def decision_view(situation: Situation, nearest: int | None = None, with_memorie
         "route": scene.intent.route,
         "target_speed": scene.intent.target_speed,
         "between_lanes": bool(scene.covers),
-        "must_change": None if scene.must_change is None else side_name(scene, scene.must_change.lane),
+        "must_change": None if scene.must_change is None else str(scene.must_change.action),
         "room": 0.0 if scene.must_change is None else scene.must_change.room,
         "lanes": lane_views(scene, neighbours, names),
         "others": _others(scene, neighbours, names),
@@ -87,24 +87,19 @@ def lane_name(lane: LaneId) -> str:
     return f"{start}-{end}/{index}"
 
 
-def side_name(scene: SceneDescription, lane: LaneId) -> str:
-    """Return the action that leads towards a lane."""
-    return "LANE_LEFT" if lane[2] < scene.ego.lane[2] else "LANE_RIGHT"
-
-
 def lane_views(scene: SceneDescription, neighbours: Sequence[TrackedVehicle], names: Names) -> list[LaneView]:
     """Return the ego lane and those beside it, each with the vehicles next ahead and next behind."""
     own = {n.role: VehicleView(names(n.id), DRIVERS[n.kind], n.gap or 0.0, n.speed) for n in neighbours}
     lanes = [LaneView("ego lane", own.get(Role.LEADING), own.get(Role.REARING))]
+    known = {n.id: n for n in neighbours}
     for lane in scene.adjacent_lanes:
-        ahead: list[VehicleView] = []
-        behind: list[VehicleView] = []
-        for n in (n for n in neighbours if n.lane == lane):
-            along, _ = scene.offset(n)
-            gap = max(abs(along) - (n.length + scene.ego.length) / 2, 0.0)
-            (ahead if along > 0 else behind).append(VehicleView(names(n.id), DRIVERS[n.kind], gap, n.speed))
-        nearest = [min(side, key=lambda v: (v.gap, v.id), default=None) for side in (ahead, behind)]
-        lanes.append(LaneView("left lane" if lane[2] < scene.ego.lane[2] else "right lane", nearest[0], nearest[1]))
+        there = {
+            b.role: VehicleView(names(b.id), DRIVERS[known[b.id].kind], b.gap, known[b.id].speed)
+            for b in scene.beside
+            if b.lane == lane and b.id in known
+        }
+        side = "left lane" if lane[2] < scene.ego.lane[2] else "right lane"
+        lanes.append(LaneView(side, there.get(Role.LEADING), there.get(Role.REARING)))
     return lanes
 
 

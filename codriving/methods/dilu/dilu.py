@@ -14,7 +14,7 @@ from codriving.datatypes import (
     CaseMemory,
     Decision,
     DrivingModel,
-    LaneId,
+    LaneNeighbour,
     Model,
     Outcome,
     PassingOrder,
@@ -124,16 +124,16 @@ def describe_alone(moment: Moment, ego: str) -> Situation:
 
 
 def placed(moment: Moment, ego: str) -> SceneDescription:
-    """Return the scene in which those next ahead and behind on the lanes beside are put onto these lanes.
+    """Return the scene with those next ahead and behind on the lanes beside.
 
     That is read off where they are and what the map says, since other vehicles share no lane with a vehicle on its own.
     """
     scene = moment.scenes[ego]
-    lanes: dict[str, LaneId] = {}
-    for action in (a for a in SIDES if a in moment.available[ego]):
-        side = look(moment, ego, action, 0.0)
-        if side is not None:
-            lanes.update({n.id: side.lane for n in (side.ahead, side.behind) if n is not None})
-    if not lanes:
-        return scene
-    return replace(scene, neighbours=tuple(replace(n, lane=lanes.get(n.id)) for n in scene.neighbours))
+    sides = [side for a in SIDES if a in moment.available[ego] and (side := look(moment, ego, a, 0.0)) is not None]
+    beside = tuple(
+        LaneNeighbour(n.id, side.lane, n.role, max(n.gap or 0.0, 0.0))
+        for side in sides
+        for n in (side.ahead, side.behind)
+        if n is not None
+    )
+    return replace(scene, beside=beside)

@@ -19,7 +19,6 @@ from codriving.llm import (
     lane_views,
     one_line,
     seen_names,
-    side_name,
 )
 from codriving.methods.dilu.collision_log import Correction, Mistake
 from codriving.methods.dilu.rule import correct_one
@@ -121,7 +120,7 @@ def seen_view(
         "lane_rank": index + 1,
         "lane_count": sum((a, b) == (start, end) for a, b, _ in road_map.lanes),
         "between_lanes": bool(scene.covers),
-        "must_change": None if scene.must_change is None else side_name(scene, scene.must_change.lane),
+        "must_change": None if scene.must_change is None else str(scene.must_change.action),
         "room": 0.0 if scene.must_change is None else scene.must_change.room,
         "lanes": lanes,
         "vehicles": [_seen(situation, n, names) for n in shown],

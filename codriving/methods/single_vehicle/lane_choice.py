@@ -91,8 +91,7 @@ class LaneChoice:
         """Why a lane change is not looked at."""
         scene = moment.scenes[ego]
         if scene.must_change is not None:
-            asked = scene.ego.lane[2] + SIDES[action] == scene.must_change.lane[2]
-            return "" if asked else "the route asks for the other side"
+            return "" if action is scene.must_change.action else "the route asks for the other side"
         if scene.covers:
             return "a lane change is under way"
         if scene.ego.speed < SLOWEST:

@@ -78,7 +78,7 @@ def _lane_change(situation: Situation, reached: Mapping[Action, float]) -> Decis
     if scene.must_change is not None:
         for action in (side for side in SIDES if side in situation.allowed):
             gain = reached.get(action, math.inf)
-            if scene.ego.lane[2] + SIDES[action] == scene.must_change.lane[2] and gain >= stays - YIELDS:
+            if action is scene.must_change.action and gain >= stays - YIELDS:
                 room = f"{scene.must_change.room:.0f} m before its lane ends"
                 return Decision(scene.ego.id, action, f"the route asks for {action}, which is safe now, {room}")
         return None

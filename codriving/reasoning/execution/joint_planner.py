@@ -7,12 +7,12 @@ import numpy as np
 
 from codriving.datatypes import TrackedVehicle
 from codriving.geometry import TRUE
-from codriving.reasoning.conflicts import is_open
+from codriving.reasoning.conflicts import is_behind, is_open
 from codriving.reasoning.execution.violations import SIZES, Meeting, meetings_behind, minds_humans
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Flags, Steps, first_true
-from codriving.reasoning.prediction.expectation import is_behind, worth
+from codriving.reasoning.prediction.expectation import planning_order, worth
 from codriving.reasoning.prediction.rollout import PLANS, Plan
 from codriving.reasoning.safety.safety_input import SIDES, then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
@@ -136,7 +136,7 @@ class JointPlans(JointPlanner):
         """Where one CAV has to mind another one that has been planned before it."""
         if (first, second) not in self._met:
             ego, other, zones = self.vehicles[second], self.vehicles[first], self.moment.road_map.zones
-            found = meetings_behind(self.moment, ego, other, self._following)
+            found = meetings_behind(self.moment, ego, other, self._lag, self._following, self.pad)
             n, (route, place) = self.moment.forecast.steps + 1, ego.routes[0]
             for way, there in other.routes:
                 for zone in zones(route, way):
@@ -173,7 +173,8 @@ def drives_ahead(moment: Moment, vehicles: Mapping[str, TrackedVehicle]) -> set[
         (ahead.id, behind.id)
         for behind in vehicles.values()
         for ahead in vehicles.values()
-        if ahead.id != behind.id and (meetings_behind(moment, behind, ahead, 0) or _is_alongside(moment, behind, ahead))
+        if ahead.id != behind.id
+        and (meetings_behind(moment, behind, ahead, 0, 0, 0.0) or _is_alongside(moment, behind, ahead))
     }
 
 
@@ -189,27 +190,3 @@ def _is_alongside(moment: Moment, changing: TrackedVehicle, other: TrackedVehicl
         if zone.merge_i is not None and zone.merge_j is not None and is_open(zone, place, there):
             return zone.merge_j - there < zone.merge_i - place + TRUE.length
     return False
-
-
-def planning_order(
-    sequence: Sequence[str], vehicles: Mapping[str, TrackedVehicle], ahead: set[tuple[str, str]]
-) -> list[str]:
-    """Line all CAVs up for planning."""
-    rank = {name: i for i, name in enumerate(sequence)}
-    leaders: dict[str, list[str]] = {}
-    for leader, follower in sorted(ahead):
-        leaders.setdefault(follower, []).append(leader)
-    order: list[str] = []
-    entered: set[str] = set()
-
-    def place(name: str) -> None:
-        # Vehicles ahead are drawn forward; a circle, as only an overlap makes one, is cut where it closes.
-        if name not in entered:
-            entered.add(name)
-            for leader in leaders.get(name, ()):
-                place(leader)
-            order.append(name)
-
-    for name in sorted(vehicles, key=lambda n: (rank.get(n, len(rank)), -vehicles[n].routes[0][1], n)):
-        place(name)
-    return order

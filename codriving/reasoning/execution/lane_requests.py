@@ -57,7 +57,7 @@ class LaneRequests:
         if not sides or (must is None and not self._may_choose(scene, moment.time)):
             return None
         if must is not None:
-            sides = [a for a in sides if scene.ego.lane[2] + SIDES[a] == must.lane[2]]
+            sides = [a for a in sides if a is must.action]
         given = safety_input(moment, name, agreed, expected, lag)
         unsafe = check_adjacent(given)
         options = []

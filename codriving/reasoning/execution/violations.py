@@ -9,9 +9,9 @@ import numpy as np
 
 from codriving.datatypes import Conflict, TrackedVehicle
 from codriving.geometry import PLANNING, TRUE, ConflictZone, Footprint
+from codriving.reasoning.conflicts import has_joined, is_behind
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Steps, first_true
-from codriving.reasoning.prediction.expectation import is_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.conflict_lane import BODY
 
@@ -61,16 +61,25 @@ class Meeting:
         return found
 
 
-def meetings_behind(moment: Moment, behind: TrackedVehicle, ahead: TrackedVehicle, lag: int) -> list[Meeting]:
-    """Return where a vehicle drives behind another one; a lane that it is leaving counts until its body is off it."""
-    n, short = moment.forecast.steps + 1, moment.forecast.clears
-    return [
-        Meeting(((zone,),), place, there, short if r else n, lag, 0.0)
-        for r, (route, place) in enumerate(behind.routes)
-        for other, there in ahead.routes
-        for zone in moment.road_map.zones(route, other)
-        if is_behind(zone, place, there)
-    ]
+def meetings_behind(
+    moment: Moment, behind: TrackedVehicle, ahead: TrackedVehicle, lag: int, following: int, pad: float
+) -> list[Meeting]:
+    """Return where a vehicle drives behind another one; a lane that it is leaving counts until its body is off it.
+
+    Where ways merge the margins of a conflict hold until it has joined the stretch behind the other one.
+    """
+    n, short, zones = moment.forecast.steps + 1, moment.forecast.clears, moment.road_map.zones
+    found = []
+    for r, (route, place) in enumerate(behind.routes):
+        until = short if r else n
+        for other, there in ahead.routes:
+            for zone in (z for z in zones(route, other) if is_behind(z, place, there)):
+                if has_joined(zone, place):
+                    found.append(Meeting(((zone,),), place, there, until, following, 0.0))
+                else:
+                    sizes = ((zone,), *(zones(route, other, size) for size in SIZES[1:]))
+                    found.append(Meeting(sizes, place, there, until, lag, pad))
+    return found
 
 
 def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, following: int, pad: float) -> Steps:
@@ -83,7 +92,7 @@ def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, 
     people = {m.id: m for m in moment.vehicles[ego.id].values() if not m.is_cav}
     for other in people.values():
         low = np.min([moment.forecast.likely(other.speed, way)[0] for way in other.routes], axis=0)
-        for meeting in meetings_behind(moment, ego, other, following):
+        for meeting in meetings_behind(moment, ego, other, lag, following, pad):
             found = np.minimum(found, meeting.steps(travels, low))
     for c in moment.conflicts[ego.id]:
         if c.other in people:

@@ -1,13 +1,12 @@
 """How all vehicles are expected to move if the passing order is kept: planned one after another, first to last."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from codriving.datatypes import Action, PassingOrder, Relation, TrackedVehicle
-from codriving.geometry import ConflictZone
-from codriving.reasoning.conflicts import is_open
+from codriving.datatypes import Action, PassingOrder, TrackedVehicle
+from codriving.reasoning.conflicts import has_joined, is_behind, is_open
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Flags, stays_behind
 from codriving.reasoning.prediction.rollout import PLANS, STARTS_WITH
@@ -56,16 +55,14 @@ def expect_human(moment: Moment, human: TrackedVehicle) -> tuple[Expected, ...]:
 
 
 def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str, tuple[Expected, ...]]:
-    """Plan every vehicle that one CAV knows of in the passing order against those before it.
+    """Plan every vehicle that one CAV knows of in the passing order against those before it, and leaders first.
 
     Human drivers are expected to keep their speed on each route that they may take.
     """
     vehicles = moment.vehicles[ego]
     found = {v.id: expect_human(moment, v) for v in vehicles.values() if not v.is_cav}
-    rank = {name: i for i, name in enumerate(order.sequence)}
-    # CAVs in no conflict follow the order of the lanes: the vehicle farther along its route first.
-    cavs = (v for v in vehicles.values() if v.is_cav)
-    for v in sorted(cavs, key=lambda v: (rank.get(v.id, len(rank)), -v.routes[0][1], v.id)):
+    cavs = {v.id: v for v in vehicles.values() if v.is_cav}
+    for v in (cavs[name] for name in planning_order(order.sequence, cavs, _ahead(moment, cavs.values()))):
         travels, keeps = plans_that_keep(moment, ego, v, found, order, lag)
         gained = np.where(keeps, worth(travels), -np.inf)
         best = int(np.argmax(gained)) if keeps.any() else len(PLANS) - 1
@@ -75,6 +72,47 @@ def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str,
             for k, (route, place) in enumerate(v.routes)
         )
     return found
+
+
+def _ahead(moment: Moment, cavs: Collection[TrackedVehicle]) -> set[tuple[str, str]]:
+    """Return the pairs of CAVs, one that drives ahead on a way of the other one and that one."""
+    return {
+        (ahead.id, behind.id)
+        for behind in cavs
+        for ahead in cavs
+        if ahead.id != behind.id
+        for route, place in behind.routes
+        for way, there in ahead.routes
+        if any(is_behind(zone, place, there) for zone in moment.road_map.zones(route, way))
+    }
+
+
+def planning_order(
+    sequence: Sequence[str], vehicles: Mapping[str, TrackedVehicle], ahead: set[tuple[str, str]]
+) -> list[str]:
+    """Line all CAVs up for planning: in sequence, those in no conflict by how far along they are, leaders first.
+
+    Args:
+        ahead: Pairs of CAVs, one that drives ahead and one that follows.
+    """
+    rank = {name: i for i, name in enumerate(sequence)}
+    leaders: dict[str, list[str]] = {}
+    for leader, follower in sorted(ahead):
+        leaders.setdefault(follower, []).append(leader)
+    order: list[str] = []
+    entered: set[str] = set()
+
+    def place(name: str) -> None:
+        # Vehicles ahead are drawn forward; a circle, as only an overlap makes one, is cut where it closes.
+        if name not in entered:
+            entered.add(name)
+            for leader in leaders.get(name, ()):
+                place(leader)
+            order.append(name)
+
+    for name in sorted(vehicles, key=lambda n: (rank.get(n, len(rank)), -vehicles[n].routes[0][1], n)):
+        place(name)
+    return order
 
 
 def plans_that_keep(
@@ -123,7 +161,8 @@ def keeps_order(
             for zone in moment.road_map.zones(route, motion.route):
                 following = is_behind(zone, place, there)
                 if following or (minds and is_open(zone, place, there)):
-                    after = min(lag, round(HEADWAY / moment.forecast.sample)) if following else lag
+                    keeps_lane = following and has_joined(zone, place)
+                    after = min(lag, round(HEADWAY / moment.forecast.sample)) if keeps_lane else lag
                     keeps &= stays_behind(zone, places, motion.places[: places.shape[1]], after, 0.0)
     return keeps
 
@@ -140,19 +179,3 @@ def progress_by_action(gained: Array) -> dict[Action, float]:
     """Return how far a vehicle gets at best after each action."""
     best = {first: float(max(gained[list(plans)])) for first, plans in STARTS_WITH.items()}
     return {action: gain for action, gain in best.items() if gain > -np.inf}
-
-
-def is_behind(zone: ConflictZone, place: float, other: float) -> bool:
-    """Whether a vehicle follows another one in a stretch that both routes share.
-
-    Args:
-        place: Arc length of the vehicle [m].
-        other: Arc length of the other vehicle [m].
-    """
-    if place > zone.exit_i or other > zone.exit_j:
-        return False
-    if zone.relation in (Relation.FOLLOWING, Relation.DIVERGING):
-        return place < other
-    if zone.merge_i is None or zone.merge_j is None or is_open(zone, place, other):
-        return False
-    return place - zone.merge_i < other - zone.merge_j

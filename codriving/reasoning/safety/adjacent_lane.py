@@ -1,7 +1,7 @@
 """Second layer: a lane change must not collide with the vehicles of the adjacent lane (Section III-C.4)."""
 
 from codriving.datatypes import Action, SceneDescription, TrackedVehicle
-from codriving.reasoning.prediction.expectation import is_behind
+from codriving.reasoning.conflicts import is_behind
 from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.safety_input import SIDES, SafetyInput
 from codriving.reasoning.safety.same_lane import check_ahead

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from codriving.datatypes import Action, ActionAssessment
-from codriving.reasoning.conflicts import is_open
+from codriving.reasoning.conflicts import is_behind, is_open
 from codriving.reasoning.prediction.clearance import Array, Steps, first_overlap
-from codriving.reasoning.prediction.expectation import is_behind, plans_that_keep, progress_by_action, worth
+from codriving.reasoning.prediction.expectation import plans_that_keep, progress_by_action, worth
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
 from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.safety_input import LONGITUDINAL, SafetyInput

@@ -1,6 +1,6 @@
 """Scene descriptions: states and intents put in relation to the ego vehicle, lane by lane (Section III-C.1 and 2)."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import cos, pi
 
@@ -10,6 +10,7 @@ from codriving.datatypes import (
     Kind,
     LaneChange,
     LaneId,
+    LaneNeighbour,
     Role,
     SceneDescription,
     TrackedVehicle,
@@ -17,6 +18,7 @@ from codriving.datatypes import (
     WorldState,
 )
 from codriving.geometry import RoadMap
+from codriving.reasoning.conflicts import is_behind
 from codriving.reasoning.sharing.sharing import Detections
 from codriving.reasoning.sharing.tracking import Tracking
 
@@ -44,29 +46,45 @@ def describe_scenes(
         road_map.project_all(intent.route, [(ego.x, ego.y), *((other.x, other.y) for other in seen)])
         place, _ = road_map.project(intent.route, ego.x, ego.y)
         change = road_map.changes.ahead(intent.route, place)
-        roles = _roles(seen, ego, intent.route, place, road_map)
+        others = [
+            _neighbour(other, intents.get(other.id), world.signals.get(other.id, ""), tracking, ego.id, world.time)
+            for other in seen
+        ]
+        lanes = adjacent_lanes(road_map, ego.lane)
         scenes[ego.id] = SceneDescription(
             ego=ego,
             intent=intent,
             place=place,
-            adjacent_lanes=adjacent_lanes(road_map, ego.lane),
+            adjacent_lanes=lanes,
             conflict_lanes=(),
             covers=road_map.changes.covered(intent.route, road_map.lane_at(intent.route, place), ego.x, ego.y),
-            must_change=None if change is None else LaneChange(change[0], change[1] - place),
-            neighbours=tuple(
-                _neighbour(
-                    other,
-                    intents.get(other.id),
-                    world.signals.get(other.id, ""),
-                    tracking,
-                    ego.id,
-                    world.time,
-                    *roles.get(other.id, NO_ROLE),
-                )
-                for other in seen
-            ),
+            must_change=None if change is None else _must_change(change[0], change[1] - place, intent, road_map),
+            neighbours=with_roles(others, ego, intent.route, place, road_map),
+            beside=tuple(_beside(lanes, others, ego, road_map)),
         )
     return scenes
+
+
+def _must_change(lane: LaneId, room: float, intent: Intent, road_map: RoadMap) -> LaneChange:
+    return LaneChange(lane, room, road_map.changes.action(intent.route, lane))
+
+
+def _beside(
+    lanes: Iterable[LaneId], others: Iterable[TrackedVehicle], ego: VehicleState, road_map: RoadMap
+) -> Iterator[LaneNeighbour]:
+    """Find the vehicles next ahead and next behind on each adjacent lane, before its beginning and past its end too."""
+    for lane in lanes:
+        nearest: dict[Role, tuple[float, str]] = {}
+        for route, along in road_map.changes.routes_along(lane):
+            there = [n for n in others if n.lane in along]
+            road_map.project_all(route, [(ego.x, ego.y), *((n.x, n.y) for n in there)])
+            place, _ = road_map.project(route, ego.x, ego.y)
+            for n in there:
+                ahead = road_map.project(route, n.x, n.y)[0] - place
+                role = Role.LEADING if ahead > 0 else Role.REARING
+                gap = max(abs(ahead) - (n.length + ego.length) / 2, 0.0)
+                nearest[role] = min(nearest.get(role, (gap, n.id)), (gap, n.id))
+        yield from (LaneNeighbour(name, lane, role, gap) for role, (gap, name) in nearest.items())
 
 
 def with_roles(
@@ -92,13 +110,33 @@ def _roles(
     nearest: dict[Role, tuple[float, str]] = {}
     for n in others:
         s, side = road_map.project(route, n.x, n.y)
+        ahead: float | None = s - place
         if abs(side) > SAME_LANE or (n.heading is not None and cos(n.heading - path.place(s)[2]) <= ALIGNED):
+            ahead = _merging(n, route, place, road_map)
+        if ahead is None:
             continue
-        role = Role.LEADING if s > place else Role.REARING
-        gap = abs(s - place) - (n.length + ego.length) / 2
+        role = Role.LEADING if ahead > 0 else Role.REARING
+        gap = abs(ahead) - (n.length + ego.length) / 2
         if role not in nearest or gap < nearest[role][0]:
             nearest[role] = (gap, n.id)
     return {name: (role, gap) for role, (gap, name) in nearest.items()}
+
+
+def _merging(n: TrackedVehicle, route: str, place: float, road_map: RoadMap) -> float | None:
+    """Return how far ahead a vehicle drives that comes onto the ego vehicle's lane where ways merge, or may [m].
+
+    Returns:
+        Distance of the centres; negative behind; None if no way of it leads there, or if it is open who goes first.
+    """
+    found = [
+        (there - zone.merge_j) - (place - zone.merge_i)
+        for theirs, there in n.routes
+        for zone in road_map.zones(route, theirs)
+        if zone.merge_i is not None
+        and zone.merge_j is not None
+        and (is_behind(zone, place, there) or is_behind(zone.mirrored(), there, place))
+    ]
+    return min(found, key=abs, default=None)
 
 
 def with_conflicts(scene: SceneDescription, conflicts: tuple[Conflict, ...], road_map: RoadMap) -> SceneDescription:
@@ -118,17 +156,10 @@ def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
 
 
 def _neighbour(
-    n: TrackedVehicle,
-    intent: Intent | None,
-    signal: str,
-    tracking: Tracking,
-    ego: str,
-    time: float,
-    role: Role,
-    gap: float | None,
+    n: TrackedVehicle, intent: Intent | None, signal: str, tracking: Tracking, ego: str, time: float
 ) -> TrackedVehicle:
     # A vehicle that shares an intent has said that it is a CAV.
     kind = Kind.CAV if intent is not None else n.kind
     routes, standing = tracking.places(ego, n, intent, signal), tracking.standing(ego, n, time)
     motion = (n.x, n.y, n.speed, n.heading, n.acceleration, n.lane, n.length)
-    return TrackedVehicle(n.id, kind, *motion, routes, intent, standing, role, gap)
+    return TrackedVehicle(n.id, kind, *motion, routes, intent, standing)

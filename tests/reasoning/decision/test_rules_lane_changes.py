@@ -89,20 +89,19 @@ def test_no_lane_change_when_nothing_is_safe(highway: Junction) -> None:
 
 
 @pytest.mark.parametrize(
-    ("index", "gains", "action"),
+    ("side", "gains", "action"),
     [
-        (0, {IDLE: 100.0, LEFT: 90.0, RIGHT: 200.0}, LEFT),
-        (2, {IDLE: 100.0, LEFT: 200.0, RIGHT: 90.0}, RIGHT),
-        (2, {IDLE: 100.0, LEFT: 200.0, RIGHT: 84.0}, IDLE),
-        (0, {IDLE: 100.0, RIGHT: 200.0}, IDLE),
-        (1, {IDLE: 100.0, LEFT: 200.0, RIGHT: 200.0}, IDLE),
+        (LEFT, {IDLE: 100.0, LEFT: 90.0, RIGHT: 200.0}, LEFT),
+        (RIGHT, {IDLE: 100.0, LEFT: 200.0, RIGHT: 90.0}, RIGHT),
+        (RIGHT, {IDLE: 100.0, LEFT: 200.0, RIGHT: 84.0}, IDLE),
+        (LEFT, {IDLE: 100.0, RIGHT: 200.0}, IDLE),
     ],
 )
 def test_a_route_asks_for_the_side_on_which_its_lane_is(
-    index: int, gains: dict[Action, float | None], action: Action, highway: Junction
+    side: Action, gains: dict[Action, float | None], action: Action, highway: Junction
 ) -> None:
-    # CAV1 drives on lane 1; its route goes on along another one.
     scene = highway.thoughts(car("CAV1", "lane-1", 300.0, 20.0)).scenes["CAV1"]
-    scene = replace(scene, must_change=LaneChange(("begin", "end", index), 50.0))
+    # The index of a lane of another segment says nothing of the side.
+    scene = replace(scene, must_change=LaneChange(("later", "end", 1), 50.0, side))
     made = tuple(ActionAssessment(a, True, (), (), gain) for a, gain in gains.items())
     assert decide_one(Situation(scene, (), PassingOrder((), ()), (), made)).action is action

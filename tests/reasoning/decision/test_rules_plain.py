@@ -67,7 +67,7 @@ def test_best_action_must_be_plain(junction: Junction) -> None:
         replace(good, assessments=assessed(Action.IDLE, progress=None)),
         replace(good, assessments=(*GOOD, ActionAssessment(Action.LANE_LEFT, True, (), (), 120.0))),
         replace(good, order=order_of("HDV1 CAV1")),
-        replace(good, scene=replace(good.scene, must_change=LaneChange(("a", "b", 1), 50.0))),
+        replace(good, scene=replace(good.scene, must_change=LaneChange(("a", "b", 1), 50.0, Action.LANE_LEFT))),
         replace(good, scene=replace(good.scene, covers=(("south-west", 20.0),))),
     ):
         assert not is_plain(changed, True)

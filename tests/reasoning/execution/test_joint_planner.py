@@ -7,7 +7,8 @@ from worlds import Junction, car
 
 from codriving.datatypes.situation import TrackedVehicle
 from codriving.datatypes.world import Kind
-from codriving.reasoning.execution.joint_planner import drives_ahead, planning_order
+from codriving.reasoning.execution.joint_planner import drives_ahead
+from codriving.reasoning.prediction.expectation import planning_order
 
 NAMES = [f"CAV{k}" for k in range(1, 8)]
 

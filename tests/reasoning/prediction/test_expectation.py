@@ -10,8 +10,9 @@ from worlds import LAG, Junction, Thoughts, car, order_of
 
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.world import Action
+from codriving.reasoning.conflicts import is_behind
 from codriving.reasoning.prediction.clearance import first_overlap
-from codriving.reasoning.prediction.expectation import Expected, expect, is_behind, keeps_order, worth
+from codriving.reasoning.prediction.expectation import Expected, expect, keeps_order, worth
 from codriving.reasoning.prediction.rollout import FIRST, HOLDS, PLANS, ROLLS, STARTS_WITH, WAITS
 
 HEADWAY = 0.8
@@ -186,5 +187,8 @@ def test_who_is_behind_whom(junction: Junction) -> None:
     assert merging.merge_j is not None
     assert is_behind(merging, merging.merge_i + 5.0, merging.merge_j + 15.0)
     assert not is_behind(merging, merging.merge_i + 15.0, merging.merge_j + 5.0)
-    assert not is_behind(merging, merging.merge_i - 5.0, merging.merge_j + 5.0), "it is still open who is first"
+    assert is_behind(merging, 114.5, 123.0), "from the beginning of the zone on no vehicle can get past another one"
+    assert is_behind(merging, 60.0, 110.0), "the other one is in the zone already"
+    assert not is_behind(merging, 110.0, 60.0)
+    assert not is_behind(merging, 109.0, 108.0), "it is still open who is first"
     assert not np.any([is_behind(z, 100.0, 105.0) for z in junction.road_map.zones("south-north", "west-east")])

@@ -154,7 +154,7 @@ def test_a_cav_does_not_enter_the_way_of_a_human_driver_in_which_it_might_have_t
 def test_where_ways_merge_no_vehicle_is_caught_in_between(junction: Junction) -> None:
     given = junction.safety_input(
         car("CAV1", "south-north", 103.0, 6.0),
-        car("HDV1", "west-north", 113.0, 8.0),
+        car("HDV1", "west-north", 108.0, 8.0),
         car("HDV2", "north-south", 117.0, 3.0),
     )
     assert {c.relation for c in given.conflicts if c.other == "HDV1"} == {Relation.CONVERGING}

@@ -8,6 +8,7 @@ from worlds import Junction, car
 
 from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
 from codriving.datatypes.situation import Role, SceneDescription
+from codriving.datatypes.world import Action
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.sharing.scenes import adjacent_lanes, with_roles
 from codriving.reasoning.sharing.sharing import SensedStates
@@ -136,3 +137,47 @@ def test_roles_are_found_anew_from_another_lane(highway: Junction) -> None:
         "HDV2": (Role.REARING, pytest.approx(15.0)),
     }
     assert with_roles(found, scene.ego, "lane-1", 300.0, highway.road_map) == scene.neighbours
+
+
+@pytest.mark.parametrize("name", ["CAV2", "HDV2"])
+def test_who_comes_onto_the_lane_where_ways_merge_is_behind_or_ahead(name: str, junction: Junction) -> None:
+    # The ways merge at 119.5 m and 118.0 m; neither vehicle is on the way of the other one yet.
+    ahead = junction.thoughts(car("CAV1", "south-north", 116.0, 5.0), car(name, "west-north", 105.0, 7.0))
+    behind = junction.thoughts(car("CAV1", "west-north", 105.0, 7.0), car(name, "south-north", 116.0, 5.0))
+    (follower,), (leader,) = ahead.scenes["CAV1"].neighbours, behind.scenes["CAV1"].neighbours
+    assert (follower.role, leader.role) == (Role.REARING, Role.LEADING)
+    assert follower.gap == pytest.approx(4.5, abs=0.5)
+    assert leader.gap == pytest.approx(4.5, abs=0.5)
+
+
+@pytest.mark.parametrize(
+    ("ego", "other", "lane", "role", "gap"),
+    [
+        (("main-1", 235.0), ("ramp", 222.0), ("b", "c", 2), Role.REARING, 8.0),
+        (("ramp", 235.0), ("main-1", 222.0), ("b", "c", 1), Role.REARING, 8.0),
+        (("main-0", 225.0), ("main-1", 245.0), ("a", "b", 1), Role.LEADING, 15.0),
+        (("main-1", 338.0), ("main-0", 325.0), ("c", "d", 0), Role.REARING, 8.0),
+        (("main-1", 250.0), ("main-0", 260.0), ("b", "c", 0), Role.LEADING, 5.0),
+    ],
+    ids=["ramp behind", "main behind", "ahead on the next segment", "past the ramp", "same segment"],
+)
+def test_neighbours_on_a_lane_beside_are_seen_on_the_segments_before_and_after(
+    ego: tuple[str, float], other: tuple[str, float], lane: LaneId, role: Role, gap: float, merge: Junction
+) -> None:
+    scene = merge.thoughts(car("CAV1", *ego, 15.0), car("HDV1", *other, 15.0)).scenes["CAV1"]
+    (found,) = [b for b in scene.beside if b.lane == lane]
+    assert (found.id, found.role, found.gap) == ("HDV1", role, pytest.approx(gap, abs=1.0))
+
+
+def test_a_vehicle_on_another_lane_is_not_beside(merge: Junction) -> None:
+    # On the ego's own lane, ahead; the ramp comes onto it there, but that is not the lane on the right.
+    scene = merge.thoughts(car("CAV1", "main-1", 300.0, 15.0), car("HDV1", "main-1", 325.0, 15.0)).scenes["CAV1"]
+    assert scene.beside == ()
+
+
+@pytest.mark.parametrize("place", [100.0, 200.0, 250.0, 300.0])
+def test_the_side_of_a_lane_change_is_that_of_the_lanes_between_which_it_is(place: float, merge: Junction) -> None:
+    # On the first segments the ramp has lane 0, between the others it is lane 2 and leads onto lane 1.
+    change = merge.thoughts(car("CAV1", "ramp", place, 15.0)).scenes["CAV1"].must_change
+    assert change is not None
+    assert (change.lane, change.action) == (("b", "c", 1), Action.LANE_LEFT)
