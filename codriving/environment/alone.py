@@ -20,11 +20,13 @@ def drive_alone(traffic: Traffic, step: float, substeps: int, time_limit: float)
     (vehicle,) = traffic.vehicles
     route_path, place = vehicle.route_path, vehicle.s
     places = [place]
+    # There is none to give way to; but drivers with a style note what they see.
+    move = vehicle.step if traffic.past is None else traffic.step
     while place < route_path.route.goal and len(places) * step <= time_limit and traffic.vehicles:
         if isinstance(vehicle, ConnectedVehicle) and (len(places) - 1) % substeps == 0:
             vehicle.act(_fastest(vehicle))
         traffic.act()
-        traffic.step(step)
+        move(step)
         # After a lane change it may count along another route.
         place = (
             vehicle.s if vehicle.route_path is route_path else route_path.follow(*vehicle.position.tolist(), place)[0]

@@ -28,7 +28,11 @@ from codriving.environment.traffic.human_driver import HumanDriver
 from codriving.environment.traffic.route_following import RoutePath, route_path
 from codriving.environment.traffic.traffic import Traffic
 from codriving.errors import EpisodeError
-from codriving.geometry import FloatArray, road_map
+from codriving.geometry import FloatArray, RoadMap, road_map
+
+REMEMBERED = 200  # Scenes of which it is remembered how each vehicle drives alone
+
+_ALONE: dict[tuple[RoadMap, str], Mapping[str, FloatArray]] = {}
 
 
 class Environment(Simulator):
@@ -103,14 +107,20 @@ class Environment(Simulator):
 
     def alone(self, seed: int) -> Mapping[str, FloatArray]:
         """Drive each vehicle of an episode alone, from the same start along the same route."""
-        scene = self.scenario.scene(seed)
-        model, time_limit = self.driving_model, self.scenario.pace.time_limit
-        return {
-            start.id: drive_alone(
-                self._populated(replace(scene, starts=(start,))), model.step, model.substeps, time_limit
-            )
-            for start in scene.starts
-        }
+        scene, model, time_limit = self.scenario.scene(seed), self.driving_model, self.scenario.pace.time_limit
+        # Cells of other methods drive the same scenes in the same world.
+        world = (scene, model, time_limit, self.control, self.drivers, self.corrections)
+        key = (self.road_map, repr(world))
+        if key not in _ALONE:
+            while len(_ALONE) >= REMEMBERED:
+                del _ALONE[next(iter(_ALONE))]
+            _ALONE[key] = {
+                start.id: drive_alone(
+                    self._populated(replace(scene, starts=(start,))), model.step, model.substeps, time_limit
+                )
+                for start in scene.starts
+            }
+        return _ALONE[key]
 
     def _populated(self, scene: Scene) -> Traffic:
         """Put the vehicles of a scene on the road."""

@@ -1,12 +1,13 @@
 """What the others cost each vehicle: its time against that of driving the same route alone."""
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from codriving.datatypes import Kind, Track, Trajectory
-from codriving.geometry import FloatArray, Path, RoadMap, progress
+from codriving.geometry import Path, RoadMap, progress
 
 
 class TimedDrive(NamedTuple):
@@ -36,23 +37,27 @@ def drives(trajectory: Trajectory, road: RoadMap) -> tuple[TimedDrive, ...]:
         goal = road.routes[track.route].goal
         if alone is None or alone[-1] < goal or len(track.x) < 2:
             continue
-        places, first = _last_places(track, road.paths[track.route], goal)
-        place = min(float(places[-1]), goal)
-        steps = first + (float(np.interp(goal, places, np.arange(len(places)))) if place == goal else len(places) - 1)
+        steps, place = _reached(track, road.paths[track.route], goal)
         there, arrives = (trajectory.step * np.interp([place, goal], alone, np.arange(len(alone)))).tolist()
         if steps > 0:
             found.append(TimedDrive(track.kind, steps * trajectory.step, there, arrives))
     return tuple(found)
 
 
-def _last_places(track: Track, path: Path, goal: float) -> tuple[FloatArray, int]:
-    """Arc lengths of the last rows of a track [m], one before the goal included, and the number of the first."""
-    for first in (len(track.x) - 2, 0):
-        rows = slice(first, None)
-        places = progress(path, track.x[rows], track.y[rows], track.heading[rows])
-        if places[0] < goal:
-            break
-    return places, first
+def _reached(track: Track, path: Path, goal: float) -> tuple[float, float]:
+    """After how many steps a vehicle is at the goal, and the goal [m]; or as far as it got."""
+
+    def place(row: int) -> float:
+        rows = slice(row, row + 1)
+        return float(progress(path, track.x[rows], track.y[rows], track.heading[rows])[0])
+
+    last = len(track.x) - 1
+    if (end := place(last)) < goal:
+        return last, end
+    # No vehicle drives backwards.
+    row = bisect_left(range(last), goal, lo=1, key=place)
+    before, after = place(row - 1), place(row)
+    return row - 1 + (goal - before) / (after - before) if before < goal < after else row, goal
 
 
 def jain(shares: Sequence[float]) -> float | None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from codriving.config.compose import compose
+from codriving.environment import environment as environment_module
 from codriving.environment.environment import Environment
 from codriving.experiment.objects import make_objects
 
@@ -25,8 +26,16 @@ def test_each_gets_to_its_goal_and_the_same_way_each_time(scenario: str, limits:
         assert places[0] == start.position
         assert places[-1] >= environment.road_map.routes[start.route].goal > places[-2]
         assert (np.diff(places) >= 0).all()
+    environment_module._ALONE.clear()
     again = environment.alone(10000)
     assert all((again[name] == places).all() for name, places in alone.items())
+
+
+def test_it_is_worked_out_once_for_all_methods_in_one_world() -> None:
+    first = _environment("method=codriving").alone(10000)
+    assert _environment("method=fcfs").alone(10000) is first
+    other = _environment("method=fcfs", "environment.control.speed=1.2").alone(10000)
+    assert any(len(other[name]) != len(first[name]) for name in first)
 
 
 def test_a_cav_speeds_up_as_its_speed_law_lets_it() -> None:

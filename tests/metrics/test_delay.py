@@ -23,6 +23,13 @@ def test_delay_is_the_time_beyond_that_of_driving_alone(road: RoadMap, drive: Dr
     assert found.whole == pytest.approx(22, abs=0.05)
 
 
+def test_a_human_driver_counts_to_the_goal_and_not_to_the_end_of_its_road(road: RoadMap, drive: Drive) -> None:
+    """The goal at 110 m after 11 s at 10 m/s; it drives on to 120 m, where it stands until 25 s."""
+    track = drive("a", "east", np.minimum(10 * TIME, 120), kind=Kind.HDV)
+    (found,) = drives(Trajectory(0.1, (track,), {"a": 10 * TIME}), road)
+    assert (found.time, found.delay) == pytest.approx((11, 0), abs=0.05)
+
+
 def test_one_that_has_not_arrived_counts_as_far_as_it_got(road: RoadMap, drive: Drive) -> None:
     """10 s at 5 m/s are 50 m, alone 5 s: 5 s late. The 60 m left take alone 6 s, so the whole time is 16 s."""
     track = drive("a", "east", 5 * TIME[:101], kind=Kind.HDV)
