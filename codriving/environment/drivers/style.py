@@ -109,7 +109,8 @@ class DriverMix(Drivers):
         acceleration, deceleration, headway, exponent, speed, reaction = map(within, of, chance[1:7])
         return DriverTraits(
             kind,
-            self._profile(acceleration, deceleration, headway),
+            # Who kept less distance than it drives until it reacts could not brake in time.
+            self._profile(acceleration, deceleration, max(headway, reaction)),
             exponent,
             speed,
             reaction,

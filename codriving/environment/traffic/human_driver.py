@@ -20,6 +20,10 @@ CREEP = 1.0  # Below this speed a driver counts as standing [m/s]
 GAP = 4.0  # Time gap before which a driver who stands starts onto the lane beside [s]; so long it is in the way
 
 
+# How much earlier a driver with a style stops before the end of a lane, so that it can still turn out of it [m].
+ROOM = 4.0
+
+
 class HumanDriver(RouteFollower, IDMVehicle):
     """An uncontrolled vehicle that shares nothing and follows its own route."""
 
@@ -85,7 +89,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
         if leader is not None and not (changing and self._leaves(leader)):
             # IDM counts from centre to centre; a body that crosses is met at its near side.
             wanted.append(self.gap_behind(leader) / max(gap + self.LENGTH, 0.01))
-        lane_end = self.route_path.lane_end
+        lane_end = self.route_path.lane_end - (0.0 if self.traits is None else ROOM)
         if not changing and self.lane_index == self.route_path.ending and lane_end < self.s + self.sight:
             wanted.append(self._gap_at(self.speed) / max(lane_end - self.s - self.LENGTH / 2 + self.LENGTH, 0.01))
         if self.waits_at is not None:

@@ -1,6 +1,7 @@
 """Each style of drivers shows in what its drivers do, beside attentive drivers in the same place."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from codriving.datatypes.record import Ending
 from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.drivers.style import DriverMix
 from codriving.environment.environment import Environment
+from codriving.environment.termination import Termination
 
 Mix = Callable[..., DriverMix]
 Cross = Callable[..., Crossing]
@@ -97,6 +99,20 @@ def test_patience_ends_a_wait_for_a_vehicle_that_stands_in_the_junction(people: 
     assert patient.lines["HDV1"] == float("inf")
     assert 8.0 <= stood(usual) <= 10.0
     assert usual.lines["HDV1"] < 20.0
+
+
+def test_people_on_a_ramp_stop_where_they_can_still_turn_out_of_it(configured: Callable[..., Environment]) -> None:
+    crowd = ("scenario.hdvs=[12,12]", "scenario.ramp_hdvs=0.5", "scenario.cavs=2")
+    env = configured("scenario=merge", "drivers=attentive", *crowd)
+    for seed in (10_004, 10_006, 10_007):
+        scene = env.scenario.scene(seed)
+        traffic = env._populated(replace(scene, starts=tuple(s for s in scene.starts if s.kind is Kind.HDV)))
+        judge = Termination(["none"], 100.0, 0.1)
+        for step in range(600):
+            traffic.act()
+            traffic.step(0.1)
+            judge.check(traffic, step * 0.1)
+        assert (traffic.vehicles, judge._bystanders) == ([], [])
 
 
 @pytest.mark.parametrize(("signals", "waits"), [(1.0, False), (0.0, True)])

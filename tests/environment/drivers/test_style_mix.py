@@ -47,6 +47,13 @@ def test_styles_come_in_their_shares(name: str, shares: dict[str, float]) -> Non
     assert 1.08 < max(kept) <= 1.1
 
 
+def test_no_driver_keeps_less_distance_than_it_drives_until_it_reacts() -> None:
+    made = mix("drivers=rough")
+    drivers = [made.draw(0, name) for name in NAMES]
+    assert all(driver.profile.headway >= driver.reaction for driver in drivers)
+    assert min(driver.profile.headway for driver in drivers if driver.style == "aggressive") < 0.7
+
+
 def test_a_driver_is_told_by_seed_and_name() -> None:
     found = mix("drivers=mixed")
     assert found.draw(3, "HDV1") == found.draw(3, "HDV1")
