@@ -1,6 +1,7 @@
 """The pages name files and folders of the repository that are there."""
 
 import re
+from pathlib import Path
 
 from source import PACKAGE, REPOSITORY
 
@@ -37,3 +38,20 @@ def test_each_name_of_a_run_belongs_to_one_page() -> None:
 def test_nothing_is_said_to_be_on_a_package_index() -> None:
     told = [page.name for page in PAGES if re.search(r"pip install ['\"]?codriving", page.read_text(encoding="utf-8"))]
     assert not told
+
+
+def _anchors(page: Path) -> set[str]:
+    """The names by which the headings of a page are linked to."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def test_links_lead_to_pages_and_headings_that_are_there() -> None:
+    broken = []
+    for page in PAGES:
+        for link in re.findall(r"\]\((?!https?:)([^)\s]+)\)", page.read_text(encoding="utf-8")):
+            path, _, anchor = link.partition("#")
+            target = (page.parent / path) if path else page
+            if not target.exists() or (anchor and anchor not in _anchors(target)):
+                broken.append(f"{page.name}: {link}")
+    assert not broken
