@@ -97,7 +97,8 @@ class Forecast:
 
     def _state(self, speed: float, target: float, where: Where) -> State:
         """Leave out where a CAV is if that makes no difference to it."""
-        return (speed, target, *(where if self.along(speed, where) else NOWHERE))
+        route, place = where if self._limited and self.along(speed, where) else NOWHERE
+        return speed, target, route, place
 
     def along(self, speed: float, where: Where) -> tuple[Along, ...]:
         """Return the way of a CAV for `rollout`; nothing where it makes no difference within the horizon."""
@@ -109,7 +110,8 @@ class Forecast:
     def _predict(self, states: Sequence[State]) -> None:
         new = list(dict.fromkeys(state for state in states if state not in self._travel))
         if new:
-            new.sort(key=lambda state: state[2:] == NOWHERE)
+            if self._limited:
+                new.sort(key=lambda state: state[2:] == NOWHERE)
             along = [(self._profiles[route], place) for *_, route, place in new if (route, place) != NOWHERE]
             speeds, targets, *_ = zip(*new, strict=True)
             distances = travelled(self.model, speeds, targets, self._library, self.steps, self._stride, along=along)
