@@ -129,6 +129,12 @@ def test_check_wants_an_order_for_every_pair(fault: str) -> None:
     assert result.exit_code == (0 if fault == "duplicate_ids" else 1), result.output
 
 
+def test_check_does_not_say_twice_what_a_model_is_called() -> None:
+    with Loopback(lambda request: "ok") as server:
+        result = call("check", *toy(server), "llm.label=toy")
+    assert result.stdout.startswith("toy on intersection"), result.output
+
+
 def test_check_says_each_retry_and_what_the_server_calls_its_model() -> None:
     def plan(request: Request) -> Fault:
         fault = FAULTS["429"] if request.number == 1 else FAULTS["ok"]

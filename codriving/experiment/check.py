@@ -50,7 +50,7 @@ def run_check(overrides: Sequence[str], config_dir: Path | None = None) -> int:
         scene, deliberation = _ask(resolved, model)
     except ModelUnavailableError as error:
         raise ModelError(str(error)) from error
-    served = f", which its server calls {client.served}," if client.served else ""
+    served = f", which its server calls {client.served}," if client.served not in ("", model.name) else ""
     print(f"{model.name}{served} on {scene}\n")
     code, lines = report(deliberation.transcript, deliberation.counts)
     print("\n".join(lines))
