@@ -3,6 +3,7 @@
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Memory, Verdict
 from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.order import (
+    Approach,
     ApproachingVehicle,
     Conflict,
     Instance,
@@ -70,11 +71,11 @@ from codriving.datatypes.situation import (
 from codriving.datatypes.world import Action, DrivingModel, Intent, Kind, Scene, Start, VehicleState, WorldState
 
 __all__ = [
-    "Account", "Action", "ActionAssessment", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat", "Collision",
-    "Conflict", "Cooperation", "Decision", "Deliberation", "Description", "Drivers", "DrivingModel", "Effect",
-    "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience", "Instance", "Intent", "Interaction", "Kind", "Lane",
-    "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Memory", "Method", "Metric", "Model", "NamedNumber",
-    "OrderExecutor", "Outcome", "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence",
+    "Account", "Action", "ActionAssessment", "Approach", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat",
+    "Collision", "Conflict", "Cooperation", "Decision", "Deliberation", "Description", "Drivers", "DrivingModel",
+    "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience", "Instance", "Intent", "Interaction", "Kind",
+    "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Memory", "Method", "Metric", "Model",
+    "NamedNumber", "OrderExecutor", "Outcome", "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence",
     "ReasonedDeliberation", "Relation", "Road", "Role", "Route", "RuleModel", "Scenario", "Scene", "SceneDescription",
     "Score", "Severity", "Simulator", "Sine", "Situation", "Start", "Straight", "Track", "TrackedVehicle",
     "Trajectory", "TravelScore", "Turn", "VehicleLimits", "VehicleState", "Verdict", "WorldState", "beside",

@@ -93,6 +93,15 @@ class ApproachingVehicle:
 
 
 @dataclass(frozen=True, slots=True)
+class Approach:
+    """How one vehicle comes to the zone that it shares with another one, the most urgent of several."""
+
+    distance: float  # Distance to that zone [m]; 0 past its beginning
+    earliest: float  # Earliest time at which it can be there [s]; negative if it is past that
+    can_stop: bool  # Whether it can still stop before that zone
+
+
+@dataclass(frozen=True, slots=True)
 class Instance:
     """The ordering problem of one moment."""
 
@@ -102,6 +111,13 @@ class Instance:
     # a zone or a lane [s].
     separation: Mapping[Pair, float]
     before: Set[Pair]
+    approaches: Mapping[Pair, Approach] = field(default_factory=dict)  # Of the first of each pair to their zone
+
+    def approach(self, one: str, other: str) -> Approach:
+        """Return how a vehicle comes to the zone that it shares with another one; its first one if they share none."""
+        vehicle = self.vehicles[one]
+        first = Approach(vehicle.distance, vehicle.eta, not vehicle.committed)
+        return self.approaches.get((one, other), first)
 
     @property
     def entrants(self) -> NoReturn:

@@ -137,6 +137,7 @@ class ActionAssessment:
     arrivals: tuple[float, ...]
     # How far the CAV gets within the horizon if it then keeps the order [m]; None if it cannot keep it.
     progress: float | None
+    target: float | None = None  # The target speed that it sets [m/s]; None for a lane change, and where none was asked
 
 
 @dataclass(frozen=True, slots=True)

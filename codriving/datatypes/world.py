@@ -68,6 +68,20 @@ class DrivingModel:
         """Highest target speed [m/s]."""
         return self.target_speeds[-1]
 
+    def target_after(self, action: Action, speed: float, target: float) -> float | None:
+        """Return the target speed after an action at a speed [m/s], None for a lane change.
+
+        FASTER and SLOWER step from the speed that is driven to the next allowed target; every other action keeps it.
+        """
+        steps = {Action.SLOWER: -1, Action.IDLE: 0, Action.FASTER: 1}
+        if action not in steps:
+            return None
+        if action is Action.IDLE:
+            return target
+        low, top = self.target_speeds[0], len(self.target_speeds) - 1
+        nearest = round((speed - low) / (self.target_speeds[-1] - low) * top)
+        return self.target_speeds[min(max(min(max(nearest, 0), top) + steps[action], 0), top)]
+
     @property
     def substeps(self) -> int:
         """Simulation steps per decision."""

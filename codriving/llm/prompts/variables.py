@@ -116,7 +116,7 @@ def _conflict(
     n = next(n for n in neighbours if n.id == c.other)
     lane, free = "" if n.lane is None else lane_name(n.lane), max(situation.clear_times[k] for k in ks)
     way = (str(c.relation), *c.distances, *c.ttcp, c.dttcp, str(c.severity))
-    return ConflictView(*way, names(n.id), DRIVERS[n.kind], lane, n.speed, len(ks), free)
+    return ConflictView(*way, names(n.id), DRIVERS[n.kind], lane, n.speed, len(ks), free, c.certain)
 
 
 def _actions(
@@ -128,10 +128,10 @@ def _actions(
         times = a.arrivals
         arrivals = tuple(round(min((times[k] for k in ks if k < len(times)), default=inf), 1) for ks in groups)
         progress = None if a.progress is None else round(a.progress)
-        key = (a.safe, a.reasons, progress, arrivals)
+        key = (a.safe, a.reasons, progress, arrivals, a.target)
         before = views[key].names if key in views else ()
         reasons = tuple(names.sentence(reason) for reason in a.reasons)
-        views[key] = ActionView((*before, str(a.action)), a.safe, reasons, progress, arrivals)
+        views[key] = ActionView((*before, str(a.action)), a.safe, reasons, progress, arrivals, a.target)
     return list(views.values())
 
 
@@ -154,7 +154,7 @@ def negotiation_view(
     )
     return {
         "vehicles": [_approaching(scenes, instance, name, names) for name in asked],
-        "pairs": [_pair(name, c, previous, names) for name, c in pairs],
+        "pairs": [_pair(name, c, instance, previous, names) for name, c in pairs],
         "fixed": [FixedView(names(first), names(second)) for first, second in fixed],
         "binding": binding,
     }
@@ -188,11 +188,14 @@ def _joined(windows: Sequence[tuple[float, float]]) -> tuple[tuple[float, float]
     return tuple(joined)
 
 
-def _pair(name: str, c: Conflict, previous: PassingOrder | None, names: Names) -> PairView:
+def _pair(name: str, c: Conflict, instance: Instance, previous: PassingOrder | None, names: Names) -> PairView:
     agreed = None if previous is None else previous.first_of(c.ego, c.other)
     first = "" if agreed is None else names(agreed)
     ego, other, relation, severity = names(c.ego), names(c.other), str(c.relation), str(c.severity)
-    return PairView(name, ego, other, relation, c.distances, c.ttcp, c.dttcp, severity, first)
+    one, two = instance.approach(c.ego, c.other), instance.approach(c.other, c.ego)
+    earliest, can_stop = (max(one.earliest, 0.0), max(two.earliest, 0.0)), (one.can_stop, two.can_stop)
+    distances = one.distance, two.distance
+    return PairView(name, ego, other, relation, distances, c.ttcp, c.dttcp, severity, first, earliest, can_stop)
 
 
 def reflection_view(experience: Experience) -> dict[str, Any]:

@@ -59,6 +59,7 @@ class ConflictView(WayView):
     speed: float
     zones: int
     free: float  # When the CAV's way through all of them is expected to be free; 0 if the CAV goes first
+    certain: bool = True  # Whether it is known which way the other one takes; if not, progress leaves it out
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +88,7 @@ class ActionView:
     reasons: tuple[str, ...]
     progress: float | None  # How far the CAV gets within 10 s if it then keeps the order; None if it cannot keep it
     arrivals: tuple[float, ...]  # Earliest arrival at the zones of each conflict, in the order of the conflicts
+    target: float | None = None  # The target speed that they set; None for a lane change
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +100,7 @@ class EntrantView:
     route: str
     turns: bool
     target_speed: float
-    distance: float  # Distance to its first conflict zone
+    distance: float  # Distance to its first conflict zone; to that of a pair see there
     earliest: float  # Earliest time at which it can be there
     can_stop: bool
     behind: str
@@ -118,6 +120,8 @@ class PairView:
     dttcp: float
     severity: str
     agreed: str
+    earliest: tuple[float, float]  # Earliest times at which they can be at the zone
+    can_stop: tuple[bool, bool]  # Whether they can still stop before it
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,6 @@ from codriving.methods.dilu.collision_log import Correction, Mistake
 from codriving.methods.dilu.rule import correct_one
 from codriving.methods.language_model.model_decider import ModelDecider
 from codriving.methods.language_model.prompted_model import PromptedModel
-from codriving.reasoning import CHANGE
 
 # What stands in for an answer that is missing, as in the source: keep going, or slow down if that is not allowed.
 INSTEAD = (Action.IDLE, Action.SLOWER)
@@ -105,7 +104,6 @@ def seen_view(
     """Return the variables that all of DiLu's prompts have."""
     scene, names = situation.scene, seen_names(situation.scene)
     start, end, index = scene.ego.lane
-    targets = _targets_after(driving, scene.ego.speed, scene.intent.target_speed)
     mentioned = scene.by_distance()[:nearest]
     lanes = lane_views(scene, mentioned, names)
     placed = {v.id for lane in lanes for v in (lane.leading, lane.rear) if v is not None}
@@ -124,7 +122,10 @@ def seen_view(
         "room": 0.0 if scene.must_change is None else scene.must_change.room,
         "lanes": lanes,
         "vehicles": [_seen(situation, n, names) for n in shown],
-        "actions": [MeaningView(str(a), targets.get(a)) for a in situation.allowed],
+        "actions": [
+            MeaningView(str(a), driving.target_after(a, scene.ego.speed, scene.intent.target_speed))
+            for a in situation.allowed
+        ],
         "allowed": [str(a) for a in situation.allowed],
     }
 
@@ -151,11 +152,3 @@ def _direction(scene: SceneDescription, n: TrackedVehicle) -> str:
     ahead, right = scene.offset(n)
     # The y axis points to the right of the x axis, so that angles grow clockwise.
     return EIGHTHS[round(degrees(atan2(right, ahead)) / 45) % len(EIGHTHS)]
-
-
-def _targets_after(model: DrivingModel, speed: float, target: float) -> dict[Action, float]:
-    """Return the target speed after each action along the lane [m/s]."""
-    speeds, top = model.target_speeds, len(model.target_speeds) - 1
-    nearest = round(min(max((speed - speeds[0]) / (speeds[-1] - speeds[0]) * top, 0), top))
-    stepped = {action: speeds[min(max(nearest + step, 0), top)] for action, step in CHANGE.items()}
-    return {Action.SLOWER: stepped[Action.SLOWER], Action.IDLE: target, Action.FASTER: stepped[Action.FASTER]}

@@ -109,7 +109,7 @@ def is_plain(situation: Situation, sees_conflicts: bool) -> bool:
 
     - it is in no conflict, however slight, and in no pair of the order;
     - the vehicle ahead on its lane is so far away that it stays 2 s behind for the next 10 s, the other one
-      keeping its speed;
+      keeping its speed and the CAV driving as fast as FASTER lets it;
     - where conflicts cannot be seen, since intents are not shared: no vehicle is ahead, on any lane, as near as it gets
       within 10 s.
 
@@ -124,7 +124,8 @@ def is_plain(situation: Situation, sees_conflicts: bool) -> bool:
     along = [a for a in situation.assessments if a.action in EAGERNESS]
     if not all(a.safe and not a.reasons and a.progress is not None for a in along):
         return False
-    reach = max((a.progress or 0.0 for a in along), default=0.0)
+    # Progress is what a plan is worth behind all others, not how far the CAV would drive on its own.
+    reach = HORIZON * max([scene.ego.speed, *(a.target or 0.0 for a in along)])
     if any(_catches_up(n, reach) or (not sees_conflicts and _is_ahead(scene, n, reach)) for n in scene.neighbours):
         return False
     return decide_one(situation).action is Action.FASTER

@@ -7,7 +7,7 @@ from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise, permutations
 from math import inf
 
-from codriving.datatypes import ApproachingVehicle, Instance, Pair, PassingOrder, Precedence
+from codriving.datatypes import Instance, Pair, PassingOrder, Precedence
 from codriving.reasoning.ordering.problem import Problem, pose
 from codriving.reasoning.ordering.schedule import schedule, start_time
 from codriving.reasoning.perception import Moment
@@ -50,7 +50,7 @@ class RuleCoordinator(Coordinator):
 
         def reason(first: str, second: str) -> str:
             known = given.get((first, second))
-            return reason_between(instance.vehicles[first], instance.vehicles[second]) if known is None else known
+            return reason_between(instance, first, second) if known is None else known
 
         self.previous = agreement(moment, problem, times, reason, self.binding)
         return self.previous
@@ -64,11 +64,12 @@ class RuleCoordinator(Coordinator):
             options = []
             for vehicle in [s for s in waiting.values() if s.id not in held] or list(waiting.values()):
                 time = start_time(vehicle, times, instance.separation)
-                rivals = (k for k in waiting if (k, vehicle.id) in instance.separation and k != vehicle.id)
+                rivals = [k for k in waiting if (k, vehicle.id) in instance.separation and k != vehicle.id]
                 handicap = TURN_YIELDS if vehicle.turning else 0.0
                 if self.previous is not None and any(self.previous.first_of(k, vehicle.id) == k for k in rivals):
                     handicap += KEEPS_TURN
-                options.append((not vehicle.committed, time + handicap, vehicle.id, time))
+                stops = all(instance.approach(vehicle.id, k).can_stop for k in rivals)
+                options.append((stops, time + handicap, vehicle.id, time))
             _, _, name, time = min(options)
             times[name] = time
             del waiting[name]
@@ -105,17 +106,19 @@ def cost(planned: Mapping[str, float], instance: Instance, previous: PassingOrde
     return sum(t - max(instance.vehicles[name].eta, 0.0) for name, t in planned.items()) + SWAP * turned
 
 
-def reason_between(first: ApproachingVehicle, second: ApproachingVehicle) -> str:
-    """Explain the order of two CAVs."""
-    if first.committed and not second.committed:
-        return f"{first.id} can no longer stop before the conflict zone"
-    if second.leader == first.id:
-        return f"{first.id} drives ahead of {second.id} on the same lane"
-    if second.turning and not first.turning and first.eta > second.eta - 2.0:
-        return f"{second.id} turns and yields to {first.id}, which goes straight"
-    if first.eta <= second.eta:
-        return f"{first.id} can be there earlier ({first.eta:.1f} s against {second.eta:.1f} s)"
-    return f"{first.id} goes first so that the others have to wait less"
+def reason_between(instance: Instance, one: str, other: str) -> str:
+    """Explain why one of two CAVs goes before the other one."""
+    first, second = instance.vehicles[one], instance.vehicles[other]
+    mine, theirs = instance.approach(one, other), instance.approach(other, one)
+    if not mine.can_stop and theirs.can_stop:
+        return f"{one} can no longer stop before the conflict zone"
+    if second.leader == one:
+        return f"{one} drives ahead of {other} on the same lane"
+    if second.turning and not first.turning and mine.earliest > theirs.earliest - 2.0:
+        return f"{other} turns and yields to {one}, which goes straight"
+    if mine.earliest <= theirs.earliest:
+        return f"{one} can be there earlier ({mine.earliest:.1f} s against {theirs.earliest:.1f} s)"
+    return f"{one} goes first so that the others have to wait less"
 
 
 def agreement(

@@ -16,7 +16,7 @@ class Premise:
     # By how much the first of each open pair could be there earlier than the second, by their ids [s].
     leads: Mapping[Pair, float]
     held: frozenset[str]
-    cannot_stop: frozenset[str]
+    cannot_stop: frozenset[Pair]  # Pairs the first of which can no longer stop before their zone
 
     def still_holds(self, now: "Premise") -> bool:
         """Whether an order that was agreed on under this premise can be kept.
@@ -30,7 +30,8 @@ class Premise:
         if any(not _same_side(self.leads[pair], lead) for pair, lead in now.leads.items()):
             return False
         concerned = {name for pair in now.leads for name in pair}
-        return self.held & concerned == now.held and self.cannot_stop & concerned == now.cannot_stop
+        known = {pair for pair in self.cannot_stop if now.leads.keys() & {pair, pair[::-1]}}
+        return self.held & concerned == now.held and known == now.cannot_stop
 
 
 def premise(instance: Instance, pairs: Iterable[Pair]) -> Premise:
@@ -38,9 +39,17 @@ def premise(instance: Instance, pairs: Iterable[Pair]) -> Premise:
     pairs, vehicles = list(pairs), instance.vehicles
     concerned = [vehicles[name] for name in sorted({name for pair in pairs for name in pair})]
     return Premise(
-        leads={(one, other): vehicles[other].eta - vehicles[one].eta for one, other in pairs},
+        leads={
+            (one, other): instance.approach(other, one).earliest - instance.approach(one, other).earliest
+            for one, other in pairs
+        },
         held=frozenset(e.id for e in concerned if any(begin < e.eta < end for begin, end in e.windows)),
-        cannot_stop=frozenset(e.id for e in concerned if e.committed),
+        cannot_stop=frozenset(
+            pair
+            for one, other in pairs
+            for pair in ((one, other), (other, one))
+            if not instance.approach(*pair).can_stop
+        ),
     )
 
 

@@ -7,7 +7,17 @@ from math import inf
 
 import numpy as np
 
-from codriving.datatypes import ApproachingVehicle, Conflict, Instance, Pair, Relation, Role, TrackedVehicle, Turn
+from codriving.datatypes import (
+    Approach,
+    ApproachingVehicle,
+    Conflict,
+    Instance,
+    Pair,
+    Relation,
+    Role,
+    TrackedVehicle,
+    Turn,
+)
 from codriving.geometry import TRUE, ConflictZone, Footprint, RoadMap
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.right_of_way import gives_way
@@ -46,32 +56,49 @@ def pose(moment: Moment, gap: float = GAP) -> Problem:
     separation = _separations(moment, vehicles, gap)
     _add_leaders(moment, vehicles, separation)
     passages = {ego: _add_windows(moment, vehicle) for ego, vehicle in vehicles.items()}
-    return Problem(Instance(moment.time, vehicles, separation, frozenset(_fixed(moment, vehicles))), passages)
+    before, approaches = frozenset(_fixed(moment, vehicles)), _approaches(moment, vehicles)
+    return Problem(Instance(moment.time, vehicles, separation, before, approaches), passages)
 
 
 def _approaching(moment: Moment, ego: str) -> ApproachingVehicle:
     scene, conflicts, road_map = moment.scenes[ego], moment.conflicts[ego], moment.road_map
-    route, speed, top = road_map.routes[scene.intent.route], scene.ego.speed, moment.forecast.model.top_speed
+    route = road_map.routes[scene.intent.route]
     zones = [road_map.zones(*c.routes)[c.zone] for c in conflicts]
     reference = min(zone.entry_i for zone in zones)
-    ahead = reference - scene.place
-    go = moment.forecast.reach(speed, True, scene.where)
+    first = _approach(moment, ego, reference)
     lane = road_map.lane_at(route.id, scene.place)
     # Turning matters where ways cross; on a ring or a ramp no vehicle goes straight on.
     return ApproachingVehicle(
         id=ego,
         reference=reference,
-        eta=moment.forecast.time_to(ahead, go.most) if ahead > 0 else ahead / top,
-        committed=bool(go.least[-1] >= ahead),
+        eta=first.earliest,
+        committed=not first.can_stop,
         turning=route.turn is not Turn.STRAIGHT and any(c.relation is Relation.CROSSING for c in conflicts),
         lane="/".join(map(str, lane)),
         stream="/".join((*map(str, lane), str(route.turn))),
-        distance=max(ahead, 0.0),
+        distance=first.distance,
         crossing=moment.forecast.duration((route.id, reference), max(zone.exit_i for zone in zones) - reference),
         remaining=max(route.goal - scene.place, 0.0),
-        speed=speed,
+        speed=scene.ego.speed,
         priority=road_map.lanes[lane].priority,
     )
+
+
+def _approach(moment: Moment, ego: str, entry: float) -> Approach:
+    """Return how a CAV comes to the entry of a zone, at an arc length of its route [m]."""
+    scene, forecast = moment.scenes[ego], moment.forecast
+    ahead, go = entry - scene.place, forecast.reach(scene.ego.speed, True, scene.where)
+    earliest = forecast.time_to(ahead, go.most) if ahead > 0 else ahead / forecast.model.top_speed
+    return Approach(max(ahead, 0.0), earliest, bool(go.least[-1] < ahead))
+
+
+def _approaches(moment: Moment, vehicles: Mapping[str, ApproachingVehicle]) -> dict[Pair, Approach]:
+    """Return how each vehicle comes to the zones that it shares with others: to those, not to its own first one."""
+    found: dict[Pair, Approach] = {}
+    for ego in vehicles:
+        for c in (c for c in moment.conflicts[ego] if c.other in vehicles and (ego, c.other) not in found):
+            found[ego, c.other] = _approach(moment, ego, moment.road_map.zones(*c.routes)[c.zone].entry_i)
+    return found
 
 
 def _separations(moment: Moment, vehicles: Mapping[str, ApproachingVehicle], gap: float) -> dict[Pair, float]:

@@ -83,10 +83,9 @@ def reasons(instance: Instance, order: Sequence[str], chosen: Callable[[str, str
 
 def fixed(instance: Instance, one: str, other: str) -> str:
     """Say why it is physically fixed that one vehicle goes before another one."""
-    first, second = instance.vehicles[one], instance.vehicles[other]
-    if second.leader == one:
+    if instance.vehicles[other].leader == one:
         return f"{one} drives ahead of {other}"
-    if first.committed and not second.committed:
+    if not instance.approach(one, other).can_stop and instance.approach(other, one).can_stop:
         return f"{one} can no longer stop, {other} can"
     return f"{one} has to go before {other} as they drive"
 

@@ -58,8 +58,16 @@ class ThreeLayers(SafetyCheck):
 def _assessments(
     given: SafetyInput, reasons: Mapping[Action, Sequence[str]], forced: Action | None = None
 ) -> tuple[ActionAssessment, ...]:
+    scene, model = given.scene, given.forecast.model
     return tuple(
-        ActionAssessment(action, not why or action is forced, tuple(why), arrivals(given, k), progress(given, action))
+        ActionAssessment(
+            action,
+            not why or action is forced,
+            tuple(why),
+            arrivals(given, k),
+            progress(given, action),
+            model.target_after(action, scene.ego.speed, scene.intent.target_speed),
+        )
         for k, (action, why) in enumerate(reasons.items())
     )
 

@@ -7,7 +7,8 @@ from worlds import Car, Junction, car, order_of
 
 from codriving.datatypes.situation import ActionAssessment, LaneChange, Situation
 from codriving.datatypes.world import Action
-from codriving.reasoning.decision.rules import is_plain
+from codriving.reasoning.decision.rules import decide_one, is_plain
+from codriving.reasoning.safety.assessment import ThreeLayers
 
 GOOD = tuple(
     ActionAssessment(action, True, (), (), gain)
@@ -73,3 +74,12 @@ def test_best_action_must_be_plain(junction: Junction) -> None:
         assert not is_plain(changed, True)
     stays = replace(good, assessments=(*GOOD, ActionAssessment(Action.LANE_LEFT, True, (), (), 81.0)))
     assert is_plain(stays, True)
+
+
+@pytest.mark.parametrize(("gap", "speed", "plain"), [(75.0, 23.0, False), (75.0, 25.0, False), (75.0, 29.0, True)])
+def test_faster_towards_a_slower_leader_is_not_plain(gap: float, speed: float, plain: bool, highway: Junction) -> None:
+    # From 25 m/s FASTER leads to 30 m/s, so that a leader at 23 m/s comes 70 m nearer within 10 s.
+    given = highway.safety_input(car("CAV1", "lane-1", 300.0, 25.0), car("HDV1", "lane-1", 305.0 + gap, speed))
+    found = Situation(given.scene, given.conflicts, given.order, (), ThreeLayers().assess(given))
+    assert decide_one(found).action is Action.FASTER
+    assert is_plain(found, True) is plain

@@ -35,7 +35,7 @@ def test_reason_between_two_cavs(
     etas: tuple[float, float], first: dict[str, Any], second: dict[str, Any], reason: str
 ) -> None:
     problem = instance({"A": etas[0], "B": etas[1]}, A=first, B=second)
-    assert reason in reason_between(problem.vehicles["A"], problem.vehicles["B"])
+    assert reason in reason_between(problem, "A", "B")
 
 
 @pytest.mark.parametrize(

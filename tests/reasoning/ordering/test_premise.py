@@ -42,7 +42,7 @@ def test_premise_is_about_open_pairs_and_who_is_earlier(now: Premise, holds: boo
 
 def test_premise_is_about_human_drivers_and_who_can_stop() -> None:
     assert not THEN.still_holds(replace(THEN, held=frozenset({"A"})))
-    assert not THEN.still_holds(replace(THEN, cannot_stop=frozenset({"B"})))
+    assert not THEN.still_holds(replace(THEN, cannot_stop=frozenset({("B", "A")})))
     # C has left; that it was held up does not matter any more.
     held = replace(THEN, held=frozenset({"C"}))
     assert held.still_holds(later(("A", "B"), A=3.0, B=3.5))

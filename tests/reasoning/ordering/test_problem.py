@@ -8,6 +8,7 @@ from worlds import Car, Junction, car
 
 from codriving.geometry.box import TRUE
 from codriving.geometry.zone import ConflictZone
+from codriving.reasoning.ordering.coordinator import reason_between
 from codriving.reasoning.ordering.problem import COMMITTED, Problem, pose
 from codriving.reasoning.ordering.schedule import repaired, schedule
 from codriving.reasoning.sharing.tracking import Tracking
@@ -196,3 +197,20 @@ def test_who_can_only_stop_where_the_other_cuts_the_corner_goes_first(junction: 
     for place, fixed in ((reach.entry_i - 0.3, False), ((reach.entry_i + body.entry_i) / 2, True)):
         before = posed(junction, car("CAV1", routes[0], place, 0.0), car("CAV2", routes[1], 40.0, 8.0)).instance.before
         assert (("CAV1", "CAV2") in before) is fixed
+
+
+def test_each_pair_has_distance_time_and_stopping_of_its_own_zone(junction: Junction) -> None:
+    # CAV1 meets CAV2 on the near side of the junction and CAV3 on its far side, before which it can still stop.
+    cars = [car(name, route, 75.0, 8.0) for name, route in (("CAV2", "west-east"), ("CAV3", "east-west"))]
+    thoughts = junction.thoughts(car("CAV1", "south-north", 96.0, 8.0), *cars)
+    problem = pose(thoughts.moment()).instance
+    for c in thoughts.conflicts["CAV1"]:
+        assert problem.approach("CAV1", c.other).distance == c.distances[0]
+        assert problem.approach(c.other, "CAV1").distance == c.distances[1]
+    near, far = problem.approach("CAV1", "CAV2"), problem.approach("CAV1", "CAV3")
+    assert (near.distance, far.distance) == (pytest.approx(8.4, abs=0.1), pytest.approx(12.4, abs=0.1))
+    assert near.earliest < far.earliest
+    assert (near.can_stop, far.can_stop) == (False, True)
+    assert problem.vehicles["CAV1"].committed
+    assert "can no longer stop" in reason_between(problem, "CAV1", "CAV2")
+    assert "can be there earlier (1.4 s against" in reason_between(problem, "CAV1", "CAV3")
