@@ -59,7 +59,7 @@ class ConflictView(WayView):
     speed: float
     zones: int
     free: float  # When the CAV's way through all of them is expected to be free; 0 if the CAV goes first
-    certain: bool = True  # Whether it is known which way the other one takes; if not, progress leaves it out
+    certain: bool = True  # Whether it is known which way the other one takes; if not, progress is a mean
 
 
 @dataclass(frozen=True, slots=True)

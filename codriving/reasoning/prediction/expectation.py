@@ -66,12 +66,46 @@ def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str,
         travels, keeps = plans_that_keep(moment, ego, v, found, order, lag)
         gained = np.where(keeps, worth(travels), -np.inf)
         best = int(np.argmax(gained)) if keeps.any() else len(PLANS) - 1
-        gains = progress_by_action(gained)
+        gains = _with_guesses(moment, ego, v, travels, gained, found, order, lag)
         found[v.id] = tuple(
             Expected(route, place + travels[best], best == 0, gains if k == 0 else {})
             for k, (route, place) in enumerate(v.routes)
         )
     return found
+
+
+def _with_guesses(
+    moment: Moment,
+    ego: str,
+    vehicle: TrackedVehicle,
+    travels: Array,
+    gained: Array,
+    expected: Mapping[str, tuple[Expected, ...]],
+    order: PassingOrder,
+    lag: int,
+) -> dict[Action, float]:
+    """Return how far a vehicle gets after each action if each route that a human driver may take is as likely.
+
+    Of several such drivers the one counts that holds the vehicle up most. On a route on which no plan keeps the order
+    the vehicle has to stop, which the safety check sees to.
+    """
+    gains = progress_by_action(gained)
+    if not moment.sees_conflicts:
+        return gains
+    (route, place), stops = vehicle.routes[0], progress_by_action(-worth(travels))
+    for other, motions in expected.items():
+        if moment.vehicles[ego][other].is_cav or len(motions) == 1:
+            continue
+        each = []
+        for motion in motions:
+            one = {other: (motion,)}
+            keeps = keeps_order(moment, ego, vehicle.id, route, place + travels, one, order, lag, True)
+            each.append(progress_by_action(np.where(keeps, gained, -np.inf)))
+        gains = {
+            action: min(gain, sum(way.get(action, -stops[action]) for way in each) / len(each))
+            for action, gain in gains.items()
+        }
+    return gains
 
 
 def _ahead(moment: Moment, cavs: Collection[TrackedVehicle]) -> set[tuple[str, str]]:
@@ -153,7 +187,7 @@ def keeps_order(
     for other, motions in expected.items():
         if other == name:
             continue
-        # A driver who may still take several routes is left to the safety check: no slowing down early for guesses.
+        # No CAV slows down early for a driver who may still take several routes; see `_with_guesses`.
         certain = vehicles[other].is_cav or len(motions) == 1
         minds = minds_conflicts and certain and order.first_of(name, other) != name
         for motion in motions:

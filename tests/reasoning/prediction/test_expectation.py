@@ -41,6 +41,23 @@ def test_the_first_goes_freely_and_the_second_keeps_out_of_its_way(first: str, j
     assert not overlap(junction, leader, waits)
 
 
+def test_a_human_driver_whose_way_is_open_counts_in_what_an_action_gets(junction: Junction) -> None:
+    cars = car("CAV1", "south-north", 78.0, 8.0), car("HDV1", "west-east", 76.0, 8.0)
+    thoughts = junction.thoughts(*cars)
+    (human,) = thoughts.scenes["CAV1"].neighbours
+    assert {route for route, _ in human.routes} == {"west-east", "west-north", "west-south"}
+
+    def gets(*ways: str) -> float:
+        only = replace(human, routes=tuple(r for r in human.routes if r[0] in ways))
+        scene = replace(thoughts.scenes["CAV1"], neighbours=(only,))
+        known = replace(thoughts, scenes={"CAV1": scene})
+        return expected(known, order_of("HDV1 CAV1"))["CAV1"][0].progress[Action.IDLE]
+
+    across, away = gets("west-east"), gets("west-south")
+    assert across < away
+    assert gets("west-east", "west-south") == pytest.approx((across + away) / 2)
+
+
 @settings(max_examples=30, deadline=None)
 @given(
     st.sampled_from(["west-east", "west-north", "east-west", "north-east", "east-south"]),
