@@ -38,7 +38,7 @@ from codriving.reasoning.prediction.clearance import stays_behind
 from codriving.reasoning.prediction.expectation import Expected, expect_all
 from codriving.reasoning.prediction.forecast import HORIZON, Forecast
 from codriving.reasoning.prediction.idm import IntelligentDriver
-from codriving.reasoning.prediction.rollout import CHANGE, PLANS, Plan, rollout
+from codriving.reasoning.prediction.rollout import PLANS, Plan, rollout
 from codriving.reasoning.safety.assessment import NoCheck, SafetyCheck, ThreeLayers
 from codriving.reasoning.safety.safety_input import (
     CONTINUATIONS,
@@ -55,7 +55,7 @@ from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, 
 from codriving.reasoning.sharing.tracking import STANDING, Places, Tracking
 
 __all__ = [
-    "ALIGNED", "CHANGE", "CONTINUATIONS", "CONTROL_RADIUS", "HIDDEN_INTENTS", "HORIZON", "LANE_END_GAP",
+    "ALIGNED", "CONTINUATIONS", "CONTROL_RADIUS", "HIDDEN_INTENTS", "HORIZON", "LANE_END_GAP",
     "LONGEST_WAIT", "LONGITUDINAL", "OPEN", "PLANS", "SAME_LANE", "SHARED_INTENTS", "SIDES", "SLOWEST", "STANDING",
     "AgreedOrder", "CdaLevel", "Coordinator", "Decider", "Drive", "Executor", "Expected", "Forecast",
     "IntelligentDriver", "JointPlan", "JointPlanner", "LaneRequests", "Moment", "Negotiation", "NoCheck", "Objective",
