@@ -41,7 +41,9 @@ def redacted(text: str, key: str | None) -> str:
     return _SECRET.sub(HIDDEN, _HEADER.sub(rf"\1\2{HIDDEN}", text))
 
 
-_UNREADABLE = re.compile(r"(?i)empty or invalid response|returned 'choices'|unable to (get|parse) json")
+_UNREADABLE = re.compile(
+    r"(?i)empty or invalid response|invalid response object|returned 'choices'|unable to (get|parse) json"
+)
 _NO_PROVIDER = re.compile(r"(?i)LLM Provider NOT provided")
 _PREFIX = re.compile(r"^(?:(?:litellm\.)?\w*(?:Error|Exception|Timeout)(?: -|:)\s*)+")
 _LONGEST = 300
@@ -126,7 +128,8 @@ def _chain(error: BaseException | None) -> Iterator[BaseException]:
 
 def _words(text: str, key: str | None) -> str:
     """Shorten a text for a message; keys go first, so that none is cut in half and overlooked."""
-    return one_line(_PREFIX.sub("", redacted(text, key)), _LONGEST)
+    said = redacted(text, key).partition("Traceback (most recent call last)")[0]  # Of LiteLLM, in the text of its error
+    return one_line(_PREFIX.sub("", said), _LONGEST)
 
 
 _KINDS = {
@@ -154,6 +157,7 @@ _FORM = re.compile(
     r"(?i)response_?format|response_?schema|json_schema|json_object|json mode|schema|grammar|guided|structured output"
 )
 _FILTERED = re.compile(r"(?i)content[ _-]?(policy|filter)|safety system|content management policy")
+_RESET = re.compile(r"(?i)(x-|anthropic-)?ratelimit-(.+-)?reset(-.+)?")
 _NO_MONEY = re.compile(r"(?i)insufficient_quota|exceeded your current quota|billing|credit balance")
 
 
@@ -163,12 +167,23 @@ def fault_of_response(status: int, headers: Mapping[str, str], text: str) -> Cal
     codes = {value for name, value in told if name in ("code", "type", "status", "reason")}
     wait = _wait(headers, told, text)
     message = next((value for name, value in told if name in ("message", "detail", "msg", "error")), "") or text
+    limits = any(_RESET.fullmatch(name) for name in headers)
     # LiteLLM takes seconds over a long one.
-    return CallError(_kind(status, text, codes, wait), f"{status}: {message[:2000]}", wait)
+    return CallError(_kind(status, text, codes, wait, limits), f"{status}: {message[:2000]}", wait)
 
 
-def _kind(status: int, text: str, codes: set[str] = frozenset(), wait: float | None = None) -> FaultKind:  # type: ignore[assignment]
-    """Tell one refusal from another."""
+def _kind(
+    status: int,
+    text: str,
+    codes: set[str] = frozenset(),  # type: ignore[assignment]
+    wait: float | None = None,
+    limits: bool = False,
+) -> FaultKind:
+    """Tell one refusal from another.
+
+    Args:
+        limits: Whether a header says when a limit of the rate ends.
+    """
     if status < 400:
         return FaultKind.UNREADABLE
     by_code = [kind for kind, names in _CODES.items() if any(re.fullmatch(names, code.lower()) for code in codes)]
@@ -177,7 +192,7 @@ def _kind(status: int, text: str, codes: set[str] = frozenset(), wait: float | N
     if status in _BY_STATUS:
         return _BY_STATUS[status]
     if status == 429:
-        said = wait is None and "rate_limit_exceeded" not in codes and _NO_MONEY.search(text)
+        said = wait is None and not limits and "rate_limit_exceeded" not in codes and _NO_MONEY.search(text)
         return FaultKind.QUOTA if said else FaultKind.RATE
     if status in (400, 422) and _TOO_LONG.search(text):
         return FaultKind.TOO_LONG

@@ -143,7 +143,10 @@ def _completion(bodies: Sequence[bytes]) -> dict[str, Any]:
     """Read the body of a response, if it is a chat completion."""
     with suppress(ValueError, RecursionError):
         body = json.loads(bodies[-1]) if bodies else None
-        if isinstance(body, dict) and isinstance(_first(body).get("message"), dict):
+        if isinstance(body, dict) and {"message", "text"} & _first(body).keys():
+            # Some give the text alone, or no message where nothing was said.
+            if not isinstance(message := _first(body).get("message"), dict):
+                _first(body)["message"] = {"content": message or _first(body).get("text")}
             return body
     return {}
 

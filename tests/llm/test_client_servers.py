@@ -46,7 +46,7 @@ def refuses(
     return lambda request: Fault(status=status, error=said, code="") if has(request) else None
 
 
-@pytest.mark.parametrize("status", [400, 404, 405, 406, 409, 415, 422, 500, 501])
+@pytest.mark.parametrize("status", [400, 402, 403, 404, 405, 406, 409, 415, 422, 500, 501])
 @pytest.mark.parametrize("said", ["不支持该参数", "No endpoints found", "Format de réponse inconnu"])
 def test_a_form_that_is_refused_is_left_out_whatever_status_and_language(
     loopback: Loopback, status: int, said: str
@@ -125,6 +125,25 @@ def test_a_model_that_thinks_until_its_tokens_are_used_up_is_not_asked_again(loo
     ) as stop:
         ask(asked)
     assert "\n" not in str(stop.value)
+
+
+@pytest.mark.parametrize(
+    ("choice", "value"),
+    [
+        ({"text": '{"reason": "free", "action": "IDLE"}'}, "IDLE"),
+        ({"message": None, "text": '{"reason": "free", "action": "IDLE"}'}, "IDLE"),
+        ({"message": '{"reason": "free", "action": "IDLE"}'}, "IDLE"),
+        ({"message": None}, None),
+        ({"finish_reason": "stop"}, None),
+    ],
+)
+def test_a_choice_without_a_message_is_read_or_no_answer(loopback: Loopback, choice: object, value: str | None) -> None:
+    asked = client(loopback)
+    asked.preflight()
+    loopback.plan = lambda request: Fault(wrap=lambda body: {**body, "choices": [choice]})
+    answer = ask(asked)
+    assert (answer.value and answer.value.action) == value  # type: ignore[attr-defined]
+    assert "Traceback" not in answer.problem
 
 
 @pytest.mark.parametrize("name", ["empty_content", "unknown_action", "html", "filtered"])
