@@ -282,8 +282,8 @@ class ModelChat(Chat):
             return self._worked or "model" not in fault.detail.lower()
         # Some servers fail at a form that they do not know, and some sell it: the greeting had the same key.
         new = request.schema is not None and not self._forms.proven(request)
-        kinds = FaultKind.SERVER, FaultKind.KEY, FaultKind.QUOTA
-        return fault.kind in kinds and self._worked and new
+        may = fault.kind is FaultKind.SERVER or fault.detail.startswith(("402:", "403:"))
+        return may and self._worked and new
 
     def _counted(self, reply: Reply, request: ChatRequest) -> Reply:
         """Estimate the tokens of a server that does not count them: limits and tables would go without."""

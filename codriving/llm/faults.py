@@ -344,7 +344,8 @@ def _cure(detail: str) -> str:
 def unavailable(fault: CallError, settings: ModelSettings) -> ModelUnavailableError:
     """Say that a model did not answer this time."""
     times = "once" if fault.attempts == 1 else f"{fault.attempts} times"
-    cure = f"; {SLOW}" if fault.kind is FaultKind.TIMEOUT else ""
+    cures = {FaultKind.TIMEOUT: f"; {SLOW}", FaultKind.REFUSED: f"; {_cure(fault.detail)}"}
+    cure = cures.get(fault.kind, "")
     return ModelUnavailableError(f"{settings.model}: {_server(settings)} {fault}, asked {times}{cure}")
 
 

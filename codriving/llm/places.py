@@ -5,6 +5,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 _OWN = ("reasoning_content", "reasoning", "thinking", "reasoning_details", "thinking_blocks")
+_SPECIFIC = "provider_specific_fields"
+_NO_PLACES = ("role", "refusal", "function_call", "name", "id", "type", "annotations", "citations", _SPECIFIC)
 _THOUGHTS = ("thinking", "reasoning", "thought", "redacted_thinking")  # Types of parts that nobody is told
 
 
@@ -23,14 +25,20 @@ def places_of(message: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             yield "refusal", _text(part)
         else:
             said += _text(part)
-    beside = message.get("provider_specific_fields")
-    if refusal := _text(message.get("refusal")) or _text((beside if isinstance(beside, dict) else {}).get("refusal")):
+    beside = message.get(_SPECIFIC)
+    beside = beside if isinstance(beside, dict) else {}
+    if refusal := _text(message.get("refusal")) or _text(beside.get("refusal")):
         yield "refusal", refusal
     for call in [*(message.get("tool_calls") or ()), {"function": message.get("function_call")}]:
         function = call.get("function") if isinstance(call, dict) else None
         calls.append(_text(function.get("arguments")) if isinstance(function, dict) else "")
     texts = {"content": said, "tool_calls": "\n".join(filter(None, calls))}
     texts |= {name: _text(message.get(name)) for name in _OWN} | {"parts": "\n".join(thoughts)}
+    # What a server calls otherwise is read last, and so is what LiteLLM puts into a place of its own.
+    others = {**message, **{f"own {name}": value for name, value in beside.items()}}
+    for name in [name for name in others if name not in texts and name.removeprefix("own ") not in _NO_PLACES]:
+        if "{" in (text := _text(others[name])):
+            texts[name] = text
     yield from ((name, text) for name, text in texts.items() if text.strip())
 
 

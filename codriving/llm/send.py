@@ -14,7 +14,7 @@ from typing import Any, cast
 
 from codriving.errors import ModelError
 from codriving.llm.connections import Outgoing, changed, client, keep_bodies
-from codriving.llm.faults import fault_of, without_key
+from codriving.llm.faults import fault_of, set_of, without_key
 from codriving.llm.loop import loop
 from codriving.llm.parsing import clean, one_line
 from codriving.llm.places import places_of
@@ -92,6 +92,8 @@ async def _import() -> ModuleType:
     except Exception as error:  # It reads numbers and names of levels from variables as it is imported
         said = f"{type(error).__name__}: {error}"
         suspects = [n for n, v in sorted(given.items()) if v and (n.startswith("LITELLM_") or repr(v) in said)]
+        # It reads certificates, too, and does not say which.
+        suspects += set_of("SSL_CERT_FILE", "SSL_CERT_DIR") if isinstance(error, OSError) else []
         cure = f"unset {' and '.join(suspects)}" if suspects else "install codriving again"
         raise ModelError(f"LiteLLM, which asks language models, cannot be imported ({said:.200}); {cure}") from error
 

@@ -10,8 +10,10 @@ from contextlib import suppress
 from typing import Any
 
 _BEGUN = re.compile(r"[{\[]")
-_BLANK = re.compile(r"(?:\s|//[^\n]*|#[^\n]*|/\*.*?(?:\*/|$))*", re.DOTALL)
+_BLANK = re.compile(r"(?:\s|//[^\n]*|#[^\n]*|/\*.*?(?:\*/|$)|<!--.*?(?:-->|$)|\.{3}|…)*", re.DOTALL)
 _QUOTES = dict.fromkeys('"“”„', re.compile(r"[\"“”]")) | dict.fromkeys("'‘’`", re.compile(r"['‘’`]"))
+_QUOTES |= {begin: re.compile(end) for begin, end in ("«»", "»«", "「」", "『』", "＂＂")}
+_WIDE = str.maketrans("｛｝［］", "{}[]")
 _COLON = re.compile(r"=>|[:=：]")
 _COMMA = re.compile(r"[,;，]")
 _KEY = re.compile(r"[\w.-]+")
@@ -19,7 +21,7 @@ _WORD = re.compile(r"(?:(?!\s(?://|#|/\*))[^,;，}\]{\[\n\"“”])+")
 _WORDS = {"true": True, "false": False, "none": None, "null": None}
 # What may follow the quote that ends a key, and the one that ends a value; any other quote stands inside the text.
 _AFTER_KEY = re.compile(r"\s*(?:=>|[:=：])")
-_AFTER_VALUE = re.compile(r"[ \t]*\n\s*\w+\s*[:=：]|\s+[\"“'‘]\w+[\"”'’]\s*[:=：]|\s*(?:[,;，}\]]|//|#|/\*|$)")
+_AFTER_VALUE = re.compile(r"[ \t]*\n\s*\w+\s*[:=：]|\s+[\"“'‘]\w+[\"”'’]\s*[:=：]|\s*(?:[,;，}\]]|//|#|/\*|<!--|$)")
 _ESCAPE = re.compile(r"\\(?:u([0-9a-fA-F]{4})|(.))", re.DOTALL)
 _ESCAPED = {"n": "\n", "t": "\t", "r": "\n", "b": "", "f": ""}
 
@@ -37,6 +39,7 @@ class _CutOffError(Exception):
 
 def careless_values(text: str) -> list[Any]:
     """Read the outermost objects and lists of a text; one of which nothing is left but its beginning is none."""
+    text = text.translate(_WIDE)
     reader, found, start = _Reader(text), [], 0
     while (begun := _BEGUN.search(text, start)) and reader.work < _WORK:
         start = begun.start() + 1

@@ -82,6 +82,7 @@ def test_a_shell_that_asks_nonsense_after_tab_is_told_nothing(tmp_path: Path) ->
             "many",
             "ValueError: invalid literal for int() with base 10: 'many'); unset DEFAULT_MAX_",
         ),
+        ("SSL_CERT_FILE", "/", "IsADirectoryError: [Errno 21] Is a directory); unset SSL_CERT_FILE"),
     ],
 )
 def test_a_variable_that_stops_an_import_is_named(name: str, value: str, said: str, tmp_path: Path) -> None:

@@ -171,7 +171,7 @@ def test_what_is_refused_in_every_way_ends_the_episode() -> None:
     sender = FakeSender([GOOD, *[CallError(FaultKind.REFUSED, "400: no")] * 9])
     client = chat(sender)
     ask(client)
-    with pytest.raises(ModelUnavailableError, match=r"400: no.*asked 5 times"):
+    with pytest.raises(ModelUnavailableError, match=r"400: no.*asked 5 times; change the setting of llm that"):
         ask(client)
     forms = [form for _, form, _ in sender.sent[1:]]
     assert forms == ["json_schema", "json_schema_any_length", "json_object", "text", "text"]
