@@ -1,5 +1,6 @@
 """A stored episode as frames, and frames as a film: MP4 or GIF, by the ffmpeg that imageio-ffmpeg brings along."""
 
+import os
 import subprocess
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -74,7 +75,9 @@ def _encode(arguments: Sequence[str], frames: Iterator[Frame]) -> int:
                 command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said, start_new_session=True
             )
         except (OSError, RuntimeError) as error:
-            raise FilmError(f"cannot start ffmpeg: {error}; install imageio-ffmpeg again") from error
+            named = os.environ.get("IMAGEIO_FFMPEG_EXE")
+            cure = "unset IMAGEIO_FFMPEG_EXE, which names it" if named else "install imageio-ffmpeg again"
+            raise FilmError(f"cannot start ffmpeg: {error}; {cure}") from error
         try:
             count = _feed(process, frames)
         except BaseException:

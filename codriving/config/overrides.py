@@ -96,6 +96,8 @@ def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not 
         raise ConfigError(f"cannot read {shown(token)!r:.200}; {KEY_VALUE}")
     if not _reads(f"{key}=0"):
         raise ConfigError(f"cannot read {token!r:.200}: {key:.100} is not the name of a key; {KEY_VALUE}")
+    if value.startswith("="):
+        raise ConfigError(f"cannot read {token!r:.200}; write {key}={value.lstrip('=') or '<value>'}")
     if any(not part.strip() for part in value.split(",")) and value and value[0] not in "[{(\"'":
         raise ConfigError(f"cannot read {token!r:.200}: a value is missing beside a comma; several are {key}=a,b")
     quoted = value.replace("\\", "\\\\").replace('"', '\\"')
@@ -146,6 +148,10 @@ def written(tokens: Iterable[object]) -> list[str]:
             continue  # An empty text, which some keys take
         if may_be_secret(key):
             given = ""
+        if not given and not equals and ":" in key:
+            raise ConfigError(
+                f"{key} is no setting; write key and value with a sign between: {key.replace(':', '=', 1)}"
+            )
         raise ConfigError(f"{key} stands alone; write key and value without blanks: {key}={given or '<value>'}")
     return [_HOME.sub(_at_home, token) for token in found]
 

@@ -181,6 +181,8 @@ def test_a_bug_is_one_line_that_names_the_file_of_its_traceback(
         (("run", "--scenario.cavs", "4"), "--scenario.cavs is not an option; settings are written without dashes: sc"),
         (("run", "-m", "seed=1"), "-m is not needed: values with commas make a sweep, for instance scenario=intersec"),
         (("run", "episodes", "5"), "episodes stands alone; write key and value without blanks: episodes=5"),
+        (("run", "episodes:5"), "episodes:5 is no setting; write key and value with a sign between: episodes=5"),
+        (("run", "episodes==5"), "cannot read 'episodes==5'; write episodes=5"),
         (("run", "episodes", "=", "5"), "episodes stands alone; write key and value without blanks: episodes=5"),
         (("compare", "baselines", "episodes=", "5"), "episodes stands alone; write key and value without blanks: epis"),
         (("memory", "build", "interactions", "5"), "interactions stands alone; write key and value without blanks: in"),
