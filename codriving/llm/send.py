@@ -92,8 +92,8 @@ async def _import() -> ModuleType:
     except Exception as error:  # It reads numbers and names of levels from variables as it is imported
         said = f"{type(error).__name__}: {error}"
         suspects = [n for n, v in sorted(given.items()) if v and (n.startswith("LITELLM_") or repr(v) in said)]
-        # It reads certificates, too, and does not say which.
-        suspects += set_of("SSL_CERT_FILE", "SSL_CERT_DIR") if isinstance(error, OSError) else []
+        # It reads certificates, too, and does not say of which file.
+        suspects += set_of("SSL_CERT_FILE") if isinstance(error, OSError) else []
         cure = f"unset {' and '.join(suspects)}" if suspects else "install codriving again"
         raise ModelError(f"LiteLLM, which asks language models, cannot be imported ({said:.200}); {cure}") from error
 
