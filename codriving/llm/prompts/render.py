@@ -18,6 +18,9 @@ ROLES = ("system", "user")
 PURPOSES = tuple(EXAMPLES)
 FILES = tuple(f"{purpose}.{role}.md.j2" for purpose in PURPOSES for role in ROLES)  # The templates that there are
 
+_POWER = 1_000  # Of larger numbers a template forms no power
+_REPEATED = 100_000  # Longest text or list that a template makes by repeating one
+
 _FILTERS: dict[str, Callable[[float], str]] = {
     "m": lambda metres: f"{round(metres)} m",
     "s": lambda seconds: f"{seconds:.1f} s" if isfinite(seconds) and seconds < 100 else "never",
@@ -37,13 +40,7 @@ class Prompts:
     """
 
     def __init__(self, folder: str | None = None) -> None:
-        from jinja2 import StrictUndefined
-        from jinja2.sandbox import ImmutableSandboxedEnvironment
-
-        # Templates are passed on from one person to the next: they may write text, and reach nothing else.
-        environment = ImmutableSandboxedEnvironment(
-            undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, autoescape=False
-        )
+        environment = _sandbox()
         environment.filters.update(_FILTERS)
         self._templates: dict[str, Template] = {}
         for name, path in _paths(folder).items():
@@ -73,6 +70,25 @@ class Prompts:
         except Exception as error:
             # Whatever a template of the user's raises is the template's fault.
             raise ConfigError(f"{problem}: {error or type(error).__name__}{cure}") from error
+
+
+def _sandbox() -> "Environment":
+    """Return where templates are filled in: passed on from one person to the next, they may write text and no more."""
+    from jinja2 import StrictUndefined
+    from jinja2.exceptions import SecurityError
+    from jinja2.sandbox import ImmutableSandboxedEnvironment
+
+    class Sandbox(ImmutableSandboxedEnvironment):
+        intercepted_binops = frozenset(["*", "**"])
+
+        def call_binop(self, context: Any, operator: str, left: Any, right: Any) -> Any:  # noqa: ANN401 - any values
+            sizes = [abs(value) if isinstance(value, (int, float)) else len(value) for value in (left, right)]
+            repeats = not (isinstance(left, (int, float)) and isinstance(right, (int, float)))
+            if (operator == "**" and max(sizes) > _POWER) or (repeats and sizes[0] * sizes[1] > _REPEATED):
+                raise SecurityError(f"{operator} would make something too large")
+            return super().call_binop(context, operator, left, right)
+
+    return Sandbox(undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, autoescape=False)
 
 
 @lru_cache(maxsize=8)
