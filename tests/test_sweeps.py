@@ -133,7 +133,8 @@ def test_an_ablation_of_several_scenarios_keeps_their_rows_together(
     assert [row["scenario"] for row in summary] == [name for name in names for _ in range(7)]
     assert [row["variant"] for row in summary[:7]] == [row["variant"] for row in summary[-7:]]
     said = [line for line in capsys.readouterr().out.splitlines() if "no_intent_sharing" in line]
-    claims = {"intersection": "small effect", "roundabout": "clear drop"}
+    # What the paper says of a row is of its own setting, not of two CAVs.
     for name, line in zip(names, said, strict=True):
         assert line.startswith(name)
-        assert claims[name] in line
+        assert "small effect" not in line
+        assert "clear drop" not in line

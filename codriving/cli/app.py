@@ -4,7 +4,9 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -29,51 +31,67 @@ class _Commands(TyperGroup):
         given = list(sys.argv[1:] if args is None else args)
         mend_streams()
         _ignore_variables()
-        try:
-            code = self._run(given, options)
-            sys.stdout.flush()
-        except OutputError as error:
-            give_up_output()
-            code = PIPE_CLOSED if error.reader_is_gone else _refused(error)
-        sys.exit(code)
-
-    def _run(self, args: list[str], options: dict[str, Any]) -> int:
-        try:
-            _refuse_unreadable(args)
+        with _ending(given) as ending:
+            _refuse_unreadable(given)
             # In options the shell leaves ~ as it is.
-            args = [_HOME.sub(lambda match: match[1] + str(Path.home()), arg) for arg in args]
-            code = super().main(args, "codriving", **{**options, "standalone_mode": False})
-        except UserError as error:
-            return _refused(error)
-        except KeyboardInterrupt:
-            print("interrupted", file=sys.stderr)
-            return INTERRUPTED
-        except Exception as error:
-            if "_CODRIVING_COMPLETE" in os.environ:
-                return 1  # Whatever a shell asks after TAB, words on the screen would stand in the line being typed
-            from codriving.cli.faults import one_line
-
-            if type(error).__name__ == "NoArgsIsHelpError":
-                print(error, file=sys.stderr)
-                return USER_ERROR
-            return _refused(one_line(error, args))
-        return code if isinstance(code, int) else 0
+            given = [_HOME.sub(lambda match: match[1] + str(Path.home()), arg) for arg in given]
+            ending.code = super().main(given, "codriving", **{**options, "standalone_mode": False})
+        sys.exit(ending.code if isinstance(ending.code, int) else 0)
 
     def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
         # For a flag without default, as Typer's own are, Typer imports a validator on every start (0.1 s).
         for param in self.get_params(ctx):
             if param.name in ("help", "install_completion", "show_completion"):
                 param.default = False
-        return super().parse_args(ctx, args)
+        rest = super().parse_args(ctx, args)
+        if not ctx.resilient_parsing:
+            _refuse_folder_that_is_gone()
+        return rest
 
-    def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]  # noqa: ANN401
+
+@dataclass
+class _Ending:
+    """How the program ends: what a command has returned, or the exit code of what went wrong."""
+
+    code: object = 0
+
+
+@contextmanager
+def _ending(args: list[str]) -> Iterator[_Ending]:
+    """Make one line of whatever goes wrong."""
+    ending = _Ending()
+    try:
         try:
-            Path.cwd()
-        except OSError as error:
-            raise UserError(
-                f"the current folder cannot be used ({error.strerror}); change to one that exists"
-            ) from error
-        return super().invoke(ctx)
+            yield ending
+        except UserError as error:
+            ending.code = _refused(error)
+        except KeyboardInterrupt:
+            print("interrupted", file=sys.stderr)
+            ending.code = INTERRUPTED
+        except Exception as error:
+            ending.code = _code_of(error, args)
+        sys.stdout.flush()
+    except OutputError as error:
+        give_up_output()
+        ending.code = PIPE_CLOSED if error.reader_is_gone else _refused(error)
+
+
+def _code_of(error: Exception, args: list[str]) -> int:
+    if "_CODRIVING_COMPLETE" in os.environ:
+        return 1  # Whatever a shell asks after TAB, words on the screen would stand in the line being typed
+    from codriving.cli.faults import one_line
+
+    if type(error).__name__ == "NoArgsIsHelpError":
+        print(error, file=sys.stderr)
+        return USER_ERROR
+    return _refused(one_line(error, args))
+
+
+def _refuse_folder_that_is_gone() -> None:
+    try:
+        Path.cwd()
+    except OSError as error:
+        raise UserError(f"the current folder cannot be used ({error.strerror}); change to one that exists") from error
 
 
 def _refused(said: object) -> int:

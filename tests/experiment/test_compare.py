@@ -115,7 +115,7 @@ def test_the_experiment_is_the_users_if_named() -> None:
         ("baselines", ["method=typo"], "unknown method 'typo'; choices: "),
         ("baselines", ["method=codriving,typo"], "unknown method 'typo'; choices: "),
         ("baselines", ["episodes=3,4"], "episodes takes one value"),
-        ("baselines", ["merge"], "cannot read 'merge'"),
+        ("baselines", ["merge"], "merge stands alone; write key and value without blanks: merge=<value>"),
     ],
 )
 def test_what_cannot_be_compared_is_refused(table: str | None, tokens: list[str], said: str) -> None:

@@ -19,7 +19,7 @@ from codriving.gym.parallel import ParallelDriving
 Make = Callable[..., ParallelDriving]
 
 SCENARIOS = list(choices("scenario"))
-KEYS = {"action_mask", "refused", "arrived", "outcome", "seed"}
+KEYS = {"action_mask", "arrived", "crashed", "involved", "outcome", "refused", "seed"}
 
 
 def tracks(trajectory: Trajectory) -> list[tuple[Any, ...]]:

@@ -120,6 +120,7 @@ def test_it_agrees_with_brute_force_over_footprints(
         for name, route, at in (("a", "east", one), ("b", "merge", two))
     )
     expected = _brute(one, two, 20)
-    assume(expected is not None and expected > 0.2)
+    # What is still coming together when the episode ends depends on how deep a touch has to be.
+    assume(expected is not None and expected > 0.2 and _brute(one, two, 19) == expected)
     (pet,) = post_encroachment_times(Trajectory(STEP, tracks), road)
     assert pet.value == pytest.approx(expected, abs=0.1)

@@ -30,6 +30,7 @@ def test_the_same_seed_gives_the_same_bytes(what: str, scenario: str, tmp_path: 
     second, others = drive(tmp_path / "second", what, f"scenario={scenario}", "workers=2")
     # An episode that is over before the first decision says nothing.
     assert all(files for name, files in first.items() if name.endswith("decisions.jsonl"))
-    assert {name.rpartition("/")[2] for name in first} == {"record.json", "trajectory.csv", "decisions.jsonl"}
+    expected = {"record.json", "trajectory.csv", "decisions.jsonl", "SHA256SUMS"}
+    assert {name.rpartition("/")[2] for name in first} == expected
     assert first == second
     assert tables == others

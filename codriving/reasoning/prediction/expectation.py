@@ -94,7 +94,7 @@ def _with_guesses(
         return gains
     (route, place), stops = vehicle.routes[0], progress_by_action(-worth(travels))
     for other, motions in expected.items():
-        if moment.vehicles[ego][other].is_cav or len(motions) == 1:
+        if moment.vehicles[ego][other].is_cav or len(motions) < 2:
             continue
         each = []
         for motion in motions:
