@@ -32,6 +32,10 @@ LANE = 4.0  # Width of a lane of a road that is not given [m]
 # share of that, what the first second brings [m/s], and at most [m]; up to 0.28 m were seen.
 STRAYS = (0.15, 0.3, 0.8)
 
+# Where lanes lie beside one another a vehicle may be steered across: of what it drives, at a speed v, it may lose
+# 8 / v^2 along the road, at the most a half, and over the width of a lane no more than that width [m].
+ACROSS = (8.0, 0.5, 4.0)
+
 NOWHERE = ("", 0.0)
 
 FEW = 8  # Plans that are looked up one by one in no time
@@ -74,6 +78,8 @@ class Forecast:
         self._profiles = {} if road_map is None else road_map.speed_profiles(model)
         self._legal = {} if road_map is None else {route: road_map.speed_limit(route) for route in road_map.routes}
         self._limited = bool(self._profiles)
+        lanes = () if road_map is None else tuple(road_map.lanes)
+        self._may_change = len({lane[:2] for lane in lanes}) < len(lanes)
         widest = LANE if road_map is None else road_map.widest
         clears = CLEARS if model.limits is None else model.limits.clears_after(widest)
         self.clears = round(clears / self.sample) + 1
@@ -186,11 +192,18 @@ class Forecast:
                 most = fastest(speed, self.times, legal, pedal)
         if self.model.limits is None:
             return Reach(least, steady, most)
-        return Reach(np.maximum(least - self._strays(least), 0.0), steady, most + self._strays(most))
+        astray = self._strays(least) + (self._across(least) if self._may_change else 0.0)
+        return Reach(np.maximum(least - astray, 0.0), steady, most + self._strays(most))
 
     def _strays(self, distance: Array) -> Array:
         share, each_second, at_most = STRAYS
         return np.asarray(np.minimum(share * distance + each_second * np.minimum(self.times, 1.0), at_most))
+
+    def _across(self, distance: Array) -> Array:
+        lateral, at_most, width = ACROSS
+        driven_each = np.diff(distance, prepend=0.0)
+        speeds = np.maximum(driven_each / self.sample, 1.0)
+        return np.asarray(np.minimum(np.cumsum(driven_each * np.minimum(lateral / speeds**2, at_most)), width))
 
     def _steady(self, speed: float, where: Where) -> Array:
         """Distance of a vehicle that keeps its speed but for curves."""
