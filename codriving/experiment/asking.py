@@ -51,6 +51,11 @@ class Asked:
             if asked := client.never_answered:
                 tell(f"{client.name}: no usable answer to any of {asked} questions; see what codriving check says")
 
+    def fall_silent(self) -> None:
+        """Say no more of requests that are still under way when a batch has ended."""
+        for client in _clients(self.models.values()):
+            client.on_retry = client.on_note = lambda _: None
+
     def usage(self) -> str:
         """Say in a few words what has been used up so far."""
         used = [client.spending.totals() for client in _clients(self.models.values())]

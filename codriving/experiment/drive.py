@@ -189,6 +189,7 @@ def drive(
             number = stop.number if isinstance(stop, StopSignal) else SIGINT
             raise Interrupted(folder.path, finished, len(units), number) from None
         finally:
+            models.fall_silent()
             folder.clean()
         for note in merged_notes(resolved[name] for name in dict.fromkeys(unit.cell for unit in missing)):
             print(note, file=sys.stderr)
