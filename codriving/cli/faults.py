@@ -61,7 +61,7 @@ def _of_usage(error: TyperException, args: list[str]) -> str:
 
 
 def _unforeseen(error: Exception) -> str:
-    """What nobody foresaw: a fault of a plug-in or of this program, whose traceback goes into a file."""
+    """An unforeseen fault of a plug-in or of this program, whose traceback goes into a file."""
     text = _scrubbed("".join(traceback.format_exception(error)))
     try:
         handle, name = tempfile.mkstemp(prefix="codriving-fault-", suffix=".txt", text=True)

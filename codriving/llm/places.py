@@ -7,7 +7,7 @@ from typing import Any
 _OWN = ("reasoning_content", "reasoning", "thinking", "reasoning_details", "thinking_blocks")
 _SPECIFIC = "provider_specific_fields"
 _NO_PLACES = ("role", "refusal", "function_call", "name", "id", "type", "annotations", "citations", _SPECIFIC)
-_THOUGHTS = ("thinking", "reasoning", "thought", "redacted_thinking")  # Types of parts that nobody is told
+_THOUGHTS = ("thinking", "reasoning", "thought", "redacted_thinking")  # Types of parts that are not meant for the user
 
 
 def places_of(message: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

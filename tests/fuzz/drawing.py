@@ -1,4 +1,4 @@
-"""Command lines drawn by a seed: every command, with settings that hold and settings that nobody should write."""
+"""Command lines drawn by a seed: every command, with settings that hold and settings that do not."""
 
 import random
 import string

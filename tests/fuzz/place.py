@@ -1,4 +1,4 @@
-"""A folder in which a command line is tried: a small run, a memory, and files that nobody would want to read."""
+"""A folder in which a command line is tried: a small run, a memory, and files that are hard to read."""
 
 import sqlite3
 from pathlib import Path

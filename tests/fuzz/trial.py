@@ -33,7 +33,7 @@ CODES = (0, 1, 2)
 FORBIDDEN = re.compile(
     r"Traceback|unforeseen fault|Lexer|Exception\b|HydraException|OmegaConf|Warning:|full_key|Exception ignored"
 )
-"""What is never on the screen: words of libraries, and faults that nobody foresaw."""
+"""What is never on the screen: words of libraries, and unforeseen faults."""
 
 
 @dataclass(frozen=True)

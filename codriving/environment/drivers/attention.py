@@ -8,6 +8,7 @@ import numpy as np
 from highway_env.vehicle.objects import RoadObject
 from numpy.typing import NDArray
 
+from codriving.datatypes import Kind
 from codriving.environment.drivers.style import DriverTraits
 from codriving.environment.traffic.right_of_way import (
     OVERSHOOT,
@@ -32,7 +33,7 @@ TIMES = np.arange(0.25, 6.01, 0.25)  # Times at which a driver looks whether it 
 LONGEST = 3.0  # Reactions take no longer [s]
 
 
-class Glimpse:
+class DelayedVehicle:
     """A vehicle as it was seen some time ago, where it would be if it had gone straight on at that speed."""
 
     __slots__ = ("LENGTH", "WIDTH", "heading", "position", "speed")
@@ -64,7 +65,7 @@ class Past:
         if ago == 0:
             return list(vehicles)
         then = self._steps[-ago]
-        return [Glimpse(v, *then[v], ago * self._dt) if v in then and v is not driver else v for v in vehicles]
+        return [DelayedVehicle(v, *then[v], ago * self._dt) if v in then and v is not driver else v for v in vehicles]
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +168,7 @@ def look_round(road_map: RoadMap, vehicles: Sequence[RouteFollower], every: floa
         spot = believed(road_map, vehicle)
         around.append((vehicle, spot, motions(vehicle, TIMES) - vehicle.s + spot[1]))
     for vehicle in vehicles:
-        judgement: Judgement | None = getattr(vehicle, "judgement", None)
+        judgement: Judgement | None = vehicle.judgement if vehicle.kind is Kind.HDV else None
         if judgement is None:
             continue
         waited = vehicle.waits_at is not None
