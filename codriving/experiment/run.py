@@ -168,19 +168,26 @@ def report(finished: Finished, again: str) -> int:
     if finished.failed:
         first = finished.failed[0]
         where = f"{episodes}/{first.unit.cell}/{first.unit.seed}/error.txt"
-        print(f"{len(finished.failed)} episodes ended in an error, the first with {first.message} (see {where}).")
+        ended = f"{_counted(len(finished.failed), 'episode')} ended in an error"
+        print(f"{ended}, the first with {first.message} (see {where}).")
         print(f"Repeat them with: {again}")
     if finished.changed:
         print(
             f"Kept episodes may be of other versions than new ones: since the run began, {', '.join(finished.changed)}."
         )
     if finished.filmed:
-        print(f"{finished.filmed} films made, replay.mp4 beside the record of each episode.")
+        print(f"{_counted(finished.filmed, 'film')} made, replay.mp4 beside the record of each episode.")
     if finished.unfilmed:
         unit = finished.unfilmed[0]
         where = f"{episodes}/{unit.cell}/{unit.seed}/replay-error.txt"
-        print(f"{len(finished.unfilmed)} episodes could not be filmed (see {where}). Try again with: {again}")
+        print(
+            f"{_counted(len(finished.unfilmed), 'episode')} could not be filmed (see {where}). Try again with: {again}"
+        )
     if finished.left_out:
         print(f"{finished.left_out} more episodes in this run folder were not asked for and are left out of the table.")
     print(f"Run folder: {finished.folder}")
     return 1 if finished.failed or finished.unfilmed else 0
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

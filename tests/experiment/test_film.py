@@ -118,7 +118,7 @@ def test_a_bug_in_the_drawing_leaves_its_traceback_and_the_record(
 def test_an_episode_without_a_step_needs_no_film(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     crowded = ("scenario.cavs=12", "scenario.hdvs=[6,6]", "scenario.start=[20,75]", "seed=0")
     folder = drive(tmp_path, "episodes=1", "render=true", *crowded, code=1)
-    assert "1 episodes ended in an error" in capsys.readouterr().out
+    assert "1 episode ended in an error" in capsys.readouterr().out
     assert films(folder) == []
 
 

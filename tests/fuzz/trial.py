@@ -61,7 +61,7 @@ class Trial:
             return f"{len(errors)} lines of error: {self.err[-300:]!r}"
         if self.code == 2 and not usage and not self.err.splitlines()[-1].startswith("error: "):
             return f"ends without an error: {self.err[-300:]!r}"
-        if self.code == 1 and "episodes ended in an error" in self.out:
+        if self.code == 1 and " ended in an error" in self.out:
             return f"episodes failed: {self.out[-400:]!r}"
         return "a very long line" if any(len(text) > 3000 for text in errors) else ""
 

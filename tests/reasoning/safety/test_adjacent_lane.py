@@ -177,9 +177,25 @@ def test_how_far_a_faster_vehicle_on_the_far_side_is_looked_for(highway: Junctio
         assert _goes(thoughts.safety_input("CAV1"), Action.LANE_RIGHT) is goes
 
 
+def test_of_a_cav_on_the_far_side_the_speed_that_it_is_going_to_drive_counts_too(highway: Junction) -> None:
+    # All drive 20 m/s now; the one behind is going to drive 25 m/s, or the one ahead 15 m/s: 8 m + 5 m + 3.125 m.
+    for mine, theirs in ((25.0, 20.0), (20.0, 15.0)):
+        for apart, goes in ((16.0, False), (16.2, True)):
+            one = car("CAV1", "lane-0", 300.0, 20.0, target=mine)
+            other = car("CAV2", "lane-2", 300.0 + apart, 20.0, target=theirs)
+            assert _goes(highway.thoughts(one, other).safety_input("CAV1"), Action.LANE_RIGHT) is goes
+
+
 def test_a_human_driver_on_the_far_side_might_change_there_as_well(highway: Junction) -> None:
     for place, removed in ((296.0, {Action.LANE_RIGHT}), (304.0, {Action.LANE_RIGHT}), (320.0, set())):
         assert set(check_adjacent(among(highway, human(3, place)))) == removed
+
+
+def test_a_human_driver_whose_acceleration_is_not_known_is_taken_to_be_calm(merge: Junction) -> None:
+    world = merge.world(car("CAV1", "ramp", 240.0, 15.0, offset=0.0), car("HDV1", "main-0", 240.0, 15.0))
+    given = merge.think(world, SensedStates()).safety_input("CAV1")
+    assert [n.acceleration for n in given.scene.neighbours] == [None]
+    assert _goes(given, Action.LANE_LEFT)
 
 
 def test_who_has_to_change_does_not_wait_for_human_drivers_whom_nothing_urges(merge: Junction) -> None:
