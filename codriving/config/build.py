@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 from codriving.config.plugins import refuse_missing
-from codriving.config.schema import check_root, texts, unknown
+from codriving.config.schema import check_root, texts, unknown, value_shown
 from codriving.config.target import find_class
 from codriving.datatypes import (
     CaseMemory,
@@ -67,7 +67,7 @@ def targets(node: object) -> Iterator[str]:
 
 def _build(node: object, expected: Sequence[type], key: str, plugins: Sequence[str], given: Given) -> Any:  # noqa: ANN401
     if not isinstance(node, Mapping) or TARGET not in node:
-        raise ConfigError(f"{key or 'the node'} must hold a {TARGET}, got {node!r}")
+        raise ConfigError(f"{key or 'the node'} must hold a {TARGET}, got {value_shown(node)}")
     cls = find_class(node[TARGET], key, plugins)
     if not any(one in cls.__mro__ for one in expected):
         names = " or ".join(one.__name__ for one in expected) or "a plain value"
@@ -98,7 +98,7 @@ def _build(node: object, expected: Sequence[type], key: str, plugins: Sequence[s
         try:
             arguments[name] = coerce(made, annotation)
         except MismatchError as err:
-            raise ConfigError(f"{_join(key, name)} must be {err}, got {value!r:.200}") from err
+            raise ConfigError(f"{_join(key, name)} must be {err}, got {value_shown(value)}") from err
     try:
         return cls(**arguments, **handed)
     except ConfigError as err:

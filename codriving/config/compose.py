@@ -15,6 +15,7 @@ from codriving.errors import ConfigError
 
 _VARIABLE = re.compile(r"[A-Z_][A-Z0-9_]*")
 _PASSWORD = re.compile(r"\w+://[^/]*@")
+_NO_GROUP = re.compile(r"Could not override '([^'@]+)'")
 
 
 def compose(overrides: Sequence[str], config_dir: Path | None = None) -> dict[str, Any]:
@@ -69,6 +70,11 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
     except YAMLError as err:
         raise ConfigError(f"{one_line(err)}; mend the YAML there") from err
     except (HydraException, OmegaConfBaseException) as err:
+        if group := _NO_GROUP.match(str(err)):
+            key = group[1].replace("/", ".")
+            raise ConfigError(
+                f"there is no group {group[1]}; a key of a group is written with dots: {key}=..."
+            ) from err
         raise ConfigError(one_line(err)) from err
     except ConfigError:
         raise

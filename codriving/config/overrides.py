@@ -6,9 +6,10 @@ import shlex
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
+from unicodedata import digit
 
 from codriving.config.choices import LISTED, choices
-from codriving.config.schema import GROUPS, ROOT, SHOWN
+from codriving.config.schema import GROUPS, ROOT, SHOWN, looks_secret, value_shown
 from codriving.errors import ConfigError
 
 KEY_VALUE = "write key=value, for instance scenario=intersection or episodes=20"
@@ -19,12 +20,6 @@ _KEY = re.compile(r"\+{0,2}[A-Za-z_][\w./@:-]*", re.ASCII)
 _HOME = re.compile(r"(?s)\A([^=]*=)(~(?:/.*)?)\Z")
 
 _SECRET = re.compile(r"key|token|secret|password|credential|llm\.(extra|headers)", re.IGNORECASE)
-
-# A key in the query of an address or in a mapping, user and password in an address, and keys of well-known providers.
-_LOOKS_SECRET = re.compile(
-    r"(key|token|secret|password|credential)s?[\"']?\s*[=:]|://[^/\s]*@|\b(sk|gsk|hf|ghp|AIza|xai)[-_]?\w{12,}",
-    re.IGNORECASE,
-)
 
 
 def prepare(token: str, config_dir: Path | None = None) -> str:
@@ -68,7 +63,7 @@ def shown(token: str) -> str:
 def may_be_secret(token: str) -> bool:
     """Tell whether an override may hold a secret, by the name of its key or the look of its value."""
     key, _, value = token.partition("=")
-    return _SECRET.search(key) is not None or _LOOKS_SECRET.search(value) is not None
+    return _SECRET.search(key) is not None or looks_secret(value)
 
 
 def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not typed
@@ -100,6 +95,9 @@ def parse(token: str) -> Any:  # noqa: ANN401 - Hydra's own class, which is not 
         raise ConfigError(f"cannot read {token!r:.200}; write {key}={value.lstrip('=') or '<value>'}")
     if any(not part.strip() for part in value.split(",")) and value and value[0] not in "[{(\"'":
         raise ConfigError(f"cannot read {token!r:.200}: a value is missing beside a comma; several are {key}=a,b")
+    if value.isdigit() and not value.isascii():
+        digits = "".join(str(digit(character)) for character in value[:20])
+        raise ConfigError(f"cannot read {token!r:.200}; numbers are written with the digits 0 to 9: {key}={digits}")
     quoted = value.replace("\\", "\\\\").replace('"', '\\"')
     text = f'"{quoted}"'
     if value and value[0] not in "[{(\"'" and _reads(f"{key}={text}") == value:
@@ -181,6 +179,8 @@ def check_choice(group: str, value: object, config_dir: Path | None = None) -> N
     if value is None and group == "experiments":
         return
     if isinstance(value, list | dict):
-        raise ConfigError(f"{group} takes names without brackets, got {value!r}; choices: {', '.join(known) or 'none'}")
+        raise ConfigError(
+            f"{group} takes names without brackets, got {value_shown(value)}; choices: {', '.join(known) or 'none'}"
+        )
     if str(value) not in known:
-        raise ConfigError(f"unknown {group} {str(value)!r}; choices: {', '.join(known) or 'none'}")
+        raise ConfigError(f"unknown {group} {value_shown(str(value))}; choices: {', '.join(known) or 'none'}")

@@ -9,6 +9,24 @@ from typing import Any
 
 from codriving.errors import ConfigError
 
+# A key in the query of an address or in a mapping, user and password in an address, and keys of well-known providers.
+_LOOKS_SECRET = re.compile(
+    r"(key|token|secret|password|credential)s?[\"']?\s*[=:]|://[^/\s]*@|\b(sk|gsk|hf|ghp|AIza|xai)[-_]?\w{12,}",
+    re.IGNORECASE,
+)
+
+
+def looks_secret(text: str) -> bool:
+    """Tell whether a value may be a secret by its look."""
+    return _LOOKS_SECRET.search(text) is not None
+
+
+def value_shown(value: object) -> str:
+    """Give a value for a message, if it does not look like a secret."""
+    text = repr(value)
+    return "a value that is not shown" if looks_secret(text) else text if len(text) <= 200 else f"{text[:200]}..."
+
+
 # The choices that the command line names; one YAML a choice.
 GROUPS = ("scenario", "method", "executor", "cda", "llm", "memory", "metrics", "launcher", "limits", "drivers")
 
@@ -106,7 +124,7 @@ def check_root(resolved: Mapping[str, Any]) -> None:
         raise ConfigError(f"{missing[0]} is missing from the config")
     for name, key in ROOT.items():
         if not key.allows(resolved[name]):
-            raise ConfigError(f"{name} must be {key.rule}, got {resolved[name]!r}")
+            raise ConfigError(f"{name} must be {key.rule}, got {value_shown(resolved[name])}")
     if alien := [name for name in resolved["plugins"] if name.partition(".")[0] in sys.stdlib_module_names]:
         raise ConfigError(
             f"plugins must name packages of yours, and {alien[0]} is one of Python's standard library; give it another "
@@ -120,4 +138,4 @@ def check_root(resolved: Mapping[str, Any]) -> None:
                 f"{name} has no _target_, so no class would read {', '.join(map(str, node)) or 'it'}{cure}"
             )
         if not (isinstance(node, Mapping) or (node is None and name in OPTIONAL)):
-            raise ConfigError(f"{name} must name one of its YAML files or hold a _target_, got {node!r}")
+            raise ConfigError(f"{name} must name one of its YAML files or hold a _target_, got {value_shown(node)}")

@@ -18,7 +18,7 @@ INTERACTIONS = "interactions"  # The word for how many episodes to learn from
 
 FIRST_SEED = 20_000  # Seed of the first episode to learn from, if the user names none
 
-TABLE_SEEDS = range(1000)  # Seeds that tables are made with
+TABLE_SEEDS = (range(10_000), range(100_000, 110_000))  # Seeds that tables are made with
 
 MOST = 10_000  # Most interactions of one command
 
@@ -38,10 +38,10 @@ def build_points(overrides: Sequence[str], config_dir: Path | None = None) -> li
     base += [] if "seed" in named else [f"seed={FIRST_SEED}"]
     points = [Point((*base, *p.overrides), p.swept, p.removed) for p in expand(others, config_dir)]
     seeds = [seed for t in others if keys[t] == "seed" and (seed := count_of(t.partition("=")[2])) is not None]
-    if any(seed in TABLE_SEEDS for seed in seeds):
+    if any(seed < taken.stop and taken.start < seed + count for seed in seeds for taken in TABLE_SEEDS):
         raise ConfigError(
-            f"seed must be {TABLE_SEEDS.stop} or more to learn from, got {seeds[-1]}: smaller ones are for tables, and "
-            "what was learnt on them would be tested on them"
+            f"seeds {seeds[-1]} to {seeds[-1] + count - 1} are no seeds to learn from: those below 10000, and 100000 "
+            f"to 109999, are for tables, and what was learnt on them would be tested on them; choose seed={FIRST_SEED}"
         )
     return points
 

@@ -154,6 +154,7 @@ def test_a_users_mistake_is_one_line_and_exit_code_2(args: tuple[str, ...], said
     assert result.stdout == ""
     assert result.stderr.startswith(f"error: {said}")
     assert result.stderr.count("\n") == 1
+    assert "hunter2" not in result.stderr
 
 
 def test_a_bug_is_one_line_that_names_the_file_of_its_traceback(
@@ -182,6 +183,22 @@ def test_a_bug_is_one_line_that_names_the_file_of_its_traceback(
         (("run", "-m", "seed=1"), "-m is not needed: values with commas make a sweep, for instance scenario=intersec"),
         (("run", "episodes", "5"), "episodes stands alone; write key and value without blanks: episodes=5"),
         (("run", "episodes:5"), "episodes:5 is no setting; write key and value with a sign between: episodes=5"),
+        (("run", "episodes=٣"), "cannot read 'episodes=٣'; numbers are written with the digits 0 to 9: episodes=3"),
+        (("run", "seed=²⁰"), "cannot read 'seed=²⁰'; numbers are written with the digits 0 to 9: seed=20"),
+        (("run", "llm/foo=1"), "there is no group llm/foo; a key of a group is written with dots: llm.foo=..."),
+        (("run", "+memory/embedder=x"), "there is no group memory/embedder; a key of a group is written with dots: "),
+        (
+            (
+                "run",
+                "llm=custom",
+                "llm.model=openai/m",
+                "llm.api_base=http://127.0.0.1:9/v1",
+                "llm.extra=sk-hunter2canary00",
+            ),
+            "llm.extra must be a mapping, got a value that is not shown",
+        ),
+        (("run", "method=sk-hunter2canary00"), "unknown method"),
+        (("run", "episodes=sk-hunter2canary00"), "episodes must be "),
         (("run", "episodes==5"), "cannot read 'episodes==5'; write episodes=5"),
         (("run", "episodes", "=", "5"), "episodes stands alone; write key and value without blanks: episodes=5"),
         (("compare", "baselines", "episodes=", "5"), "episodes stands alone; write key and value without blanks: epis"),

@@ -92,7 +92,7 @@ def test_unknown_key_of_the_root(plus: str) -> None:
         ("environment.scenario.cavs=3", "environment.scenario.cavs is scenario itself; set scenario.cavs instead"),
         ("output=${nothing}", "Interpolation key 'nothing' not found"),
         ("experiments=nothing", "unknown experiments 'nothing'; choices: "),
-        ("nested/group=x", "Could not override 'nested/group'"),
+        ("nested/group=x", "there is no group nested/group; a key of a group is written with dots: nested.group=..."),
     ],
 )
 def test_what_is_refused(override: str, start: str) -> None:

@@ -37,8 +37,10 @@ def test_a_build_learns_online_on_seeds_of_its_own() -> None:
         (["interactions=0"], "interactions must be a whole number"),
         (["episodes=3"], "takes interactions=N"),
         (["memory=off"], "learns with memory=online"),
-        (["seed=0"], "seed must be 1000 or more to learn from, got 0"),
-        (["seed=999"], "seed must be 1000 or more"),
+        (["seed=0"], "seeds 0 to 19 are no seeds to learn from"),
+        (["seed=9999", "interactions=1"], "seeds 9999 to 9999 are no seeds to learn from"),
+        (["seed=99999", "interactions=2"], "seeds 99999 to 100000 are no seeds to learn from"),
+        (["seed=109999", "interactions=1"], "choose seed=20000"),
     ],
 )
 def test_what_cannot_be_built_is_refused(overrides: list[str], said: str) -> None:

@@ -79,9 +79,13 @@ def _sandbox() -> "Environment":
     from jinja2.sandbox import ImmutableSandboxedEnvironment
 
     class Sandbox(ImmutableSandboxedEnvironment):
-        intercepted_binops = frozenset(["*", "**"])
+        intercepted_binops = frozenset(["*", "**", "%"])
 
         def call_binop(self, context: Any, operator: str, left: Any, right: Any) -> Any:  # noqa: ANN401 - any values
+            if operator == "%" and not isinstance(left, (int, float)):
+                raise SecurityError("% on a text is not worked out here; write the parts one after another")
+            if operator == "%":
+                return super().call_binop(context, operator, left, right)
             sizes = [abs(value) if isinstance(value, (int, float)) else len(value) for value in (left, right)]
             repeats = not (isinstance(left, (int, float)) and isinstance(right, (int, float)))
             if (operator == "**" and max(sizes) > _POWER) or (repeats and sizes[0] * sizes[1] > _REPEATED):

@@ -160,6 +160,7 @@ def test_template_can_be_replaced_alone(name: str, tmp_path: Path) -> None:
         ("{% for i in range(999 * 999 * 999) %}{% endfor %}", "Range too big"),
         ("{{ 'a' * 20000000000 }}", "* would make something too large"),
         ("{{ ([1] * 1000) * 1000 }}", "* would make something too large"),
+        ("{{ '%999999999d' % 1 }}", "% on a text is not worked out"),
         ("{{ 10 ** 10 ** 8 }}", "** would make something too large"),
     ],
 )
