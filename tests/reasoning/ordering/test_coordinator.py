@@ -154,6 +154,18 @@ def test_the_order_stays_while_nothing_changes(junction: Junction) -> None:
         assert ahead(-5 * gain).negotiate(coordinator).first_of("CAV1", "CAV2") != first
 
 
+def test_how_much_earlier_the_other_one_has_to_be_there_before_an_order_is_changed(junction: Junction) -> None:
+    # At 8 m/s CAV1 would be first from 63.9 m on if nothing were agreed, and turns the agreement round at 65.9 m.
+    for place, first in ((63.9, "CAV1"), (65.8, "CAV2"), (66.0, "CAV1")):
+        coordinator = RuleCoordinator(False)
+        other = car("CAV2", "west-east", 64.0, 8.0)
+        if place > 64:
+            agreed = junction.thoughts(car("CAV1", "south-north", 58.0, 8.0), other).negotiate(coordinator)
+            assert agreed.first_of("CAV1", "CAV2") == "CAV2"
+        thoughts = junction.thoughts(car("CAV1", "south-north", place, 8.0), other)
+        assert thoughts.negotiate(coordinator).first_of("CAV1", "CAV2") == first
+
+
 def test_no_vehicle_in_conflict_gives_an_empty_order(junction: Junction) -> None:
     order = negotiated(junction, car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "north-south", 60.0, 8.0))
     assert order.sequence == order.precedences == ()
