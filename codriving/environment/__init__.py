@@ -1,21 +1,12 @@
 """Scenario to world state to step: the paper's environment module, and the only door to highway-env."""
 
-from typing import TYPE_CHECKING
+from codriving.environment.highway_env_parts import import_parts
 
-from codriving.environment.scenarios.pace import TOP_SPEED, Pace
-from codriving.environment.scenarios.placement import Crowd, place
-from codriving.environment.scenarios.shapes import bend, turned
+import_parts()
 
-if TYPE_CHECKING:
-    from codriving.environment.environment import Environment
+from codriving.environment.environment import Environment  # noqa: E402 - imports highway-env
+from codriving.environment.scenarios.pace import TOP_SPEED, Pace  # noqa: E402
+from codriving.environment.scenarios.placement import Crowd, place  # noqa: E402
+from codriving.environment.scenarios.shapes import bend, turned  # noqa: E402
 
 __all__ = ["TOP_SPEED", "Crowd", "Environment", "Pace", "bend", "place", "turned"]
-
-
-def __getattr__(name: str) -> object:
-    """Import highway-env, which takes a second, only where vehicles are driven."""
-    if name != "Environment":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from codriving.environment.environment import Environment
-
-    return Environment

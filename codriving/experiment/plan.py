@@ -58,7 +58,7 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
     first = configs[0]
     launcher = build(first["launcher"], Launcher, "launcher", first["plugins"])
     if not _is_complete(first, len(configs)):
-        # The simulator's import takes a second: let it pass while the configs are checked here.
+        # Imports take a second: let them pass while the configs are checked here.
         launcher.prepare(first["workers"], first["episodes"] * len(configs), modules_to_preload(configs))
     validated(points, configs)
     configs = each_cell(points, configs, pinned)
