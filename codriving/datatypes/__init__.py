@@ -29,6 +29,7 @@ from codriving.datatypes.parts import (
     Simulator,
 )
 from codriving.datatypes.record import (
+    BLOCKER,
     Collision,
     Ending,
     EpisodeRecord,
@@ -71,6 +72,7 @@ from codriving.datatypes.situation import (
 from codriving.datatypes.world import Action, DrivingModel, Intent, Kind, Scene, Start, VehicleState, WorldState
 
 __all__ = [
+    "BLOCKER",
     "Account", "Action", "ActionAssessment", "Approach", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat",
     "Collision", "Conflict", "Cooperation", "Decision", "Deliberation", "Description", "Drivers", "DrivingModel",
     "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience", "Instance", "Intent", "Interaction", "Kind",

@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+# Style of who stands in the way of others because the scene has it so; measures of human drivers leave it out.
+BLOCKER = "blocker"
+
 
 @dataclass(frozen=True, slots=True)
 class Track:

@@ -97,6 +97,7 @@ class Start:
     route: str
     position: float  # Arc length along the route [m]
     speed: float  # Initial speed [m/s]
+    stands: float = 0.0  # How long a human driver stands there before it drives [s]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,11 @@
 """Our own metrics: every quantity by its definition, undefined where it does not apply."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
-from codriving.datatypes import Ending, Kind, Metric, NamedNumber, Outcome, Score, Trajectory, TravelScore
+from codriving.datatypes import BLOCKER, Ending, Kind, Metric, NamedNumber, Outcome, Score, Trajectory, TravelScore
 from codriving.errors import ConfigError
 from codriving.geometry import TRUE, RoadMap
 from codriving.metrics.comfort import hard_braking, jerk, reversals, stops
@@ -56,9 +57,10 @@ class StandardMetrics(Metric):
         self, trajectory: Trajectory, road: RoadMap, nearest: Closest, success: bool
     ) -> tuple[NamedNumber, ...]:
         step = trajectory.step
-        cavs, hdvs = ([t for t in trajectory.tracks if t.kind is kind] for kind in (Kind.CAV, Kind.HDV))
+        driving = [track for track in trajectory.tracks if track.style != BLOCKER]
+        cavs, hdvs = ([t for t in driving if t.kind is kind] for kind in (Kind.CAV, Kind.HDV))
         # How much time was lost is known once all have arrived.
-        driven = drives(trajectory, road) if success else ()
+        driven = drives(replace(trajectory, tracks=tuple(driving)), road) if success else ()
         cav_delay, hdv_delay = ([d.delay for d in driven if d.kind is kind] for kind in (Kind.CAV, Kind.HDV))
         return (
             NamedNumber("ttc_min", nearest.ttc, "s", "higher"),

@@ -40,6 +40,10 @@ HOW_A_MODEL_IS_ASKED = (
 _CAME_LATER: dict[str, Any] = {"label": None, "max_tokens_field": "max_tokens", "system_role": "system"}
 _CAME_LATER |= {"extra": {}, "headers": {}}
 
+# The same for ``scenario``: with these values it is the scene of before.
+_SCENES: dict[str, Any] = {"pattern": "random", "row_gap": 14.0, "turns": ["left", "straight", "right"]}
+_SCENES |= {"blocked_exit": 0.0, "blocked_room": 7.0}
+
 # Groups whose choice stands for a class; all choices of ``cda`` are one class, so that their values tell them.
 CHOICES = ("scenario", "method", "executor", "llm", "memory")
 
@@ -98,9 +102,9 @@ def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     for key, names in dropped.items():
         if isinstance(node := values.get(key), Mapping):
             values[key] = {name: value for name, value in node.items() if name not in names}
-    if isinstance(llm := values.get("llm"), Mapping):
-        later = _CAME_LATER.items()
-        values["llm"] = {name: value for name, value in llm.items() if (name, value) not in later}
+    for key, later in (("llm", _CAME_LATER), ("scenario", _SCENES)):
+        if isinstance(node := values.get(key), Mapping):
+            values[key] = {name: value for name, value in node.items() if (name, value) not in later.items()}
     return values
 
 

@@ -42,7 +42,9 @@ def node(scenario: str) -> dict[str, Any]:
 
 
 def written(value: Any) -> str:
-    return f"[{', '.join(f'{v:g}' for v in value)}]" if isinstance(value, list) else f"{value:g}"
+    if isinstance(value, list):
+        return f"[{', '.join(written(v) for v in value)}]"
+    return value if isinstance(value, str) else "null" if value is None else f"{value:g}"
 
 
 @pytest.mark.parametrize("scenario", choices("scenario"))
@@ -56,8 +58,13 @@ def test_every_key_stands_on_the_page_with_its_default(scenario: str) -> None:
     [(scenario, key, span) for scenario in choices("scenario") for key, (_, span) in documented(scenario).items()],
 )
 def test_what_is_beyond_the_range_is_refused_with_the_range(scenario: str, key: str, span: str) -> None:
-    low, high = (float(end) for end in span.split(" to "))
     default = node(scenario)[key]
+    if " to " not in span:
+        value = ["backwards"] if isinstance(default, list) else "backwards"
+        with pytest.raises(ConfigError, match=rf"scenario\.{key} must be .*one of {span}, got"):
+            build({**node(scenario), key: value}, object, "scenario")
+        return
+    low, high = (float(end) for end in span.split(" to "))
     for beyond in (low - 1, high + 1):
         number = round(beyond) if key in ("cavs", "hdvs", "lanes") else beyond
         value = [number] * len(default) if isinstance(default, list) else number

@@ -1,6 +1,7 @@
 """Our metrics as a whole."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -81,3 +82,21 @@ def test_curves_are_measured_along_the_way_driven(road: RoadMap, drive: Drive) -
     s = np.linspace(0, path.length, len(TIMES))
     (score,) = travels(Trajectory(STEP, (drive("a", "merge", s, arrived=TIMES[-1]),)), road)
     assert score.velocity == pytest.approx(path.length / TIMES[-1], rel=1e-3)
+
+
+def test_who_stands_in_the_way_by_the_scene_is_no_measure_of_human_drivers(road: RoadMap, drive: Drive) -> None:
+    cav, human = drive("a", "east", 6 * TIME, arrived=15.0), drive("h", "north", 5 * TIME, kind=Kind.HDV)
+    place = np.where(TIME < 10, 30.0, 30.0 + 5 * (TIME - 10) ** 2)
+    stands = drive("s", "merge", place, kind=Kind.HDV)
+    alone = {track.id: np.arange(0, 130, 1.0) for track in (cav, human, stands)}
+    outcome = Outcome(Ending.SUCCESS, 15.0, {"a": 15.0})
+
+    def numbers(*tracks: Track) -> dict[str, float | None]:
+        score = StandardMetrics().score(Trajectory(0.1, tracks, alone), outcome, road)
+        return {number.name: number.value for number in score.numbers}
+
+    without, counted = numbers(cav, human), numbers(cav, human, stands)
+    left_out = numbers(cav, human, replace(stands, style="blocker"))
+    mean_over_people = ("jerk_hdvs", "delay_hdvs", "fairness", "time_all")
+    assert {name: left_out[name] for name in mean_over_people} == {name: without[name] for name in mean_over_people}
+    assert all(counted[name] != without[name] for name in mean_over_people)

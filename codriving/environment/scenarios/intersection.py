@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from codriving.datatypes import Arc, Kind, Lane, LaneId, Line, Point, Road, Route, Start, Straight, Turn
-from codriving.environment.scenarios.placement import PlacedScenario
+from codriving.datatypes import Arc, Lane, LaneId, Line, Point, Road, Route, Straight, Turn
+from codriving.environment.scenarios.junction import JunctionScenario
 from codriving.environment.scenarios.shapes import turned
 from codriving.errors import require_range
 from codriving.geometry import lane_starts
@@ -67,26 +67,22 @@ def _routes(lanes: tuple[Lane, ...], exit_distance: float) -> tuple[Route, ...]:
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
-class Intersection(PlacedScenario):
+class Intersection(JunctionScenario):
     """Several CAVs among human drivers, each with a random leg, destination, place and speed."""
 
     name = "intersection"
 
     leg_length: float
-    exit_distance: float
 
     def check(self) -> None:
         require_range("leg_length", self.leg_length, 40, 500, " m")
         require_range("exit_distance", self.exit_distance, 5, self.leg_length - 10, " m")
         self.crowd.check(12, 12, self.leg_length - 15, "15 m before the junction at the latest", SPEED_LIMIT)
         self.crowd.require_room(len(LEGS), f"{len(LEGS)} legs")
+        self.check_scene()
 
     @cached_property
     def road(self) -> Road:
         """The junction, with the right of way of highway-env: east-west before north-south."""
         lanes = _lanes(self.leg_length)
         return Road("intersection", lanes, _routes(lanes, self.exit_distance), regulated=True)
-
-    def draw(self, rng: np.random.Generator, name: str, kind: Kind) -> Start:
-        routes = self.road.routes
-        return self.crowd.start_on(rng, name, kind, routes[int(rng.integers(len(routes)))].id)

@@ -14,6 +14,8 @@ from codriving.errors import ScenarioError, require_interval, require_range
 DRAWS_PER_VEHICLE = 200
 SCENES = 200
 
+Suits = Callable[[Sequence[Start]], bool]  # Whether a scene may be as it was drawn
+
 Draw = Callable[[np.random.Generator, str, Kind], Start]  # Draws one vehicle, given its name and who drives it
 
 LENGTH = 5.0  # Vehicle length [m]
@@ -53,9 +55,12 @@ class Crowd:
     @property
     def room(self) -> int:
         """Largest number of vehicles that can start on one lane, even if all draws fall as they should."""
-        slowest = min(self.cav_speed[0], self.hdv_speed[0])
-        apart = max(self.spacing, LENGTH + braking_gap(slowest, slowest))
+        apart = self.apart(min(self.cav_speed[0], self.hdv_speed[0]))
         return 1 + math.floor((self.start[1] - self.start[0]) / apart)
+
+    def apart(self, speed: float) -> float:
+        """Smallest distance between two starts on one lane at the same speed [m]."""
+        return max(self.spacing, LENGTH + braking_gap(speed, speed))
 
     def require_room(self, lanes: int, where: str, cavs: int | None = None, hdvs: int | None = None) -> None:
         """Refuse more vehicles than can start, even if all draws fall as they should.
@@ -94,11 +99,13 @@ def place(
     draw: Draw,
     spot: Spot | None = None,
     loops: Mapping[Hashable, float] | None = None,
+    suits: Suits | None = None,
 ) -> Scene:
     """Draw a whole scene.
 
     Args:
         loops: Length of each lane that runs in a circle [m].
+        suits: What has to hold of all starts; None takes every scene.
 
     Raises:
         ScenarioError: If the vehicles do not fit.
@@ -118,7 +125,7 @@ def place(
                     break
             else:
                 break
-        if len(starts) == len(names):
+        if len(starts) == len(names) and (suits is None or suits(starts)):
             return Scene(seed=seed, starts=tuple(starts))
     raise ScenarioError(
         f"{road.name} with starts {crowd.start[0]:g} to {crowd.start[1]:g} m: {crowd.cavs} CAVs and {number} HDVs "

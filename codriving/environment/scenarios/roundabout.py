@@ -21,7 +21,8 @@ from codriving.datatypes import (
     Straight,
     Turn,
 )
-from codriving.environment.scenarios.placement import PlacedScenario, place
+from codriving.environment.scenarios.junction import JunctionScenario
+from codriving.environment.scenarios.placement import Suits, place
 from codriving.environment.scenarios.shapes import turned
 from codriving.errors import require, require_range
 from codriving.geometry import PLANNING
@@ -118,7 +119,7 @@ class Ring:
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
-class Roundabout(PlacedScenario):
+class Roundabout(JunctionScenario):
     """Several CAVs among human drivers, some of whom are on the ring already."""
 
     name = "roundabout"
@@ -127,7 +128,6 @@ class Roundabout(PlacedScenario):
     radius: float
     entry_radius: float
     leg_length: float
-    exit_distance: float
 
     def check(self) -> None:
         require_range("on_ring", self.on_ring, 0, 1)
@@ -143,13 +143,14 @@ class Roundabout(PlacedScenario):
         require_range("exit_distance", self.exit_distance, 5, self._ring.bend + self.leg_length - 10, " m")
         self.crowd.check(12, 12, self.leg_length - 15, "15 m before the end of the leg at the latest", SPEED_LIMIT)
         self.crowd.require_room(len(LEGS), f"{len(LEGS)} legs", hdvs=None if self.on_ring < 1 else 0)
+        self.check_scene()
 
     @cached_property
     def road(self) -> Road:
         """The ring and its legs; vehicles on the ring go first."""
         return Road("roundabout", self._ring.lanes(), self._ring.routes(self.exit_distance), True)
 
-    def scene(self, seed: int) -> Scene:
+    def placed(self, seed: int, suits: Suits | None = None) -> Scene:
         before = self.leg_length + self._ring.bend
 
         def spot(start: Start) -> tuple[str, float]:
@@ -158,11 +159,10 @@ class Roundabout(PlacedScenario):
                 return leg, start.position
             return "ring", LEGS.index(leg) * self._ring.around / 4 + start.position - before
 
-        return place(seed, self.crowd, self.road, self.draw, spot, {"ring": self._ring.around})
+        return place(seed, self.crowd, self.road, self.draw, spot, {"ring": self._ring.around}, suits)
 
-    def draw(self, rng: np.random.Generator, name: str, kind: Kind) -> Start:
-        routes, before = self.road.routes, self.leg_length + self._ring.bend
-        route = routes[int(rng.integers(len(routes)))]
-        circles = kind is Kind.HDV and float(rng.random()) < self.on_ring
-        reach = (before, before + self._ring.on_ring(TURNS[route.turn])) if circles else None
-        return self.crowd.start_on(rng, name, kind, route.id, reach)
+    def between(self, rng: np.random.Generator, name: str, kind: Kind, route: Route) -> tuple[float, float] | None:
+        before = self.leg_length + self._ring.bend
+        if kind is Kind.HDV and float(rng.random()) < self.on_ring:
+            return before, before + self._ring.on_ring(TURNS[route.turn])
+        return super().between(rng, name, kind, route)

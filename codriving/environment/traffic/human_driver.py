@@ -8,7 +8,7 @@ from highway_env.road.road import Road
 from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.objects import Obstacle, RoadObject
 
-from codriving.datatypes import LaneId, Start
+from codriving.datatypes import BLOCKER, LaneId, Start
 from codriving.environment.drivers.attention import Judgement
 from codriving.environment.drivers.style import DriverMix, DriverTraits
 from codriving.environment.motion import STANDSTILL, clip
@@ -29,6 +29,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
 
     waits_at: float | None = None  # Arc length of the line at which the driver has to wait [m], or None
     sight: float  # How far ahead along the route it looks for bodies [m]
+    stands: float = 0.0  # How long it still stands before it drives [s]
     traits: DriverTraits | None = None
     judgement: Judgement | None = None
 
@@ -44,20 +45,27 @@ class HumanDriver(RouteFollower, IDMVehicle):
     ) -> "HumanDriver":
         """Put a human driver on the road; the start speed is the speed that the driver wants."""
         driver = cls.place(road, start, route_paths, corrections)
+        driver.stands = start.stands
         if traits is not None:
             traits.profile.apply(driver, to_class=False)
             driver.sight, driver.DELTA, driver.target_speed = profile.sight, traits.exponent, start.speed * traits.speed
             driver.traits, driver.style, driver.signals = traits, traits.style, traits.signals
             driver.judgement = Judgement(traits)
-            return driver
-        assert isinstance(profile, DriverProfile)
-        profile.apply(driver, to_class=not corrections.own_parameters)
-        driver.sight = profile.sight
-        driver.randomize_behavior()
+        else:
+            assert isinstance(profile, DriverProfile)
+            profile.apply(driver, to_class=not corrections.own_parameters)
+            driver.sight = profile.sight
+            driver.randomize_behavior()
+        if start.stands > 0:
+            driver.style = BLOCKER
+            driver.target_speed = float(driver.lane.speed_limit) * (1.0 if traits is None else traits.speed)
         return driver
 
     def act(self, action: dict[str, float] | str | None = None) -> None:
         """Steer along the route and follow the vehicle ahead on it."""
+        if self.stands > 1e-9:
+            self.action = {"steering": 0.0, "acceleration": 0.0}
+            return
         if not self.corrections.route_leader or self.crashed:
             super().act(action)
             return
@@ -74,6 +82,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
     def step(self, dt: float) -> None:
         """Move by one simulation step [s]."""
         self.timer += dt
+        self.stands = max(self.stands - dt, 0.0)
         if self.judgement is not None:
             self.judgement.watch(self, dt)
         super().step(dt)
