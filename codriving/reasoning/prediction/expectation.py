@@ -1,11 +1,12 @@
 """How all vehicles are expected to move if the passing order is kept: planned one after another, first to last."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from codriving.datatypes import Action, PassingOrder, TrackedVehicle
+from codriving.geometry import ConflictZone
 from codriving.reasoning.conflicts import has_joined, is_behind, is_open
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Flags, stays_behind
@@ -13,6 +14,8 @@ from codriving.reasoning.prediction.rollout import PLANS, STARTS_WITH
 
 # Time gap to the vehicle ahead that is planned for [s]; the safety check alone would allow less or ask for more.
 HEADWAY = 0.8
+
+_BEGINNINGS = [plans[0] for plans in STARTS_WITH.values()]  # Plans that begin alike stand together
 
 EARLY = 0.3  # Weight of the mean distance within the horizon against the distance at its end
 
@@ -89,20 +92,24 @@ def _with_guesses(
     Of several such drivers the one counts that holds the vehicle up most. On a route on which no plan keeps the order
     the vehicle has to stop, which the safety check sees to.
     """
-    gains = progress_by_action(gained)
+    gains = unhindered = progress_by_action(gained)
     if not moment.sees_conflicts:
         return gains
-    (route, place), stops = vehicle.routes[0], progress_by_action(-worth(travels))
+    (route, place), stops = vehicle.routes[0], dict[Action, float]()
     for other, motions in expected.items():
         if moment.vehicles[ego][other].is_cav or len(motions) < 2:
             continue
         each = []
         for motion in motions:
-            one = {other: (motion,)}
-            keeps = keeps_order(moment, ego, vehicle.id, route, place + travels, one, order, lag, True)
+            bounds = list(_bounds(moment, ego, vehicle.id, route, place, {other: (motion,)}, order, lag, True))
+            if not bounds:
+                each.append(unhindered)
+                continue
+            stops = stops or progress_by_action(-worth(travels))
+            keeps = _keeps(place + travels, bounds)
             each.append(progress_by_action(np.where(keeps, gained, -np.inf)))
         gains = {
-            action: min(gain, sum(way.get(action, -stops[action]) for way in each) / len(each))
+            action: min(gain, sum(way[action] if action in way else -stops[action] for way in each) / len(each))
             for action, gain in gains.items()
         }
     return gains
@@ -181,8 +188,30 @@ def keeps_order(
     minds_conflicts: bool,
 ) -> Flags:
     """Whether a vehicle that one CAV knows of stays behind all vehicles that drive ahead or go first."""
-    keeps: Flags = np.ones(len(places), dtype=np.bool_)
     place = float(places[0, 0])
+    return _keeps(places, _bounds(moment, ego, name, route, place, expected, order, lag, minds_conflicts))
+
+
+def _keeps(places: Array, bounds: Iterable[tuple[ConflictZone, Array, int]]) -> Flags:
+    """Whether motions stay behind others: each with the zone in which they meet, its places, and a lag."""
+    keeps: Flags = np.ones(len(places), dtype=np.bool_)
+    for zone, other, after in bounds:
+        keeps &= stays_behind(zone, places, other[: places.shape[1]], after, 0.0)
+    return keeps
+
+
+def _bounds(
+    moment: Moment,
+    ego: str,
+    name: str,
+    route: str,
+    place: float,
+    expected: Mapping[str, tuple[Expected, ...]],
+    order: PassingOrder,
+    lag: int,
+    minds_conflicts: bool,
+) -> Iterator[tuple[ConflictZone, Array, int]]:
+    """Say behind what a vehicle has to stay on a route of its own: zone, places of the other one, and lag."""
     vehicles = moment.vehicles[ego]
     for other, motions in expected.items():
         if other == name:
@@ -197,8 +226,7 @@ def keeps_order(
                 if following or (minds and is_open(zone, place, there)):
                     keeps_lane = following and has_joined(zone, place)
                     after = min(lag, round(HEADWAY / moment.forecast.sample)) if keeps_lane else lag
-                    keeps &= stays_behind(zone, places, motion.places[: places.shape[1]], after, 0.0)
-    return keeps
+                    yield zone, motion.places, after
 
 
 def worth(travels: Array) -> Array:
@@ -211,5 +239,5 @@ def worth(travels: Array) -> Array:
 
 def progress_by_action(gained: Array) -> dict[Action, float]:
     """Return how far a vehicle gets at best after each action."""
-    best = {first: float(max(gained[list(plans)])) for first, plans in STARTS_WITH.items()}
-    return {action: gain for action, gain in best.items() if gain > -np.inf}
+    best = np.maximum.reduceat(gained, _BEGINNINGS).tolist()
+    return {action: gain for action, gain in zip(STARTS_WITH, best, strict=True) if gain > -np.inf}
