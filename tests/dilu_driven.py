@@ -9,7 +9,7 @@ from worlds import Junction
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.experience import Experience, Interaction, Memory
+from codriving.datatypes.experience import Experience, Memory
 from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.situation import Situation
 from codriving.llm.language_model import Offline
@@ -30,18 +30,13 @@ class Notebook(CaseMemory):
     def __init__(self, memories: Sequence[Memory] = (), learns: bool = True) -> None:
         self.memories, self.learns = tuple(memories), learns
         self.learnt: list[Experience] = []
-        self.interactions: list[Interaction] = []
-
-    def begin(self, seed: int) -> None:
-        """Nothing depends on the seed."""
 
     def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
         """The same for everybody."""
         return [self.memories for _ in situations]
 
-    def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
+    def learn(self, experiences: Sequence[Experience]) -> int:
         """Note it."""
-        self.interactions.append(interaction)
         self.learnt += experiences
         return len(experiences)
 

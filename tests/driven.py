@@ -9,12 +9,14 @@ import yaml
 from worlds import Car, Junction, Thoughts
 
 from codriving.config.locate import conf_dir
+from codriving.datatypes.experience import Interaction
 from codriving.datatypes.parts import Method
 from codriving.datatypes.record import Outcome, Trajectory
 from codriving.datatypes.situation import ReasonedDeliberation
 from codriving.datatypes.world import Action, Kind, WorldState
 from codriving.environment.environment import Environment
 from codriving.methods.fcfs import FirstComeFirstServed
+from codriving.methods.language_model.prompted_model import ModelMethod
 from codriving.methods.ordered import Ordered
 from codriving.reasoning.execution.layered import Layered
 from codriving.reasoning.execution.planned import Executor, Planned
@@ -74,6 +76,9 @@ class Episode:
 def drive(environment: Environment, method: Method, seed: int, decisions: int = 10_000) -> Episode:
     """Drive one episode to its end, or for some decisions."""
     world = environment.reset(seed)
+    if isinstance(method, ModelMethod) and method.memory is not None:
+        name = environment.road_map.road.name
+        method.memory.begin(Interaction(name, seed, method.name, method.variant, method.reasoner))
     method.reset(environment.road_map, environment.driving_model, seed)
     worlds = [world]
     steps: list[ReasonedDeliberation] = []

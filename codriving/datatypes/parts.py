@@ -127,16 +127,16 @@ class CaseMemory(ABC):
         """
         return None
 
-    def begin(self, seed: int) -> None:
-        """Begin an episode."""
+    def begin(self, interaction: Interaction) -> None:
+        """Begin an episode: what is learnt from now on is learnt in it."""
         return None
 
     @abstractmethod
     def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
         """Find experiences similar to each situation, most similar first."""
 
-    def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
-        """Keep what was learnt in an episode.
+    def learn(self, experiences: Sequence[Experience]) -> int:
+        """Keep what was learnt in the episode that has begun.
 
         Returns:
             How many of the experiences are new.
@@ -177,7 +177,12 @@ class Method(ABC):
 
     @abstractmethod
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
-        """Begin an episode; nothing of the one before is left."""
+        """Begin an episode; nothing of the one before is left.
+
+        Args:
+            seed: For what the method draws at random. It is not the seed of the episode, from which the scene with the
+                routes of human drivers could be made again.
+        """
 
     @abstractmethod
     def act(self, world: WorldState) -> Deliberation:

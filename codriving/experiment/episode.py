@@ -4,10 +4,22 @@ import traceback
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
+from hashlib import sha256
 from time import perf_counter, thread_time
 from typing import Any
 
-from codriving.datatypes import Ending, EpisodeRecord, Method, Outcome, Participant, Score, Simulator, Trajectory
+from codriving.datatypes import (
+    CaseMemory,
+    Ending,
+    EpisodeRecord,
+    Interaction,
+    Method,
+    Outcome,
+    Participant,
+    Score,
+    Simulator,
+    Trajectory,
+)
 from codriving.errors import MemoryFileError, ModelError, ModelUnavailableError
 from codriving.metrics import Scorer, with_alone
 
@@ -64,8 +76,9 @@ def run_episode(
     seed: int,
     labels: Labels,
     go_on: Callable[[], None] = lambda: None,
+    memory: CaseMemory | None = None,
 ) -> EpisodeResult:
-    """Drive one episode and score it.
+    """Drive one episode and score it; a memory is told which one begins.
 
     What goes wrong becomes a record that ends in ``error``. An interruption by the user passes through, and so does a
     language model or a memory that cannot be used any more: none of them is this episode's fault.
@@ -76,7 +89,9 @@ def run_episode(
     try:
         world = environment.reset(seed)
         log.begun = True
-        method.reset(environment.road_map, environment.driving_model, seed)
+        if memory is not None:
+            memory.begin(Interaction(labels.scenario, seed, labels.method, labels.variant, labels.reasoner))
+        method.reset(environment.road_map, environment.driving_model, seed_of_method(seed))
         while (outcome := environment.outcome) is None:
             go_on()
             log.time = world.time
@@ -115,6 +130,11 @@ def run_episode(
         traceback=trace,
         transcript=tuple(log.transcript),
     )
+
+
+def seed_of_method(seed: int) -> int:
+    """Return the seed for what a method draws in an episode, from which that of the episode cannot be read."""
+    return int.from_bytes(sha256(f"draws of the method, episode {seed}".encode()).digest()[:6])
 
 
 def failed_result(labels: Labels, seed: int, error: BaseException, trace: str = "") -> EpisodeResult:

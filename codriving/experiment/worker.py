@@ -110,7 +110,8 @@ class Worker:
             report = Report(unit, ending)
         else:
             try:
-                result = run_episode(*self._objects_of(unit.cell)[:3], seed=unit.seed, labels=labels, go_on=self._go_on)
+                environment, method, metrics, _, memory = self._objects_of(unit.cell)
+                result = run_episode(environment, method, metrics, unit.seed, labels, self._go_on, memory)
             except UserError:
                 raise
             except Exception as error:

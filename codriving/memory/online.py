@@ -54,15 +54,16 @@ class OnlineMemory(RetrievalMemory):
             with self._store() as store:
                 store.check()
 
-    def begin(self, seed: int) -> None:
+    def begin(self, interaction: Interaction) -> None:
         """Begin an episode: what was learnt with smaller seeds is what can be recalled."""
+        self._interaction = interaction
         with self._store() as store:
-            self._snapshot = store.snapshot(before=seed)
+            self._snapshot = store.snapshot(before=interaction.seed)
 
-    def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
-        """Keep what was learnt in an episode."""
+    def learn(self, experiences: Sequence[Experience]) -> int:
+        """Keep what was learnt in the episode that has begun."""
         with self._store() as store:
-            return store.add(interaction, experiences)
+            return store.add(self._interaction, experiences)
 
     def _store(self) -> MemoryStore:
         if self.file is None:

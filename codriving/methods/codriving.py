@@ -86,7 +86,7 @@ class CoDriving(ModelMethod):
 
             experiences = reflect(self._model, experiences, self.memory.reflections)
             account = self.unfinished_step(world.time)
-        learnt = learn(self.memory, self, self._road_map.road.name, self._seed, experiences)
+        learnt = learn(self.memory, experiences)
         return {**account[0], **learnt}, account[1]
 
 

@@ -11,8 +11,6 @@ from codriving.datatypes import (
     Decision,
     DrivingModel,
     Experience,
-    Interaction,
-    Method,
     Outcome,
     Role,
     Situation,
@@ -121,9 +119,6 @@ def recall(memory: CaseMemory | None, situations: Sequence[Situation], most: int
     return [replace(situation, memories=memories[:most]) if memories else situation for situation, memories in found]
 
 
-def learn(
-    memory: CaseMemory, method: Method, scenario: str, seed: int, experiences: Sequence[Experience]
-) -> dict[str, float]:
+def learn(memory: CaseMemory, experiences: Sequence[Experience]) -> dict[str, float]:
     """Put the experiences of an episode into a memory."""
-    new = memory.learn(Interaction(scenario, seed, method.name, method.variant, method.reasoner), experiences)
-    return {"experiences": len(experiences), "experiences_new": new}
+    return {"experiences": len(experiences), "experiences_new": memory.learn(experiences)}

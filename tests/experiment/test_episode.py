@@ -1,10 +1,14 @@
 """The loop: what it asks of whom, in which order, and what it makes of a failure."""
 
+from dataclasses import astuple
+
 import pytest
 from toy_drive import LABELS, ToyDeliberation, ToyEnvironment, ToyMethod, ToyMetrics
 
+from codriving.datatypes.experience import Interaction, Memory
+from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.record import Ending
-from codriving.datatypes.world import WorldState
+from codriving.datatypes.world import DrivingModel, WorldState
 from codriving.experiment.episode import EpisodeResult, run_episode
 from codriving.metrics.scorer import Scorer
 
@@ -26,6 +30,28 @@ def test_a_success_is_recorded_with_all_that_tables_need() -> None:
     assert all(cpu >= 0 for cpu in result.decision_cpu)
     assert record.counts == {"fallbacks": record.decisions}
     assert [line["step"] for line in result.decisions] == list(range(record.decisions))
+
+
+def test_a_memory_is_told_the_episode_and_a_method_a_number_that_is_not_its_seed() -> None:
+    begun: list[tuple[object, ...]] = []
+
+    class Noting(CaseMemory):
+        def begin(self, interaction: Interaction) -> None:
+            begun.append(astuple(interaction))
+
+        def recall(self, situations: object) -> list[tuple[Memory, ...]]:
+            return []
+
+    class Told(ToyMethod):
+        def reset(self, road_map: object, model: DrivingModel, seed: int) -> None:
+            begun.append((seed,))
+            super().reset(road_map, model, seed)
+
+    for seed in (7, 8, 7):
+        run_episode(ToyEnvironment(), Told(), {"toy": Scorer(ToyMetrics(), {})}, seed, LABELS, memory=Noting())
+    assert begun[::2] == [("toy", seed, "steady", "full", "rules") for seed in (7, 8, 7)]
+    # Fixed for good, since what is drawn hangs on it: SHA-256 of "draws of the method, episode 7", its first six bytes.
+    assert begun[1::2] == [(257841741562390,), (198569526808438,), (257841741562390,)]
 
 
 def test_participants_are_in_order_of_id() -> None:

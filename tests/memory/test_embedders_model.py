@@ -84,7 +84,8 @@ def test_a_memory_made_with_a_model_is_recalled_from_with_that_model(server: Loo
     path = tmp_path / "m.sqlite"
     settings = {"embedder": "litellm", "embedding_api_base": server.url, "embedding_key_env": None}
     learner = online(path, embedding_model="some-embedder", **settings)
-    learner.learn(interaction(), [experience(description(dttcp=0.5)), experience(description(dttcp=7.0), step=5)])
+    learner.begin(interaction())
+    learner.learn([experience(description(dttcp=0.5)), experience(description(dttcp=7.0), step=5)])
     assert frozen(path, embedding_model="some-embedder", **settings).label.endswith("1 interactions")
     for other in ({"embedder": "features"}, {**settings, "embedding_model": "another"}):
         with pytest.raises(MemoryFileError, match=r"made with the embedder litellm some-embedder"):

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from remembered import experience, filled, frozen, online
+from remembered import experience, filled, frozen, interaction, online
 
 from codriving.errors import ConfigError, MemoryFileError
 
@@ -64,4 +64,4 @@ def test_a_snapshot_that_has_changed_is_not_taken_for_the_one_that_was_noted(pat
 
 def test_a_memory_that_learns_needs_a_place_to_grow_in() -> None:
     with pytest.raises(ConfigError, match=r"memory\.file must name the file"):
-        online(None).begin(0)
+        online(None).begin(interaction())

@@ -97,7 +97,9 @@ def test_a_file_that_is_not_there_is_made_with_its_folder(tmp_path: Path) -> Non
     path = tmp_path / "new" / "folder" / "m.sqlite"
     online(path).prepare()
     assert len(read_memory(path).snapshot) == 0
-    online(path).learn(interaction(), [experience()])
+    learner = online(path)
+    learner.begin(interaction())
+    learner.learn([experience()])
     assert len(read_memory(path).snapshot) == 1
 
 
@@ -158,7 +160,8 @@ def test_vectors_of_another_length_are_refused_before_the_first_episode(server: 
     path = tmp_path / "m.sqlite"
     learner = online(path, **litellm(server))
     learner.prepare()
-    learner.learn(interaction(), [experience()])
+    learner.begin(interaction())
+    learner.learn([experience()])
     frozen(path, **litellm(server)).prepare()
     edit(
         path,

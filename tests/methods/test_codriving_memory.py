@@ -45,17 +45,17 @@ class Everything(CaseMemory):
     def __init__(self, memories: Sequence[Memory] = ()) -> None:
         self.memories, self.learnt, self.begun = tuple(memories), [], []  # type: ignore[var-annotated]
 
-    def begin(self, seed: int) -> None:
-        """Note the seed."""
-        self.begun.append(seed)
+    def begin(self, interaction: Interaction) -> None:
+        """Note the episode."""
+        self.begun.append(interaction)
 
     def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
         """Recall the same for each."""
         return [self.memories] * len(situations)
 
-    def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
+    def learn(self, experiences: Sequence[Experience]) -> int:
         """Keep it."""
-        self.learnt.append((interaction, list(experiences)))
+        self.learnt.append(list(experiences))
         return len(experiences)
 
 
@@ -67,15 +67,11 @@ def ending(episode: Episode) -> Ending | None:
 class Practice(OnlineMemory):
     """A memory for driving one episode again and again; each drive counts as an interaction of its own."""
 
-    def begin(self, seed: int) -> None:
-        """Recall everything."""
-        super().begin(seed + 1000)
-
-    def learn(self, interaction: Interaction, experiences: Sequence[Experience]) -> int:
-        """Keep it beside what the drives before have left."""
+    def begin(self, interaction: Interaction) -> None:
+        """Recall everything, and keep it beside what the drives before have left."""
         with self._store() as store:
             done = store.snapshot().interactions
-        return super().learn(replace(interaction, seed=interaction.seed + done), experiences)
+        super().begin(replace(interaction, seed=interaction.seed + done))
 
 
 def test_a_remembered_mistake_is_not_repeated(merge: Junction, tmp_path: Path) -> None:
@@ -140,9 +136,8 @@ def test_an_episode_is_learnt_from_once_with_its_provenance(junction: Junction) 
     memory = Everything()
     made = method(memory, negotiation=False)
     episode = learn(junction, made, 10_005)
-    ((interaction, experiences),) = memory.learnt
-    assert memory.begun == [10_005]
-    assert interaction == Interaction("intersection", 10_005, "codriving", "no_negotiation/own_view", "rules")
+    (experiences,) = memory.learnt
+    assert memory.begun == [Interaction("intersection", 10_005, "codriving", "no_negotiation/own_view", "rules")]
     assert experiences == sorted(experiences, key=lambda e: (e.step, e.ego))
     assert all(e.verdict is not Verdict.NEUTRAL for e in experiences)
     for e in experiences:
@@ -153,7 +148,7 @@ def test_what_is_remembered_of_a_situation_is_what_the_cav_was_told(junction: Ju
     """Without intent sharing no conflict is seen, so none is remembered, though effects are judged by them."""
     memory = Everything()
     learn(junction, method(memory, intent_sharing=False), 10_001)
-    ((_, experiences),) = memory.learnt
+    (experiences,) = memory.learnt
     assert experiences
     assert {e.description.kinds["relation"] for e in experiences} == {"none"}
     assert any(e.effect.dttcp_before is not None for e in experiences)

@@ -105,7 +105,7 @@ class DiLu(ModelMethod):
         if self._log is None or self.memory is None:
             return {}, []
         experiences = self._log.conclude(world, outcome)
-        learnt = learn(self.memory, self, self._perception.road_map.road.name, self._seed, experiences)
+        learnt = learn(self.memory, experiences)
         model_counts, lines = self.unfinished_step(world.time)
         return {**model_counts, **learnt}, lines
 

@@ -64,9 +64,7 @@ class ModelMethod(Method):
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode."""
-        self._model, self._seed = prompted(self.llm), seed
-        if self.memory is not None:
-            self.memory.begin(seed)
+        self._model = prompted(self.llm)
 
     def unfinished_step(self, time: float) -> Account:
         return self._model.ledger.close_step(time) if self._model is not None else ({}, [])

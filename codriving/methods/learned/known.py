@@ -52,7 +52,7 @@ class Knowledge:
 
     def _human(self, v: VehicleState) -> TrackedVehicle:
         """A human driver whom all CAVs watch together."""
-        return replace(self._stranger(SHARED, v), kind=v.kind, acceleration=v.acceleration, lane=v.lane)
+        return replace(self._stranger(SHARED, v), kind=v.kind, acceleration=v.acceleration)
 
     def _stranger(self, watcher: str, v: VehicleState) -> TrackedVehicle:
         seen = _detected(v)

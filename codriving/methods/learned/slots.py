@@ -179,7 +179,8 @@ def conflict_slots(
                 if best is None or urgency < best[0]:
                     crossing = float(zone.relation is Relation.CROSSING)
                     ways = (own / near, away / near, (zone.exit_j - at) / near)
-                    rank = precedence(priority, other.lane and road_map.lanes[other.lane].priority)
+                    # The rank of the lane on which it would be: its true lane tells a turn that is not seen yet.
+                    rank = precedence(priority, road_map.lanes[road_map.lane_at(theirs, at)].priority)
                     speeds = other.speed / top, target_of(other) / top
                     best = urgency, (rank, float(other.is_cav), 0.0, crossing, *ways, *speeds)
         if best is not None:

@@ -28,16 +28,13 @@ class Book:
 
     label, learns, reflections = "book", True, 0
 
-    def begin(self, seed: int) -> None:
-        """Nothing depends on the seed."""
-
     def recall(self, situations: object) -> list[tuple[Memory, ...]]:
         """The same for each vehicle."""
         return [(Memory(1, "At 8.0 m/s: FASTER. No mistake.", Action.FASTER, Verdict.EASED, 0.97, 1),)] * len(
             list(situations)  # type: ignore[call-overload]
         )
 
-    def learn(self, interaction: object, experiences: object) -> int:
+    def learn(self, experiences: object) -> int:
         """Learn nothing."""
         return 0
 

@@ -82,6 +82,19 @@ def test_where_a_human_driver_is_bound_is_not_seen(junction: Junction, shared: b
     assert found[0] == found[1] == found[2]
 
 
+@pytest.mark.parametrize("place", [95.0, 101.0, 106.0])
+def test_lane_of_a_human_driver_is_not_seen(junction: Junction, place: float) -> None:
+    """Inside the junction it would tell a left turn, whose rank is lower, before the vehicle is seen to turn."""
+    world = junction.world(car("CAV1", "south-north", 85.0, 7.0), car("HDV1", "west-north", place, 7.0))
+    once = features(junction).observe(world)["CAV1"]
+    assert once[feature_names(JUNCTION).index("slot1.there")] > 0
+    human = next(v for v in world.vehicles if v.id == "HDV1")
+    for lane in junction.road_map.lanes:
+        vehicles = tuple(replace(v, lane=lane) if v is human else v for v in world.vehicles)
+        again = features(junction).observe(replace(world, vehicles=vehicles))["CAV1"]
+        np.testing.assert_array_equal(again, once, err_msg=str(lane))
+
+
 def test_drivers_bound_elsewhere_are_seen_alike_as_long_as_they_drive_alike(junction: Junction) -> None:
     found = []
     for route in ("west-north", "west-south"):
