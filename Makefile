@@ -68,6 +68,9 @@ bench: $(READY) ## measure speed
 	@test -f benchmarks/__main__.py || { echo "there are no benchmarks yet" >&2; exit 2; }
 	$(BIN)/python -m benchmarks $(ARGS)
 
+tables: $(READY) ## drive what the tables of README.md and docs/results.md show, and write them; takes hours
+	$(BIN)/python docs/tables $(ARGS)
+
 pictures: $(READY) ## draw the roads of docs/scenarios.md and the frames of docs/replay.md
 	$(BIN)/python docs/images/roads.py
 	rm -rf $(VENV)/pictures
@@ -96,4 +99,4 @@ clean: ## remove .venv and what the tools left behind; outputs/ stays
 	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test coverage mutants fuzz check-all hooks torch train ablate compare bench pictures lint types format lock clean
+.PHONY: help install run test coverage mutants fuzz check-all hooks torch train ablate compare bench tables pictures lint types format lock clean

@@ -1,0 +1,180 @@
+"""Makes the tables of README.md and docs/results.md: `make tables`, `python docs/tables [--pages | --check] [RUN ...]`.
+
+`tables.yaml` names for each table the commands that drive its episodes and what its columns show. The commands are run
+(what is driven already is not driven again), the `summary.csv` of each run folder is kept beside this file, with the
+command and the versions that made it, and the pages are written from these files alone.
+"""
+
+import argparse
+import csv
+import json
+import re
+import shlex
+import string
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import yaml
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
+PAGES = ("README.md", "docs/results.md")
+KEYS = ("scenario", "method", "variant")  # What tells the rows of a run apart; rows of several runs are joined by them
+BEGIN, END = "<!-- table {}: made by make tables -->", "<!-- end of table {} -->"
+TABLE = re.compile(r"<!-- table (?P<name>[\w-]+): made by make tables -->\n.*?<!-- end of table (?P=name) -->", re.S)
+
+
+Value = float | str | None
+
+
+class TableError(Exception):
+    """A table that cannot be made; the message says why."""
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """The rows of one run, and what made them."""
+
+    command: str
+    version: str
+    behaviour: int
+    rows: tuple[Mapping[str, Value], ...]
+
+    @classmethod
+    def read(cls, file: Path) -> "Numbers":
+        """Read what was kept of a run: a line that says what made it, then its ``summary.csv``."""
+        try:
+            first, *rest = file.read_text(encoding="utf-8").splitlines()
+        except OSError as error:
+            raise TableError(f"{file} is not there: make tables drives and writes it ({error.strerror})") from error
+        made = json.loads(first.removeprefix("# "))
+        return cls(made["command"], made["version"], made["behaviour"], tuple(map(_typed, csv.DictReader(rest))))
+
+
+def _typed(row: Mapping[str, str]) -> dict[str, Value]:
+    return {key: text if key in KEYS else _number(text) for key, text in row.items()}
+
+
+def _number(text: str) -> Value:
+    try:
+        return float(text)
+    except ValueError:
+        return text or None
+
+
+class Cells(string.Formatter):
+    """Fills in a cell: a rate of the form ``%`` in percent, and nothing where a number is missing."""
+
+    def get_value(self, key: int | str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> object:
+        """Return a key of the row, or the numbers of a run."""
+        return kwargs[str(key)]
+
+    def format_field(self, value: object, form: str) -> str:
+        """Write a number."""
+        if value is None:
+            raise LookupError
+        return f"{100 * value:.3g} %" if form == "%" and isinstance(value, float) else format(value, form)
+
+    def cell(self, template: str, row: Mapping[str, Any]) -> str:
+        """Fill in a template."""
+        try:
+            return self.format(template, **row)
+        except (LookupError, AttributeError):
+            return ""
+
+
+def joined(runs: Mapping[str, Numbers], only: Mapping[str, str]) -> Iterator[dict[str, Any]]:
+    """Yield a row for each scenario, method and variant, with the numbers of each run that has it below its name."""
+    rows: dict[tuple[str, ...], dict[str, Any]] = {}
+    for name, run in runs.items():
+        for row in run.rows:
+            key = tuple(str(row[k]) for k in KEYS)
+            if all(str(row[k]) in wanted.split(",") for k, wanted in only.items()):
+                rows.setdefault(key, dict(zip(KEYS, key, strict=True)))[name] = SimpleNamespace(**row)
+    yield from rows.values()
+
+
+def markdown(name: str, spec: Mapping[str, Any]) -> str:
+    """Write a table with the commands and versions that made it, between its two marks."""
+    runs = {run: Numbers.read(HERE / f"{run}.csv") for run in spec["runs"]}
+    columns, cells = spec["columns"], Cells()
+    found = [[cells.cell(template, row) for template in columns.values()] for row in joined(runs, spec.get("only", {}))]
+    if not found:
+        raise TableError(f"table {name} has no rows: look at its runs and at only: in tables.yaml")
+    found += [list(map(str, line)) for line in spec.get("more", [])]
+    align = ["---" if "." not in template else "---:" for template in columns.values()]
+    lines = [f"| {' | '.join(line)} |" for line in (list(columns), *found)]
+    lines.insert(1, f"|{'|'.join(align)}|")
+    made = [f"`codriving {run.command}` (version {run.version}, behaviour {run.behaviour})" for run in runs.values()]
+    text = "\n".join((BEGIN.format(name), *lines, "", *_sentences(made), END.format(name)))
+    return re.sub(" +[|]", " |", text)
+
+
+def _sentences(made: Sequence[str]) -> list[str]:
+    return [f"From {made[0]}."] if len(made) == 1 else ["From", "", *(f"- {one}" for one in made)]
+
+
+def drive(run: str, command: str) -> None:
+    """Run a command in the root, resuming its folder, and keep its summary."""
+    words = [*shlex.split(command), f"run=tables-{run}"]
+    done = subprocess.run([sys.executable, "-m", "codriving", *words], cwd=ROOT, check=False)
+    if done.returncode:
+        raise TableError(f"codriving {command} ended with {done.returncode}")
+    folders = [path.parent for path in (ROOT / "outputs").glob(f"*/tables-{run}/manifest.json")]
+    if len(folders) != 1:
+        raise TableError(f"expected one folder outputs/*/tables-{run}, found {len(folders)}")
+    manifest = json.loads((folders[0] / "manifest.json").read_text(encoding="utf-8"))
+    made = {"command": command, "version": manifest["versions"]["codriving"], "behaviour": manifest["behaviour"]}
+    text = (folders[0] / "summary.csv").read_text(encoding="utf-8")
+    (HERE / f"{run}.csv").write_text(f"# {json.dumps(made)}\n{text}", encoding="utf-8", newline="\n")
+
+
+def rewritten(page: str, tables: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the text of a page with each of its tables made again."""
+
+    def table(found: re.Match[str]) -> str:
+        name = found["name"]
+        if name not in tables:
+            raise TableError(f"{page} has a table {name!r}, but tables.yaml does not; it has {', '.join(tables)}")
+        return markdown(name, tables[name])
+
+    return TABLE.sub(table, (ROOT / page).read_text(encoding="utf-8"))
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Drive, write the pages, or check them; returns the exit status."""
+    parser = argparse.ArgumentParser(prog="make tables", description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("runs", nargs="*", metavar="NAME", help="drive these runs alone; otherwise all")
+    parser.add_argument("--pages", action="store_true", help="drive nothing, write the pages from the files kept")
+    parser.add_argument("--check", action="store_true", help="drive and write nothing, say which pages are not so made")
+    chosen = parser.parse_args(arguments)
+    spec = yaml.safe_load((HERE / "tables.yaml").read_text(encoding="utf-8"))
+    try:
+        if unknown := [name for name in chosen.runs if name not in spec["runs"]]:
+            raise TableError(f"no run {', '.join(unknown)} in tables.yaml; it has {', '.join(spec['runs'])}")
+        if not (chosen.pages or chosen.check):
+            for run in chosen.runs or spec["runs"]:
+                drive(run, spec["runs"][run])
+        stale = []
+        for page in PAGES:
+            text = rewritten(page, spec["tables"])
+            if text != (ROOT / page).read_text(encoding="utf-8"):
+                stale.append(page)
+                if not chosen.check:
+                    (ROOT / page).write_text(text, encoding="utf-8", newline="\n")
+    except TableError as error:
+        print(error, file=sys.stderr)
+        return 1
+    if chosen.check and stale:
+        print(f"not as make tables writes them: {', '.join(stale)}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,97 @@
+"""Tables of the pages are made from the numbers that are kept beside the program that makes them."""
+
+import json
+import runpy
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = runpy.run_path(str(ROOT / "docs" / "tables" / "__main__.py"))
+
+SPEC = {
+    "runs": ["old", "new"],
+    "only": {"scenario": "intersection"},
+    "columns": {
+        "method": "`{method}` {variant}",
+        "success": "{old.success_rate:%}, {new.success_rate:%}",
+        "PET [s]": "{new.pet_mean:.1f}",
+    },
+    "more": [["*the paper*", "*90 %*", "*10.3*"]],
+}
+
+
+def keep(folder: Path, name: str, behaviour: int, *rows: str) -> None:
+    made = {"command": f"run of={name}", "version": "0.2.0", "behaviour": behaviour}
+    head = "scenario,method,variant,success_rate,pet_mean"
+    (folder / f"{name}.csv").write_text("\n".join((f"# {json.dumps(made)}", head, *rows)) + "\n", encoding="utf-8")
+
+
+@pytest.fixture
+def made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    keep(tmp_path, "old", 2, "intersection,codriving,full,0.98125,4.86", "intersection,fcfs,,0.99,5", "merge,fcfs,,1,5")
+    keep(tmp_path, "new", 3, "intersection,fcfs,,1,", "intersection,codriving,full,0.5,7.449")
+    for names in (PROGRAM["markdown"].__globals__, PROGRAM["main"].__globals__):
+        monkeypatch.setitem(names, "HERE", tmp_path)
+        monkeypatch.setitem(names, "ROOT", tmp_path)
+        monkeypatch.setitem(names, "PAGES", ("page.md",))
+    return tmp_path
+
+
+TABLE = """<!-- table one: made by make tables -->
+| method | success | PET [s] |
+|---|---:|---:|
+| `codriving` full | 98.1 %, 50 % | 7.4 |
+| `fcfs` | 99 %, 100 % | |
+| *the paper* | *90 %* | *10.3* |
+
+From
+
+- `codriving run of=old` (version 0.2.0, behaviour 2)
+- `codriving run of=new` (version 0.2.0, behaviour 3)
+<!-- end of table one -->"""
+
+
+def test_rows_of_several_runs_stand_side_by_side_with_what_made_them(made: Path) -> None:
+    assert PROGRAM["markdown"]("one", SPEC) == TABLE
+
+
+def write(folder: Path, page: str, spec: Mapping[str, Any]) -> None:
+    (folder / "page.md").write_text(page, encoding="utf-8")
+    (folder / "tables.yaml").write_text(json.dumps({"runs": {}, "tables": spec}), encoding="utf-8")
+
+
+def test_page_gets_the_numbers_that_are_kept_and_a_number_changed_by_hand_is_found(
+    made: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(made, f"Before.\n\n{TABLE.replace('98.1', '99.9')}\n\nAfter.\n", {"one": SPEC})
+    assert PROGRAM["main"](["--check"]) == 1
+    assert capsys.readouterr().err == "not as make tables writes them: page.md\n"
+    assert PROGRAM["main"](["--pages"]) == 0
+    assert (made / "page.md").read_text(encoding="utf-8") == f"Before.\n\n{TABLE}\n\nAfter.\n"
+    assert PROGRAM["main"](["--check"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("spec", "arguments", "said"),
+    [
+        ({}, ["--pages"], "page.md has a table 'one', but tables.yaml does not"),
+        ({"one": {**SPEC, "runs": ["none"]}}, ["--pages"], "none.csv is not there: make tables drives and writes it"),
+        ({"one": {**SPEC, "only": {"method": "mcts"}}}, ["--pages"], "table one has no rows"),
+        ({"one": SPEC}, ["other"], "no run other in tables.yaml"),
+    ],
+)
+def test_what_cannot_be_made_is_said_in_one_line(
+    made: Path, capsys: pytest.CaptureFixture[str], spec: Mapping[str, Any], arguments: list[str], said: str
+) -> None:
+    write(made, TABLE, spec)
+    assert PROGRAM["main"](arguments) == 1
+    shown = capsys.readouterr().err
+    assert said in shown
+    assert shown.count("\n") == 1
+
+
+def test_tables_of_the_pages_are_as_they_are_made() -> None:
+    assert PROGRAM["main"](["--check"]) == 0
