@@ -24,7 +24,7 @@ def _scene(situation: Situation, numbers: dict[str, float], kinds: dict[str, str
     for role, name, where in ((Role.LEADING, "lead", "ahead"), (Role.REARING, "rear", "behind")):
         other = scene.next_in(role)
         if other is None or other.gap is None:
-            words.append(f"nobody {where} on the lane")
+            words.append(f"no vehicle {where} on the lane")
             continue
         numbers[f"{name}_gap"], numbers[f"{name}_speed"] = max(other.gap, 0.0), other.speed
         words.append(f"a vehicle {other.gap:.0f} m {where} on the lane at {other.speed:.1f} m/s")

@@ -30,7 +30,7 @@ SIDEWAYS = (Action.LANE_LEFT, Action.LANE_RIGHT)
 LESSONS: Mapping[Verdict, str] = {
     Verdict.INTENSIFIED: "Your action has intensified the conflict; similar actions should be avoided.",
     Verdict.EASED: "Your action has eased the conflict; similar actions are advisable.",
-    Verdict.TOO_CAUTIOUS: "Your action was too cautious, nobody used the way; similar waiting should be cut short.",
+    Verdict.TOO_CAUTIOUS: "Your action was too cautious, no vehicle used the way; similar waiting should be cut short.",
 }
 
 

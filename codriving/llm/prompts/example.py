@@ -109,7 +109,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
         "allowed": ["SLOWER", "IDLE"],
     },
     "reflect": {
-        "scene": "Driving 8.0 m/s, target 9.0 m/s; nobody ahead on the lane.",
+        "scene": "Driving 8.0 m/s, target 9.0 m/s; no vehicle ahead on the lane.",
         "conflict": "Crossing conflict with a human vehicle: dTTCP 3.0 s, general danger.",
         "order": "The CAV goes second; 1 go before it.",
         "action": "FASTER",
@@ -126,6 +126,6 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "dilu": {**_SINGLE_VEHICLE, "interval": 1.0, "memories": ["At 8.0 m/s, no conflict: FASTER. No mistake."]},
     "dilu_reflect": {
         **_SINGLE_VEHICLE,
-        **{"action": "IDLE", "reason": "nobody is near", "struck": True, "other": "V2", "later": 1.5},
+        **{"action": "IDLE", "reason": "no vehicle is near", "struck": True, "other": "V2", "later": 1.5},
     },
 }

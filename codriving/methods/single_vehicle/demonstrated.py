@@ -130,6 +130,6 @@ def _reason(action: Action, refused: dict[Action, str], waited: float) -> str:
     if waited:
         return f"it has waited for {waited:.0f} s and the zones ahead are empty, so {action}"
     if action is Action.FASTER:
-        return "accelerating keeps clear of everybody"
+        return "accelerating keeps clear of all others"
     faster = PREFERRED[PREFERRED.index(action) - 1]
     return f"{action}, since with {faster} {refused[faster]}" if faster in refused else f"{action} keeps clear"

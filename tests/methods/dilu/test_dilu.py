@@ -15,7 +15,7 @@ from worlds import Junction, car
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.experience import Memory, Verdict
+from codriving.datatypes.experience import Interaction, Memory, Verdict
 from codriving.datatypes.world import Action
 from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
@@ -178,6 +178,7 @@ def test_what_is_learnt_is_recalled_alike_and_a_frozen_memory_stays_as_it_is(
     learner = DiLu(Offline(), online, 1.0, 3, rule())
     environment = junction.environment
     world, outcome = environment.reset(20_000), None
+    online.begin(Interaction("intersection", 20_000, "dilu-rule", "", "rules"))
     learner.reset(junction.road_map, junction.model, 20_000)
     while (outcome := environment.outcome) is None:
         world = environment.step(learner.act(world).actions)
