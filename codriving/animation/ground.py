@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from codriving.animation.canvas import Canvas, Shape
-from codriving.animation.style import ASPHALT, FAINT, GREEN, GROUND, INK, ORANGE, PAINT
+from codriving.animation.style import ASPHALT, BUILDING, FAINT, GREEN, GROUND, INK, ORANGE, PAINT
 from codriving.animation.window import Points, Window
 from codriving.datatypes import Lane, Line, Straight
 from codriving.geometry import Path, RoadMap, corners, lane_path
@@ -36,6 +36,8 @@ class Ground:
         self._striped = Shape(line for paint, line in lines if paint is Line.STRIPED)
         self._goals = Shape(_goals(road_map))
         blocks = [corners(*b.position, b.heading, b.length, b.width) for b in road_map.road.blocks]
+        houses = [corners(*b.position, b.heading, b.length, b.width) for b in road_map.road.buildings]
+        self._buildings = Shape(houses, closed=True)
         self._blocks = Shape(blocks, closed=True)
         self._crosses = Shape(block[pair] for block in blocks for pair in ([0, 2], [1, 3]))
 
@@ -53,6 +55,7 @@ class Ground:
 
     def _road(self, canvas: Canvas, window: Window) -> None:
         matrix, paint = window.matrix, max(_PAINT * window.zoom, 1.0)
+        canvas.shape(self._buildings, matrix, BUILDING, FAINT, 1.0)
         # The rim closes the seams between lanes.
         canvas.shape(self._asphalt, matrix, ASPHALT, ASPHALT, 1.0)
         canvas.shape(self._full, matrix, None, PAINT, paint)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from codriving.datatypes import Action, Kind, Severity
 from codriving.errors import ConfigError
 
-# SidePanel, land, road and painted lines.
-PAPER, GROUND, ASPHALT, PAINT = "#ffffff", "#f3f2ec", "#cfd3d9", "#ffffff"
+# SidePanel, land, buildings, road and painted lines.
+PAPER, GROUND, BUILDING, ASPHALT, PAINT = "#ffffff", "#f3f2ec", "#d8cdbd", "#cfd3d9", "#ffffff"
 
 BAND = "90"  # Opacity of the bands along which two vehicles come together; the plans on them stay in sight
 

@@ -73,7 +73,7 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Something solid that stands on the road, for instance where a lane ends."""
+    """Something solid that stands on the road, for instance where a lane ends, or a building beside it."""
 
     position: Point  # Its centre [m]
     length: float = 2.0  # Length along the heading [m]
@@ -103,6 +103,7 @@ class Road:
     routes: tuple[Route, ...]
     regulated: bool = False
     blocks: tuple[Block, ...] = ()
+    buildings: tuple[Block, ...] = ()  # What stands beside the road and hides vehicles from one another
 
 
 def beside(lane: LaneId, other: LaneId) -> bool:

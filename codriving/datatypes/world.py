@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from math import hypot
 
 from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.road import LaneId
@@ -123,6 +124,7 @@ class WorldState:
     signals: Mapping[str, str] = field(
         default_factory=dict
     )  # ``left`` or ``right`` of each vehicle that signals a turn
+    hidden: tuple[tuple[str, str], ...] = ()  # Pairs between which a building stands, in the order of names
 
     @property
     def cavs(self) -> tuple[VehicleState, ...]:
@@ -133,3 +135,8 @@ class WorldState:
     def hdvs(self) -> tuple[VehicleState, ...]:
         """The human-driven vehicles on the road."""
         return tuple(v for v in self.vehicles if v.kind is Kind.HDV)
+
+    def senses(self, one: VehicleState, other: VehicleState, reach: float) -> bool:
+        """Whether a vehicle is within reach [m] of the sensors of another one, and no building between them."""
+        near = hypot(one.x - other.x, one.y - other.y) <= reach
+        return near and (min(one.id, other.id), max(one.id, other.id)) not in self.hidden

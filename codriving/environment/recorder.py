@@ -67,4 +67,5 @@ def snapshot(traffic: Traffic, time: float, step: int) -> WorldState:
     intents = {v.id: Intent(v.route_path.route.id, float(v.target_speed), plain(v.target_lane_index)) for v in cavs}
     states, available = tuple(state_of(v) for v in vehicles), {v.id: v.available() for v in cavs}
     signals = {v.id: v.signal for v in vehicles if v.signal} if traffic.past is not None else {}
-    return WorldState(time, step, states, intents, available, signals)
+    pairs = ((v.id, w.id) for v, unseen in traffic.hidden.items() for w in unseen if v.id < w.id)
+    return WorldState(time, step, states, intents, available, signals, tuple(sorted(pairs)))

@@ -8,7 +8,8 @@ from itertools import pairwise
 from codriving.datatypes import Arc, Lane, Road, Route, beside
 from codriving.errors import ScenarioError
 from codriving.geometry.curve import lane_curve
-from codriving.geometry.lane_path import end_of, route_path
+from codriving.geometry.lane_path import end_of, lane_path, route_path
+from codriving.geometry.sight import Sight
 
 _LONGEST_GAP = 15.0  # Longest gap between two lanes that is bridged [m]
 
@@ -25,6 +26,7 @@ def check_road(road: Road) -> None:
     _unique(road, "route", (route.id for route in road.routes))
     for lane in road.lanes:
         _check_lane(road, lane)
+        _check_buildings(road, lane)
     lanes = {lane.id: lane for lane in road.lanes}
     for route in road.routes:
         if not route.lanes:
@@ -70,6 +72,18 @@ def _check_lane(road: Road, lane: Lane) -> None:
         raise ScenarioError(
             f"{where} must have a width and a speed limit > 0, got {lane.width:g} m and {lane.speed_limit:g} m/s"
         )
+
+
+def _check_buildings(road: Road, lane: Lane) -> None:
+    if not road.buildings:
+        return
+    x, y = lane_path(lane, spacing=1.0).points.T
+    for building, covers in zip(road.buildings, Sight(road.buildings).covers(x, y, lane.width / 2), strict=True):
+        if covers:
+            raise ScenarioError(
+                f"the building at {building.position} of road {road.name!r} reaches over lane {lane.id}; move it, or "
+                "make it smaller"
+            )
 
 
 def _check_joint(road: Road, route: Route, lane: Lane, following: Lane) -> None:

@@ -15,6 +15,7 @@ from codriving.geometry.lane_path import lane_starts, route_path
 from codriving.geometry.nearby import Nearby
 from codriving.geometry.path import Path
 from codriving.geometry.road_check import check_road
+from codriving.geometry.sight import Sight
 from codriving.geometry.signals import Signals
 from codriving.geometry.speed_profile import SpeedProfile, route_curvature, speed_profile
 from codriving.geometry.zone import ConflictZone, following_zone
@@ -45,6 +46,7 @@ class RoadMap:
         self._starts = {(name, lane): start for name, back in self._backwards.items() for lane, start in back}
         self.changes = LaneChanges(self.lanes, self.routes, self._starts)
         self.nearby = Nearby(self.lanes, self.routes, self.paths, self._starts)
+        self.sight = Sight(road.buildings) if road.buildings else None
         self.signals = Signals(self.lanes, self.routes, self._starts)
         self._projected: dict[tuple[str, float, float], tuple[float, float]] = {}
         self._zones: dict[Footprint, dict[tuple[str, str], tuple[ConflictZone, ...]]] = {}

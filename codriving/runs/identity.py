@@ -42,7 +42,7 @@ _CAME_LATER |= {"extra": {}, "headers": {}}
 
 # The same for ``scenario``: with these values it is the scene of before.
 _SCENES: dict[str, Any] = {"pattern": "random", "row_gap": 14.0, "turns": ["left", "straight", "right"]}
-_SCENES |= {"blocked_exit": 0.0, "blocked_room": 7.0}
+_SCENES |= {"blocked_exit": 0.0, "blocked_room": 7.0, "blind": None}
 
 # Groups whose choice stands for a class; all choices of ``cda`` are one class, so that their values tell them.
 CHOICES = ("scenario", "method", "executor", "llm", "memory")

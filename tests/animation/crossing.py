@@ -17,7 +17,7 @@ STEP = 0.1
 Frame = NDArray[np.uint8]
 
 
-def crossing(blocks: tuple[Block, ...] = ()) -> RoadMap:
+def crossing(blocks: tuple[Block, ...] = (), buildings: tuple[Block, ...] = ()) -> RoadMap:
     """One lane to the east and one to the south, each 60 m long with its goal at 50 m; they cross half-way."""
     half = LENGTH / 2
     lines = (Line.CONTINUOUS, Line.STRIPED)
@@ -27,7 +27,7 @@ def crossing(blocks: tuple[Block, ...] = ()) -> RoadMap:
         Route("east", (east.id,), Turn.STRAIGHT, 25.0, 50.0),
         Route("south", (south.id,), Turn.STRAIGHT, 25.0, 50.0),
     )
-    return road_map(Road("crossing", (east, south), routes, blocks=blocks))
+    return road_map(Road("crossing", (east, south), routes, blocks=blocks, buildings=buildings))
 
 
 def highway(length: float = 800.0, lanes: int = 3) -> RoadMap:

@@ -5,7 +5,7 @@ from crossing import Frame, crossing, highway, is_colour, share
 
 from codriving.animation.canvas import Canvas
 from codriving.animation.ground import Ground
-from codriving.animation.style import ASPHALT, GREEN, GROUND, INK, PAINT
+from codriving.animation.style import ASPHALT, BUILDING, GREEN, GROUND, INK, PAINT
 from codriving.animation.window import Area, Window
 from codriving.datatypes.road import Block
 from codriving.geometry.road_map import RoadMap
@@ -62,6 +62,13 @@ def test_what_stands_on_the_road_is_seen() -> None:
     frame = drawn(crossing((Block((10.0, 0.0), 2.0, 3.0),)), window)
     x, y = (round(float(v)) for v in window.place((10.0, 0.0)))
     assert share(frame[y - 12 : y + 13, x - 8 : x + 9], INK) > 0.3
+
+
+def test_buildings_are_seen_beside_the_road_and_not_on_it() -> None:
+    window = Window(VIEW, 0.0, 0.0, 8.0)
+    frame = drawn(crossing(buildings=(Block((15.0, 13.0), 20.0, 16.0),)), window)
+    for x, y, colour in ((15, 13, BUILDING), (6, 6, BUILDING), (4, 12, GROUND), (15, 3.5, GROUND), (15, 1, ASPHALT)):
+        assert is_colour(frame, *window.place((x, y)), colour)
 
 
 def test_a_window_is_drawn_in_its_own_part_of_the_frame() -> None:

@@ -43,6 +43,7 @@ INTERSECTION: dict[str, Any] = {
     "turns": ("left", "straight", "right"),
     "blocked_exit": 0.0,
     "blocked_room": 7.0,
+    "blind": None,
     "simulation_frequency": 10.0,
     "decision_frequency": 2.0,
     "time_limit": 50.0,

@@ -73,13 +73,15 @@ def test_a_config_that_does_not_know_patterns_and_blocked_exits_is_one_without_t
     resolved = compose([f"scenario={name}"])
     later = {"pattern": "random", "row_gap": 14.0, "turns": ["left", "straight", "right"]}
     later |= {"blocked_exit": 0.0, "blocked_room": 7.0}
+    later |= {"blind": None} if name == "intersection" else {}
     assert {key: resolved["scenario"][key] for key in later} == later
     scenario = {key: value for key, value in resolved["scenario"].items() if key not in later}
     before = {**resolved, "scenario": scenario, "environment": {**resolved["environment"], "scenario": scenario}}
     assert fingerprint(NAMES, {}, resolved, ()) == fingerprint(NAMES, {}, before, ())
     assert settings_of(resolved) == settings_of(before)
     changes = ("pattern=standoff", "row_gap=15", "turns=[left]", "blocked_exit=20", "blocked_room=8")
-    assert len({told(f"scenario={name}", f"scenario.{change}") for change in changes}) == 5
+    changes += ("blind=8",) if name == "intersection" else ()
+    assert len({told(f"scenario={name}", f"scenario.{change}") for change in changes}) == len(changes)
     assert settings_of(compose([f"scenario={name}", "scenario.pattern=standoff"]))["scenario.pattern"] == '"standoff"'
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from codriving.datatypes import Kind
 from codriving.environment.drivers.style import DriverTraits
+from codriving.environment.traffic.hidden import Hidden
 from codriving.environment.traffic.right_of_way import (
     OVERSHOOT,
     Array,
@@ -49,23 +50,29 @@ class Past:
     """Where all vehicles were in the last seconds."""
 
     def __init__(self) -> None:
-        self._steps: deque[dict[RouteFollower, tuple[float, float, float, float]]] = deque()
+        self._steps: deque[tuple[dict[RouteFollower, tuple[float, float, float, float]], Hidden]] = deque()
         self._dt = 1.0
 
-    def note(self, vehicles: Sequence[RouteFollower], dt: float) -> None:
-        """Remember where they are, before a simulation step [s]."""
+    def note(self, vehicles: Sequence[RouteFollower], dt: float, hidden: Hidden) -> None:
+        """Remember where they are and who sees whom, before a simulation step [s]."""
         self._dt = dt
-        self._steps.append({v: (*v.position.tolist(), float(v.heading), float(v.speed)) for v in vehicles})
+        places = {v: (*v.position.tolist(), float(v.heading), float(v.speed)) for v in vehicles}
+        self._steps.append((places, hidden))
         while len(self._steps) * dt > LONGEST:
             self._steps.popleft()
 
-    def seen(self, driver: RouteFollower, vehicles: Sequence[RouteFollower], reaction: float) -> list[RoadObject]:
-        """Return the others as a driver sees them, whose reaction takes some time [s]."""
+    def seen(
+        self, driver: RouteFollower, vehicles: Sequence[RouteFollower], reaction: float, hidden: Hidden
+    ) -> list[RoadObject]:
+        """Return the others as a driver sees them, whose reaction takes some time [s]; `hidden` is as it is now."""
         ago = min(round(reaction / self._dt), len(self._steps))
-        if ago == 0:
-            return list(vehicles)
-        then = self._steps[-ago]
-        return [DelayedVehicle(v, *then[v], ago * self._dt) if v in then and v is not driver else v for v in vehicles]
+        then, hidden = self._steps[-ago] if ago else ({}, hidden)
+        unseen = hidden.get(driver, frozenset())
+        return [
+            DelayedVehicle(v, *then[v], ago * self._dt) if v in then and v is not driver else v
+            for v in vehicles
+            if v not in unseen
+        ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +168,7 @@ def believed(road_map: RoadMap, vehicle: RouteFollower) -> Spot:
     )
 
 
-def look_round(road_map: RoadMap, vehicles: Sequence[RouteFollower], every: float) -> None:
+def look_round(road_map: RoadMap, vehicles: Sequence[RouteFollower], every: float, hidden: Hidden) -> None:
     """Let every driver with a style look round, as they do from time to time [s], and decide where it waits."""
     around = []
     for vehicle in vehicles:
@@ -172,6 +179,8 @@ def look_round(road_map: RoadMap, vehicles: Sequence[RouteFollower], every: floa
         if judgement is None:
             continue
         waited = vehicle.waits_at is not None
-        vehicle.waits_at = judgement.line(vehicle, around, road_map, every)
+        unseen = hidden.get(vehicle, frozenset())
+        seen = [other for other in around if other[0] not in unseen] if unseen else around
+        vehicle.waits_at = judgement.line(vehicle, seen, road_map, every)
         if waited and vehicle.waits_at is None:
             vehicle.target_speed = vehicle.lane.speed_limit * judgement.traits.speed

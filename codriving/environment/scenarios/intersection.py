@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from codriving.datatypes import Arc, Lane, LaneId, Line, Point, Road, Route, Straight, Turn
+from codriving.datatypes import Arc, Block, Lane, LaneId, Line, Point, Road, Route, Straight, Turn
 from codriving.environment.scenarios.junction import JunctionScenario
 from codriving.environment.scenarios.shapes import turned
 from codriving.errors import require_range
@@ -16,6 +16,8 @@ LANE_WIDTH = 4.0
 RIGHT_TURN_RADIUS = LANE_WIDTH + 5
 LEFT_TURN_RADIUS = RIGHT_TURN_RADIUS + LANE_WIDTH
 OUTER = RIGHT_TURN_RADIUS + LANE_WIDTH / 2  # Distance from the centre at which the legs begin [m]
+
+NEAREST = 7.0  # Buildings as near as this to the middles of the roads leave a metre beside right turns [m]
 
 SPEED_LIMIT = 10.0  # Speed limit on every lane [m/s]
 
@@ -73,6 +75,7 @@ class Intersection(JunctionScenario):
     name = "intersection"
 
     leg_length: float
+    blind: float | None
 
     def check(self) -> None:
         require_range("leg_length", self.leg_length, 40, 500, " m")
@@ -80,9 +83,18 @@ class Intersection(JunctionScenario):
         self.crowd.check(12, 12, self.leg_length - 15, "15 m before the junction at the latest", SPEED_LIMIT)
         self.crowd.require_room(len(LEGS), f"{len(LEGS)} legs")
         self.check_scene()
+        if self.blind is not None:
+            require_range("blind", self.blind, NEAREST, self.leg_length, " m")
 
     @cached_property
     def road(self) -> Road:
         """The junction, with the right of way of highway-env: east-west before north-south."""
         lanes = _lanes(self.leg_length)
-        return Road("intersection", lanes, _routes(lanes, self.exit_distance), regulated=True)
+        return Road("intersection", lanes, _routes(lanes, self.exit_distance), True, buildings=self._buildings())
+
+    def _buildings(self) -> tuple[Block, ...]:
+        """One at each corner, as long as the legs."""
+        if self.blind is None:
+            return ()
+        side, middle = OUTER + self.leg_length - self.blind, (OUTER + self.leg_length + self.blind) / 2
+        return tuple(Block((x * middle, y * middle), side, side) for x in (-1, 1) for y in (-1, 1))

@@ -89,9 +89,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
 
     def following_acceleration(self) -> float:
         """Return IDM's acceleration to the nearest body on the route and the line to wait at, unclipped [m/s2]."""
-        vehicles = self.road.vehicles
-        if self.traits is not None:
-            vehicles = self.road.past.seen(self, vehicles, self.traits.reaction)
+        vehicles = self.road.seen_by(self, None if self.traits is None else self.traits.reaction)
         leader, gap = body_ahead(self, vehicles + self.road.objects, self.sight)
         changing = self.lane_index != self.target_lane_index
         wanted = [0.0]

@@ -15,6 +15,7 @@ from codriving.datatypes import Block
 from codriving.environment.drivers.attention import Past, look_round
 from codriving.environment.network import connected
 from codriving.environment.settings import Corrections
+from codriving.environment.traffic.hidden import Hidden, hidden_vehicles
 from codriving.environment.traffic.human_driver import HumanDriver
 from codriving.environment.traffic.right_of_way import can_wait, meet, motions, occupied_ahead, will_meet
 from codriving.environment.traffic.route_following import RouteFollower
@@ -39,11 +40,26 @@ class Traffic(RegulatedRoad):
         self.road_map, self.corrections = road_map, corrections
         self.objects = [_obstacle(self, block) for block in road_map.road.blocks]
         self._connected: dict[tuple[Any, ...], list[tuple[AbstractLane, float]]] = {}
+        self._hidden: Hidden | None = None
+
+    @property
+    def hidden(self) -> Hidden:
+        """The vehicles that cannot see one another now, worked out once a simulation step."""
+        if self._hidden is None:
+            self._hidden = hidden_vehicles(self.road_map, self.vehicles)
+        return self._hidden
+
+    def seen_by(self, driver: RouteFollower, reaction: float | None) -> list[RoadObject]:
+        """Return the vehicles that a driver sees, as they are or as they were a reaction time [s] ago."""
+        if reaction is not None and self.past is not None:
+            return self.past.seen(driver, self.vehicles, reaction, self.hidden)
+        return [v for v in self.vehicles if v not in self.hidden.get(driver, ())] if self.hidden else self.vehicles
 
     def step(self, dt: float) -> None:
         """Move all vehicles by one simulation step [s]."""
         if not self.corrections.true_collisions:
             super().step(dt)
+            self._hidden = None
             return
         self.steps += 1
         # A driver who looks only twice a second is in the way before it can wait.
@@ -51,12 +67,13 @@ class Traffic(RegulatedRoad):
         every = max(int(1 / dt / frequency), 1)
         if self.past is not None:
             if self.steps % every == 0 and self.road_map.road.regulated:
-                look_round(self.road_map, self.vehicles, every * dt)
-            self.past.note(self.vehicles, dt)
+                look_round(self.road_map, self.vehicles, every * dt, self.hidden)
+            self.past.note(self.vehicles, dt, self.hidden)
         elif self.steps % every == 0:
             self.enforce_road_rules()
         for vehicle in self.vehicles:
             vehicle.step(dt)
+        self._hidden = None
 
     def enforce_road_rules(self) -> None:
         """Tell drivers of lower priority to wait, at the entry of the junction only if that is corrected.
@@ -78,6 +95,8 @@ class Traffic(RegulatedRoad):
         for one, other in combinations(self.vehicles, 2):
             if not (isinstance(one, HumanDriver) or isinstance(other, HumanDriver)):
                 continue
+            if other in self.hidden.get(one, ()):
+                continue
             if soon:
                 if not meet(self.road_map, one, other, soon[one], soon[other]):
                     continue
@@ -93,7 +112,8 @@ class Traffic(RegulatedRoad):
                     break
         for vehicle in self.vehicles:
             if isinstance(vehicle, HumanDriver) and vehicle.waits_at is None:
-                place = occupied_ahead(self.road_map, vehicle, self.vehicles)
+                seen = [other for other in self.vehicles if other not in self.hidden.get(vehicle, ())]
+                place = occupied_ahead(self.road_map, vehicle, seen)
                 if place is not None:
                     vehicle.waits_at = place + vehicle.DISTANCE_WANTED - vehicle.LENGTH / 2
 

@@ -1,7 +1,6 @@
 """The others as a learned driver knows them: what is shared, or only what its own sensors and the map tell."""
 
 from dataclasses import replace
-from math import hypot
 
 from codriving.datatypes import Kind, TrackedVehicle, VehicleState, WorldState
 from codriving.geometry import RoadMap
@@ -23,22 +22,21 @@ class Knowledge:
         cavs, vehicles = world.cavs, world.vehicles
         if not self._shared:
             return {
-                cav.id: tuple(self._stranger(cav.id, v) for v in vehicles if v.id != cav.id and self._near(cav, v))
+                cav.id: tuple(
+                    self._stranger(cav.id, v) for v in vehicles if v.id != cav.id and world.senses(cav, v, self._range)
+                )
                 for cav in cavs
             }
         known = [
             self._partner(v, world) if v.kind is Kind.CAV else self._human(v)
             for v in vehicles
-            if v.kind is Kind.CAV or any(self._near(cav, v) for cav in cavs)
+            if v.kind is Kind.CAV or any(world.senses(cav, v, self._range) for cav in cavs)
         ]
         return {cav.id: tuple(other for other in known if other.id != cav.id) for cav in cavs}
 
     def priority(self, v: VehicleState) -> int | None:
         """Return the rank of a vehicle by the rules of the road, which those who share agree to mind."""
         return self._road_map.lanes[v.lane].priority if self._shared and self._road_map.road.regulated else None
-
-    def _near(self, cav: VehicleState, v: VehicleState) -> bool:
-        return hypot(v.x - cav.x, v.y - cav.y) <= self._range
 
     def _partner(self, v: VehicleState, world: WorldState) -> TrackedVehicle:
         """A CAV that has told its route and its target speed."""

@@ -3,10 +3,9 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import hypot
 from typing import Literal
 
-from codriving.datatypes import Cooperation, DrivingModel, Intent, TrackedVehicle, VehicleState, WorldState
+from codriving.datatypes import Cooperation, DrivingModel, Intent, TrackedVehicle, WorldState
 from codriving.errors import ConfigError
 from codriving.geometry import TRUE
 
@@ -27,9 +26,9 @@ class SharedStates(StateSharing):
     """CAVs share their own states, and those of the human drivers that any of them perceives."""
 
     def detections(self, world: WorldState, model: DrivingModel) -> Detections:
-        """Return the same full states for all: every CAV, and every HDV within range of at least one CAV."""
+        """Return the same full states for all: every CAV, and every HDV that at least one CAV senses."""
         cavs = world.cavs
-        seen = [h for h in world.hdvs if any(_within(c, h, model.detection_range) for c in cavs)]
+        seen = [h for h in world.hdvs if any(world.senses(c, h, model.detection_range) for c in cavs)]
         known = tuple(
             TrackedVehicle(v.id, v.kind, v.x, v.y, v.speed, v.heading, v.acceleration, v.lane, v.length)
             for v in sorted((*cavs, *seen), key=lambda v: v.id)
@@ -39,7 +38,7 @@ class SharedStates(StateSharing):
 
 @dataclass(frozen=True, slots=True)
 class SensedStates(StateSharing):
-    """Without state sharing: position and speed of vehicles within the detection range (paper Section IV-B).
+    """Without state sharing: position and speed of the vehicles that a CAV senses (paper Section IV-B).
 
     Which lane they are on stays open, since a simulator knows by the route on which of two lanes, one above the other,
     a vehicle is; and so does who drives.
@@ -55,14 +54,10 @@ class SensedStates(StateSharing):
                     v.id, None, v.x, v.y, v.speed, v.heading if self.headings else None, None, None, USUAL_LENGTH
                 )
                 for v in world.vehicles
-                if v.id != cav.id and _within(cav, v, model.detection_range)
+                if v.id != cav.id and world.senses(cav, v, model.detection_range)
             )
             for cav in world.cavs
         }
-
-
-def _within(one: VehicleState, other: VehicleState, distance: float) -> bool:
-    return hypot(one.x - other.x, one.y - other.y) <= distance
 
 
 @dataclass(frozen=True, slots=True)

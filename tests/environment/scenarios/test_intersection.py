@@ -30,6 +30,7 @@ DEFAULT: dict[str, Any] = {
     "turns": ("left", "straight", "right"),
     "blocked_exit": 0.0,
     "blocked_room": 7.0,
+    "blind": None,
     "simulation_frequency": 10.0,
     "decision_frequency": 2.0,
     "time_limit": 50.0,
@@ -144,3 +145,31 @@ def test_turns_are_what_they_say() -> None:
     assert turns["south-west"] is Turn.LEFT
     assert turns["south-north"] is Turn.STRAIGHT
     assert turns["east-north"] is Turn.RIGHT
+
+
+def test_buildings_stand_at_the_corners_as_long_as_the_legs() -> None:
+    assert Intersection(**DEFAULT).road.buildings == ()
+    buildings = Intersection(**{**DEFAULT, "blind": 8.0}).road.buildings
+    spans = {
+        tuple(sorted((p - side / 2, p + side / 2)))
+        for building in buildings
+        for p, side in zip(building.position, (building.length, building.width), strict=True)
+    }
+    assert spans == {(8.0, 111.0), (-111.0, -8.0)}
+    assert len({building.position for building in buildings}) == 4
+
+
+@pytest.mark.parametrize("near", [7.0, 100.0])
+def test_buildings_leave_the_lanes_free(near: float) -> None:
+    assert road_map(Intersection(**{**DEFAULT, "blind": near}).road).sight is not None
+
+
+@pytest.mark.parametrize("near", [6.9, 100.1])
+def test_buildings_nearer_or_farther_are_refused(near: float) -> None:
+    with pytest.raises(ConfigError, match=f"blind must be 7 to 100 m, got {near:g}"):
+        Intersection(**{**DEFAULT, "blind": near})
+
+
+def test_buildings_change_no_start() -> None:
+    plain, blind = Intersection(**DEFAULT), Intersection(**{**DEFAULT, "blind": 8.0})
+    assert [plain.scene(seed) for seed in range(10)] == [blind.scene(seed) for seed in range(10)]
