@@ -58,11 +58,11 @@ def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -
 def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDriving":  # noqa: ANN401 - any setting
     """Make an environment in which every CAV is an agent, with the interface of PettingZoo.
 
-    The same, with one agent that decides for all CAVs: ``gymnasium.make("codriving.gym:codriving/<name>-v0")``.
+    The same, with one agent that decides for all CAVs: ``gymnasium.make("codriving.gym:codriving/<name>-v1")``.
 
     Args:
         name: Name of the scenario, for instance ``"roundabout"``.
-        *overrides: ``key=value`` tokens, for instance ``"drivers.headway=1.2"``.
+        *overrides: ``key=value`` tokens, for instance ``"drivers=rough"``.
         **settings: ``cda``, ``rows``, ``coordinates``, ``normalise``, ``reward``, ``render_mode`` and ``config_dir``,
             as :class:`codriving.gym.parallel.ParallelDriving` describes them; all others are keys of the scenario,
             for instance ``cavs=4``.

@@ -219,7 +219,7 @@ def test_no_credit_in_the_middle_stops_the_run_and_a_wait_does_not(tmp_path: Pat
         return busy if request.number % 5 == 2 else FAULTS["ok"]
 
     with Loopback(plan) as server:
-        result = run(server, tmp_path / "busy", "llm.attempts=2", "scenario.time_limit=1")
+        result = run(server, tmp_path / "busy", "llm.attempts=2", "scenario.time_limit=1", "suite=paper")
         assert result.exit_code == 0, result.output
         assert result.stderr.count("takes no more requests for now") == sum(r.number % 5 == 2 for r in server.requests)
         server.plan = lambda request: FAULTS["quota"] if request.number > len(before) + 3 else FAULTS["ok"]

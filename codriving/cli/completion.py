@@ -14,6 +14,7 @@ from codriving.config import (
     LISTED,
     PLUGINS,
     ROOT,
+    SUITE,
     SWEPT,
     TABLES,
     TRAININGS,
@@ -37,6 +38,7 @@ PLURALS = {
     "launchers": "launcher",
     "limits": "limits",
     "drivers": "drivers",
+    "suites": SUITE,
     "experiments": EXPERIMENTS,
     "trainings": TRAININGS,
 }
@@ -78,7 +80,9 @@ class TypedLine:
     def chosen(self, group: str) -> str | None:
         """Return what a group is set to; of several values the first."""
         typed = [token.partition("=")[2] for token in self.overrides if token.partition("=")[0] == group]
-        return typed[-1].split(",")[0] if typed else default_choice(group)
+        if typed or group == SUITE:
+            return typed[-1].split(",")[0] if typed else default_choice(group)
+        return default_choice(group, self.choices(SUITE).get(self.chosen(SUITE) or ""))
 
 
 def complete_override(incomplete: str, line: TypedLine = TypedLine()) -> list[tuple[str, str]]:

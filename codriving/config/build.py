@@ -8,8 +8,9 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
+from codriving.config.choices import choices, values
 from codriving.config.plugins import refuse_missing
-from codriving.config.schema import check_root, texts, unknown, value_shown
+from codriving.config.schema import GROUPS, check_root, texts, unknown, value_shown
 from codriving.config.target import find_class
 from codriving.datatypes import (
     CaseMemory,
@@ -88,7 +89,9 @@ def _build(node: object, expected: Sequence[type], key: str, plugins: Sequence[s
         )
     for name in arguments:
         if name not in parameters:
-            raise unknown(_join(key, name), parameters, key or cls.__name__)
+            files = choices(key) if key in GROUPS else {}
+            others = [other for other, file in files.items() if name in values(file)]
+            raise unknown(_join(key, name), parameters, key or cls.__name__, others)
     for name, parameter in parameters.items():
         if parameter.default is parameter.empty and name not in {**arguments, **handed}:
             raise ConfigError(f"{_join(key, name)} is missing; {cls.__name__} needs it")

@@ -10,7 +10,9 @@ from codriving.errors import ConfigError
 
 EXPERIMENTS = "experiments"  # The group of deltas that reproduce one table or figure each
 
-LISTED = (*GROUPS, EXPERIMENTS)  # Every group that has choices
+SUITE = "suite"  # The group of worlds: choices of other groups, and values; its name is no part of a run
+
+LISTED = (*GROUPS, SUITE, EXPERIMENTS)  # Every group that has choices
 
 TRAININGS = "train"  # The folder of the configs of trainings; no group of a run, which has no training
 
@@ -35,6 +37,7 @@ FIRST = {
     "llm": ("offline",),
     "limits": ("none", "road"),
     "drivers": ("simulator", "attentive", "mixed", "rough"),
+    SUITE: ("default", "paper"),
     "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),
 }
@@ -42,7 +45,7 @@ FIRST = {
 _LINE = re.compile(r"^(\w+):[^\S\n]*([^#\n]*)", re.MULTILINE)
 _STYLE = re.compile(r'^_style_: "(\S+) (\S+) (\S+)"', re.MULTILINE)
 _PARENT = re.compile(r"\[(_\w+), _self_\]")
-_DEFAULT = re.compile(r"^\s*-\s*(\w+):\s*\"?(\w+)", re.MULTILINE)
+_DEFAULT = re.compile(r"^\s*-\s*(?:override /)?(\w+):\s*\"?(\w+)", re.MULTILINE)
 
 
 def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
@@ -113,9 +116,10 @@ def values(file: Path) -> dict[str, str]:
     return {**(values(conf_dir() / file.parent.name / f"{parent[1]}.yaml") if parent else {}), **own}
 
 
-def default_choice(group: str) -> str | None:
-    """Return what a group is set to when nothing is said."""
-    choice = dict(_DEFAULT.findall((conf_dir() / "config.yaml").read_text(encoding="utf-8"))).get(group)
+def default_choice(group: str, suite: Path | None = None) -> str | None:
+    """Return what a group is set to when nothing is said, or only the suite."""
+    files = (conf_dir() / "config.yaml", *([suite] if suite else []))
+    choice = dict(pair for file in files for pair in _DEFAULT.findall(read_yaml(file))).get(group)
     return None if choice == "null" else choice
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 from unicodedata import digit
 
-from codriving.config.choices import LISTED, choices
+from codriving.config.choices import LISTED, SUITE, choices
 from codriving.config.schema import GROUPS, ROOT, SHOWN, looks_secret, value_shown
 from codriving.errors import ConfigError
 
@@ -46,7 +46,11 @@ def prepare(token: str, config_dir: Path | None = None) -> str:
     head, _, rest = key.partition(".")
     if head == "method" and rest in SHOWN:
         raise ConfigError(f"{key} is no setting of a run, but what a YAML says for tables; leave it out")
+    if head == SUITE:
+        raise ConfigError(f"{key}: a suite has no keys of its own, it chooses other groups; set theirs")
     if head not in GROUPS[2:] and (slot := rest.partition(".")[0]) in GROUPS:
+        if slot == "drivers":
+            rest = f"drivers=simulator {rest}"
         why = "has moved in release 0.2" if slot == "drivers" else f"is {slot} itself"
         raise ConfigError(f"{key} {why}; set {rest} instead")
     if key in ROOT and ROOT[key].kind is str and not isinstance(override.value(), str | None):

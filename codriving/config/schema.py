@@ -94,12 +94,14 @@ KEYS = (
 ROOT = {key.name: key for key in KEYS}
 
 
-def unknown(key: str, known: Iterable[str], where: str) -> ConfigError:
+def unknown(key: str, known: Iterable[str], where: str, others: Iterable[str] = ()) -> ConfigError:
     """Make the error for a key that is not read."""
     names = sorted(known)
     node, dot, last = key.rpartition(".")
     close = difflib.get_close_matches(last, names, n=1)
     hint = f"did you mean {node}{dot}{close[0]}? " if close else ""
+    if choices := " or ".join(f"{node}={name}" for name in others):
+        hint = f"it is a key of {choices}; "
     return ConfigError(f"unknown key {key}; {hint}keys of {where}: {', '.join(names) or 'none'}")
 
 

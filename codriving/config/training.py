@@ -4,11 +4,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from codriving.config.choices import TRAININGS, choices
+from codriving.config.choices import SUITE, TRAININGS, choices
 from codriving.config.compose import check_secrets, compose, one_line, resolve
 from codriving.config.overrides import parse, shown, written
 from codriving.config.schema import unknown
 from codriving.errors import ConfigError
+
+_OPEN = (["settings"], ["reward"], ["world"])
+
+WORLD = (SUITE, "limits", "drivers")  # The groups that say in what world a training drives
 
 
 def trainings(config_dir: Path | None = None) -> dict[str, Path]:
@@ -56,23 +60,29 @@ def compose_training(
                 f"{shown(teacher[0])}: this training has no teacher, so no model can be chosen for it; leave it out"
             )
         config["guidance"]["llm"] = compose(teacher, config_dir)["llm"]
+    if bare := [token for token in overrides if token.partition("=")[0] in WORLD]:
+        raise ConfigError(f"{bare[0]}: the world of a training is a part of its config; write world.{bare[0]}")
     for override, token in ((parse(token), token) for token in overrides if token not in teacher):
         if override.is_delete() or override.is_sweep_override():
             raise ConfigError(f"{shown(token)}: a training takes one value for each key")
         _set(config, override.key_or_group, override.value())
+    if isinstance(world := config.get("world"), Mapping):
+        if strange := [key for key in world if key not in WORLD]:
+            raise unknown(f"world.{strange[0]}", WORLD, "world")
+        compose([f"{key}={value}" for key, value in world.items()], config_dir)
     check_secrets(config)
     return config
 
 
 def _set(config: dict[str, Any], key: str, value: object) -> None:
-    """Set a key that is there already; ``settings`` and ``reward`` may get others, which their classes check."""
+    """Set a key that is there already; mappings in ``_OPEN`` may get others, which are checked later."""
     node: Any = config
     path = key.split(".")
     for depth, part in enumerate(path):
         found = dict(enumerate(node)) if isinstance(node, list) else node if isinstance(node, Mapping) else {}
         names = {str(name): name for name in found}
         last = depth == len(path) - 1
-        checked_later = last and isinstance(node, Mapping) and path[depth - 1 : depth] in (["settings"], ["reward"])
+        checked_later = last and isinstance(node, Mapping) and path[depth - 1 : depth] in _OPEN
         if part not in names and not checked_later:
             raise unknown(key, names, ".".join(path[:depth]) or "the training")
         if last:

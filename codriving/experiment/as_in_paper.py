@@ -23,7 +23,7 @@ def results_of(
 
 
 def _is_papers_setting(cell: Cell) -> bool:
-    """Whether scenario, number of vehicles, simulator and drivers are those of the shipped YAMLs."""
+    """Whether scenario and number of vehicles are those of the shipped YAMLs, and the world is the paper's."""
     scenario = cell.labels.scenario
     if scenario not in choices("scenario"):
         return False
@@ -32,5 +32,5 @@ def _is_papers_setting(cell: Cell) -> bool:
 
 @cache
 def _shipped(scenario: str) -> dict[str, Any]:
-    config = compose([f"scenario={scenario}"])
+    config = compose([f"scenario={scenario}", "suite=paper"])
     return {key: config[key] for key in ("scenario", "environment")}

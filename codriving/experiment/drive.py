@@ -48,6 +48,7 @@ from codriving.runs import (
     commit,
     machine,
     new_run_path,
+    only_old_world,
     read_timing,
     redact,
     removed,
@@ -141,6 +142,8 @@ def drive(
         # Before the folder is made: a model that cannot be reached leaves nothing behind.
         found.preflight()
         prepare(cell.resolved for cell in plan.driven)
+        if only_old_world(plan.output) and any(cell.choices.get("limits") != "none" for cell in plan.cells):
+            print(_new_world(plan.output), file=sys.stderr)
     asked = manifest_of(plan, found.served)
     path = plan.output / plan.experiment
     path = path / plan.run if plan.run else new_run_path(path, datetime.now())
@@ -329,6 +332,14 @@ def _records(
             if record is not None and (errors or record.outcome.ending is not Ending.ERROR):
                 found[unit] = record
     return found
+
+
+def _new_world(output: Path) -> str:
+    return (
+        f"The runs in {output} are of a release before 0.2. The default world has changed: vehicles have limits "
+        "and human drivers differ (limits=road drivers=attentive). suite=paper is the world of before, though not its "
+        "methods."
+    )
 
 
 def _again(damaged: Sequence[DamagedEpisodeError]) -> str:

@@ -13,14 +13,8 @@ from codriving.environment import Environment
 from codriving.errors import ConfigError
 from codriving.reasoning import CdaLevel
 
-READ = (
-    "scenario",
-    "environment",
-    "limits",
-    "drivers",
-    "cda",
-    "plugins",
-)  # Keys of the root that make a difference here
+# Keys of the root that make a difference here.
+READ = ("scenario", "environment", "limits", "drivers", "suite", "cda", "plugins")
 
 CHOSEN = ("scenario", "cda")  # Groups that are chosen by an argument, and not by an override
 
@@ -49,7 +43,7 @@ def configured(
 def _check_read(token: str) -> None:
     """Refuse what would have no effect, such as a key that is not read here."""
     if not isinstance(token, str):
-        raise ConfigError(f"an override is a text such as 'drivers.headway=1.2', got {token!r}")
+        raise ConfigError(f"an override is a text such as 'drivers=rough', got {token!r}")
     key = token.lstrip("+").partition("=")[0]
     if key in CHOSEN:
         way = "the first argument" if key == "scenario" else "cda='<preset>'"

@@ -20,8 +20,8 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
 
     metadata = METADATA
 
-    def __init__(self, name: str, overrides: Sequence[str] = (), **settings: Any) -> None:  # noqa: ANN401
-        self.parallel = ParallelDriving(name, *overrides, **settings)
+    def __init__(self, name: str, overrides: Sequence[str] = (), suite: str = "default", **settings: Any) -> None:  # noqa: ANN401
+        self.parallel = ParallelDriving(name, f"suite={suite}", *overrides, **settings)
         self.render_mode, self.metadata = self.parallel.render_mode, self.parallel.metadata
         self.observation_space = self.parallel.state_space
         self.action_space = MultiDiscrete([len(ACTIONS)] * len(self.parallel.possible_agents))

@@ -30,7 +30,8 @@ class ParallelDriving(ParallelEnv):
 
     Args:
         name: Name of the scenario, for instance ``roundabout``.
-        *overrides: ``key=value`` tokens that begin with ``scenario``, ``environment``, ``cda`` or ``plugins``.
+        *overrides: ``key=value`` tokens that begin with ``scenario``, ``environment``, ``suite``, ``limits``,
+            ``drivers``, ``cda`` or ``plugins``.
         cda: How far the CAVs cooperate, which decides what they observe; a preset such as ``status_sharing``.
         coordinates: ``relative`` or ``absolute`` places of the other vehicles.
         render_mode: ``rgb_array``, or None for no pictures.
@@ -63,7 +64,8 @@ class ParallelDriving(ParallelEnv):
         observer = CdaObserver(self.environment.road_map, model, level, layout)
         self._drive = AgentEpisode(self.environment, observer, weights)
         self.name, self.render_mode, self.lanes = name, render_mode, observer.lanes
-        self.metadata = {**METADATA, "name": f"codriving_{name}_v0", "render_fps": 1 / model.decision_interval}
+        version = 0 if [token for token in overrides if token.startswith("suite=")][-1:] == ["suite=paper"] else 1
+        self.metadata = {**METADATA, "name": f"codriving_{name}_v{version}", "render_fps": 1 / model.decision_interval}
         self.possible_agents = list(self._drive.cavs)
         self.observation_spaces = {agent: observer.space() for agent in self.possible_agents}
         self.action_spaces = {agent: Discrete(len(ACTIONS)) for agent in self.possible_agents}

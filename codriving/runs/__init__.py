@@ -26,7 +26,7 @@ from codriving.runs.identity import (
     snapshot_of,
 )
 from codriving.runs.intact import RECORD, TRAJECTORY, check_files, rewrite_record
-from codriving.runs.manifest import FORMAT, MANIFEST, Manifest, read_manifest
+from codriving.runs.manifest import FORMAT, MANIFEST, Manifest, only_old_world, read_manifest
 from codriving.runs.provenance import commit, machine, versions
 from codriving.runs.redaction import MASK, flat, nested, redact, secrets_of, variables_in
 from codriving.runs.run_folder import RunFolder, locked, new_run_path, removed, unwritable, within
@@ -36,7 +36,7 @@ __all__ = [
     "BEHAVIOUR", "CHOICES", "EPISODES", "FORMAT", "MANIFEST", "MASK", "MEMORY", "RECORD", "TRAJECTORY", "UNNAMED",
     "CellEntry", "Manifest", "NamedFile", "RunFolder", "Timing", "changed_versions", "check_files", "commit",
     "driving_values", "episode_folder", "files_of", "fingerprint", "flat", "locked", "machine", "nested",
-    "new_run_path", "read_decisions", "read_manifest", "read_record", "read_timing", "read_trajectory", "redact",
-    "removed", "rewrite_record", "secrets_of", "settings_of", "snapshot_of", "timing_of", "unwritable", "variables_in",
-    "versions", "whole_file", "whole_folder", "within", "write_episode", "write_text",
+    "new_run_path", "only_old_world", "read_decisions", "read_manifest", "read_record", "read_timing",
+    "read_trajectory", "redact", "removed", "rewrite_record", "secrets_of", "settings_of", "snapshot_of", "timing_of",
+    "unwritable", "variables_in", "versions", "whole_file", "whole_folder", "within", "write_episode", "write_text",
 ]  # fmt: skip

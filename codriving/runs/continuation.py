@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from codriving.errors import RunFolderError
-from codriving.runs.identity import BEHAVIOUR, CellEntry, changed_files, same_cell, same_settings
+from codriving.runs.identity import BEHAVIOUR, NEW_WORLD, CellEntry, changed_files, same_cell, same_settings
 from codriving.runs.manifest import Manifest
 
 
@@ -20,9 +20,10 @@ def continued(folder: Path, there: Manifest, here: Manifest) -> Manifest:
         if old is None:
             _refuse_changed(folder, there.cells, cell)
     if all(old is None for old, _ in pairs):
+        world = ", of which suite=paper is the world unless it named another," if there.behaviour < NEW_WORLD else ""
         raise RunFolderError(
-            f"{folder} holds a run of another config: {_difference(there.cells, here.cells[0])}; repeat its settings "
-            "to go on with it, or choose another run=<name>"
+            f"{folder} holds a run of another config: {_difference(there.cells, here.cells[0])}; repeat its settings"
+            f"{world} to go on with it, or choose another run=<name>"
         )
     taken = {cell.folder.casefold() for cell in there.cells}
     asked = {
@@ -40,6 +41,8 @@ def continued(folder: Path, there: Manifest, here: Manifest) -> Manifest:
 def other_behaviour(folder: Path, there: Manifest) -> RunFolderError:
     """Return the error for a folder to which this version must not add, since it would drive otherwise."""
     release = there.versions.get("codriving", "another release")
+    if ".dev" in release and there.commit:
+        release += f" of commit {there.commit[:10]}"
     return RunFolderError(
         f"{folder} was driven by codriving {release} (behaviour {there.behaviour}, here {BEHAVIOUR}), so it can be "
         f"replayed and reported but not extended; extend it with codriving {release}, or choose another run=<name>"

@@ -14,8 +14,10 @@ from codriving.runs.redaction import flat, redact
 
 # The behaviour number: raised by every commit that changes a hash in tests/sameness/golden. A run folder of another
 # number is replayed, scored and reported, but not extended. Release 0.1 drives behaviour 1; since 2 a lane change looks
-# for vehicles on the far side by how fast they close in.
-BEHAVIOUR = 2
+# for vehicles on the far side by how fast they close in. With 3 the default world is another one.
+BEHAVIOUR = 3
+
+NEW_WORLD = 3  # The first number whose default world is not ``suite=paper``
 
 # Keys that do not change what is driven; templates and plug-ins are told by their content, metrics by their scores.
 WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render", "prompts", "plugins", "metrics")

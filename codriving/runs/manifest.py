@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from codriving.errors import RunFolderError
-from codriving.runs.identity import CellEntry, settings_of, snapshot_of
+from codriving.runs.identity import NEW_WORLD, CellEntry, settings_of, snapshot_of
 from codriving.runs.json_files import decode, parse_json
 from codriving.runs.redaction import nested
 
@@ -74,6 +74,20 @@ def read_manifest(folder: Path) -> Manifest | None:
             "another run=<name>: the episodes in the old folder stay readable"
         ) from error
     return manifest
+
+
+def only_old_world(output: Path) -> bool:
+    """Tell whether there are runs below an output folder, and all of them of before the default world changed."""
+    manifests = sorted(output.glob(f"*/*/{MANIFEST}"), reverse=True)  # Of runs named by their time the newest first
+    return bool(manifests) and all(_behaviour(path) < NEW_WORLD for path in manifests)
+
+
+def _behaviour(path: Path) -> int:
+    try:
+        plain = parse_json(path.read_text(encoding="utf-8"))
+        return int(plain.get("behaviour", 1)) if isinstance(plain, dict) else NEW_WORLD
+    except (OSError, ValueError, TypeError, RecursionError):
+        return NEW_WORLD  # Of what cannot be read nothing is said
 
 
 def _of_release_0_1(plain: dict[str, Any]) -> dict[str, Any]:

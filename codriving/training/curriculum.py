@@ -1,7 +1,8 @@
 """What is driven in a training, how often and from when on, and the numbers that change on the way."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from codriving.errors import ConfigError
@@ -17,6 +18,11 @@ def at_least(part: object, **least: int) -> None:
     for name, smallest in least.items():
         if getattr(part, name) < smallest:
             raise ConfigError(f"{name} must be {smallest} or more, got {getattr(part, name)}")
+
+
+def overrides(world: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the overrides of a run that say in what world it drives."""
+    return tuple(f"{group}={choice}" for group, choice in world.items())
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +51,7 @@ class CooperativeTraffic:
     weight: float
     since: float
     settings: Mapping[str, Any]
+    world: Mapping[str, str] = field(default_factory=dict)  # That of the training
 
     def __post_init__(self) -> None:
         if self.cavs[0] > self.cavs[1]:
@@ -60,7 +67,8 @@ class CooperativeTraffic:
 
         settings = {"hdvs": list(self.hdvs), **self.settings}
         numbers = range(self.cavs[0], self.cavs[1] + 1)
-        return tuple(ParallelDriving(self.scenario, rows=1, reward=reward, cavs=n, **settings) for n in numbers)
+        make = partial(ParallelDriving, self.scenario, *overrides(self.world), rows=1, reward=reward, **settings)
+        return tuple(make(cavs=n) for n in numbers)
 
 
 def shares(kinds: tuple[CooperativeTraffic, ...], progress: float) -> list[float]:
@@ -78,6 +86,7 @@ class SingleTraffic:
     hdvs: tuple[int, int]
     copies: int
     settings: Mapping[str, Any]
+    world: Mapping[str, str] = field(default_factory=dict)  # That of the training
 
     def __post_init__(self) -> None:
         at_least(self, copies=1)
@@ -87,4 +96,5 @@ class SingleTraffic:
         from codriving.gym import SingleDriving
 
         settings = {"hdvs": list(self.hdvs), **self.settings}
-        return SingleDriving(self.scenario, observer, ACTIONS[family], reward=reward, cavs=self.cavs, **settings)
+        make = partial(SingleDriving, self.scenario, observer, ACTIONS[family], overrides(self.world))
+        return make(reward=reward, cavs=self.cavs, **settings)

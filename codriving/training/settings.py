@@ -1,7 +1,7 @@
 """Every number of a training; the YAMLs in conf/train are calls of these classes."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from codriving.errors import ConfigError
 from codriving.gym import RewardWeights, reward_weights
@@ -26,6 +26,7 @@ class Settings:
     clip: float
     rate: Linear
     reward: Mapping[str, float]
+    world: Mapping[str, str]  # Choices of ``suite``, ``limits`` and ``drivers`` in which it trains and is validated
     exams: tuple[Exam, ...]
     exam_every: int
     exam_seed: int  # First seed of the validations; ``LEAST_SEED`` or more
@@ -39,6 +40,9 @@ class Settings:
             raise ConfigError(f"hidden must name the units of at least one layer, got {list(self.hidden)}")
         self._below_one("discount")
         reward_weights(self.reward)
+        for name in ("exams", "traffic"):
+            parts = tuple(replace(part, world=self.world) for part in getattr(self, name))
+            object.__setattr__(self, name, parts)
 
     def _one_of(self, name: str, choices: tuple[str, ...]) -> None:
         if getattr(self, name) not in choices:

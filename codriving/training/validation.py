@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from codriving.datatypes import Ending
 from codriving.methods import AnyNetwork, Features, greedy
-from codriving.training.curriculum import at_least
+from codriving.training.curriculum import at_least, overrides
 from codriving.training.episode import drive
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ class Exam:
     hdvs: tuple[int, int]
     episodes: int
     settings: Mapping[str, Any] = field(default_factory=dict)
+    world: Mapping[str, str] = field(default_factory=dict)  # That of the training
 
     def __post_init__(self) -> None:
         at_least(self, episodes=1)
@@ -33,7 +34,9 @@ class Exam:
         """Its environment."""
         from codriving.gym import ParallelDriving
 
-        return ParallelDriving(self.scenario, rows=1, cavs=self.cavs, hdvs=list(self.hdvs), **self.settings)
+        return ParallelDriving(
+            self.scenario, *overrides(self.world), rows=1, cavs=self.cavs, hdvs=list(self.hdvs), **self.settings
+        )
 
 
 @dataclass(frozen=True, slots=True)

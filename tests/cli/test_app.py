@@ -106,6 +106,7 @@ def test_list_without_a_group_shows_all_groups() -> None:
         "launchers",
         "limits",
         "drivers",
+        "suites",
         "experiments",
         "trainings",
     ]

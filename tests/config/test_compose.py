@@ -87,7 +87,7 @@ def test_unknown_key_of_the_root(plus: str) -> None:
         ("method.cda.negotiation=false", "method.cda.negotiation is cda itself; set cda.negotiation instead"),
         (
             "environment.drivers.sight=50",
-            "environment.drivers.sight has moved in release 0.2; set drivers.sight instead",
+            "environment.drivers.sight has moved in release 0.2; set drivers=simulator drivers.sight instead",
         ),
         ("environment.scenario.cavs=3", "environment.scenario.cavs is scenario itself; set scenario.cavs instead"),
         ("output=${nothing}", "Interpolation key 'nothing' not found"),

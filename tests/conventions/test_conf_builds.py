@@ -8,7 +8,7 @@ import yaml
 from remembered import experience, filled
 
 from codriving.config.build import build, validate
-from codriving.config.choices import EXPERIMENTS, LISTED, TRAININGS, choices, describe
+from codriving.config.choices import EXPERIMENTS, LISTED, SUITE, TRAININGS, choices, describe
 from codriving.config.compose import compose
 from codriving.config.locate import conf_dir, experiments_dir
 from codriving.config.schema import GROUPS, OPTIONAL
@@ -35,9 +35,9 @@ def test_choice_builds(group: str, name: str, tmp_path: Path) -> None:
     assert not hidden, f"defaults live in YAML alone, but {group}/{name}.yaml does not show {hidden}"
 
 
-@pytest.mark.parametrize("name", choices(EXPERIMENTS))
-def test_experiment_composes_to_a_valid_config(name: str) -> None:
-    validate(compose([f"{EXPERIMENTS}={name}"]))
+@pytest.mark.parametrize(("group", "name"), [(g, name) for g in (EXPERIMENTS, SUITE) for name in choices(g)])
+def test_experiments_and_suites_compose_to_a_valid_config(group: str, name: str) -> None:
+    validate(compose([f"{group}={name}"]))
 
 
 def test_default_config_is_valid() -> None:
@@ -45,7 +45,7 @@ def test_default_config_is_valid() -> None:
 
 
 def test_every_group_has_a_choice_and_every_folder_is_a_group() -> None:
-    assert {path.name for path in conf_dir().iterdir() if path.is_dir()} == {*GROUPS, TRAININGS}
+    assert {path.name for path in conf_dir().iterdir() if path.is_dir()} == {*GROUPS, SUITE, TRAININGS}
     assert all(choices(group) for group in LISTED)
 
 

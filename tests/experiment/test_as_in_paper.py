@@ -12,7 +12,7 @@ from codriving.experiment.plan import make_plan
 
 def stands(*overrides: str, seeds: range = range(20)) -> tuple[bool, bool]:
     """Whether a cell has the paper's setting, and whether also its number of seeds."""
-    (cell,) = make_plan(expand(["launcher=serial", *overrides])).cells
+    (cell,) = make_plan(expand(["launcher=serial", "suite=paper", *overrides])).cells
     results = results_of(cell, [cast(Any, SimpleNamespace(seed=seed)) for seed in seeds], {})
     return results.papers_setting, results.as_in_paper
 
@@ -34,6 +34,9 @@ def test_other_seeds_are_not(seeds: range) -> None:
         "scenario.hdvs=[0,0]",
         "scenario.time_limit=20",
         "drivers.headway=1.2",
+        "drivers=attentive",
+        "limits=road",
+        "suite=default",
         "environment.corrections.no_reverse=false",
     ],
 )

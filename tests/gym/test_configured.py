@@ -23,7 +23,7 @@ def test_keywords_are_keys_of_the_scenario() -> None:
 
 
 def test_overrides_reach_scenario_and_environment() -> None:
-    env = codriving.parallel_env("intersection", "scenario.cavs=5", "drivers.headway=1.2")
+    env = codriving.parallel_env("intersection", "scenario.cavs=5", "drivers=simulator", "drivers.headway=1.2")
     assert len(env.possible_agents) == 5
     assert env.environment.drivers.headway == 1.2
 
@@ -85,7 +85,7 @@ def own_configs(tmp_path: Path) -> Path:
 def test_scenarios_of_the_user_are_environments_too(own_configs: Path) -> None:
     env = codriving.parallel_env("mine", config_dir=own_configs)
     assert isinstance(env, ParallelDriving)
-    assert env.metadata["name"] == "codriving_mine_v0"
+    assert env.metadata["name"] == "codriving_mine_v1"
     assert env.observation_space("CAV1").high[0, 0] == pytest.approx(171)
 
 

@@ -16,7 +16,7 @@ from codriving.gym.joint import JointDriving
 
 
 def make(name: str = "intersection", **settings: Any) -> JointDriving:
-    made = gymnasium.make(f"codriving/{name}-v0", **settings).unwrapped
+    made = gymnasium.make(f"codriving/{name}-v1", **settings).unwrapped
     assert isinstance(made, JointDriving)
     return made
 
@@ -110,7 +110,7 @@ def test_drawn_episodes_follow_the_seed(joint: JointDriving) -> None:
 
 
 def test_several_at_once() -> None:
-    envs = gymnasium.make_vec("codriving/intersection-v0", num_envs=2, vectorization_mode="sync", cavs=3)
+    envs = gymnasium.make_vec("codriving/intersection-v1", num_envs=2, vectorization_mode="sync", cavs=3)
     observation, info = envs.reset(seed=[0, 1])
     assert observation.shape == (2, 3, 8, 6)
     assert info["seed"].tolist() == [0, 1]
@@ -119,7 +119,7 @@ def test_several_at_once() -> None:
 
 
 def test_settings_and_overrides_reach_the_environment() -> None:
-    env = make(overrides=("drivers.headway=1.2",), cavs=3, rows=5, cda="status_sharing")
+    env = make(overrides=("drivers=simulator", "drivers.headway=1.2"), cavs=3, rows=5, cda="status_sharing")
     assert env.observation_space.shape == (3, 5, 6)
     assert env.parallel.environment.drivers.headway == 1.2
     with pytest.raises(ConfigError, match=r"unknown key scenario\.cvas"):

@@ -59,7 +59,7 @@ def test_nothing_to_draw_before_the_first_episode(make: Make) -> None:
 
 
 def test_gymnasium_collects_pictures() -> None:
-    env = gymnasium.make("codriving/intersection-v0", render_mode="rgb_array_list")
+    env = gymnasium.make("codriving/intersection-v1", render_mode="rgb_array_list")
     env.reset(seed=1)
     env.step(np.ones(4, dtype=np.int64))
     frames = env.render()

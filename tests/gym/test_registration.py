@@ -5,8 +5,10 @@ import sys
 from pathlib import Path
 
 import gymnasium
+import pytest
 
 from codriving.config.choices import choices
+from codriving.gym.joint import JointDriving
 from codriving.gym.registration import env_id, register_scenarios
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -24,14 +26,26 @@ def test_every_scenario_is_registered() -> None:
     assert {env_id(name) for name in choices("scenario")} <= set(gymnasium.registry)
 
 
+def test_the_version_of_an_id_is_that_of_its_world() -> None:
+    now = gymnasium.make("codriving/merge-v1").unwrapped
+    with pytest.warns(DeprecationWarning, match="consider upgrading to version `v1`"):
+        before = gymnasium.make("codriving/merge-v0", overrides=["cda.safety_check=false"]).unwrapped
+    assert isinstance(now, JointDriving)
+    assert isinstance(before, JointDriving)
+    worlds = [made.parallel.environment for made in (before, now)]
+    assert [world.limits is None for world in worlds] == [True, False]
+    assert [hasattr(world.drivers, "styles") for world in worlds] == [False, True]
+    assert [made.metadata["name"] for made in (before, now)] == ["codriving_merge_v0", "codriving_merge_v1"]
+
+
 def test_the_prefix_registers() -> None:
-    code = "import gymnasium; print(gymnasium.make('codriving.gym:codriving/merge-v0').spec.id)"
-    assert run(code) == "codriving/merge-v0"
+    code = "import gymnasium; print(gymnasium.make('codriving.gym:codriving/merge-v1').spec.id)"
+    assert run(code) == "codriving/merge-v1"
 
 
 def test_importing_the_room_registers() -> None:
     code = "import gymnasium, codriving.gym; gymnasium.register_envs(codriving.gym); "
-    assert run(code + "print(gymnasium.spec('codriving/intersection-v0').id)") == "codriving/intersection-v0"
+    assert run(code + "print(gymnasium.spec('codriving/intersection-v1').id)") == "codriving/intersection-v1"
 
 
 def test_importing_us_alone_imports_nothing_heavy() -> None:

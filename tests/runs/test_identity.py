@@ -29,7 +29,7 @@ def told(*overrides: str, names: tuple[str, ...] = NAMES, files: tuple[NamedFile
 
 
 def test_the_behaviour_number_is_written_down() -> None:
-    assert BEHAVIOUR == 2
+    assert BEHAVIOUR == 3
 
 
 @pytest.mark.parametrize(
@@ -44,6 +44,12 @@ def test_how_much_is_driven_where_and_how_fast_tells_nothing(override: str) -> N
 )
 def test_names_and_values_tell(override: str) -> None:
     assert told(override) != told()
+
+
+def test_a_suite_is_told_by_its_values_alone() -> None:
+    assert told("suite=paper") == told("limits=none", "drivers=simulator")
+    assert told("suite=default") == told() == told("suite=paper", "limits=road", "drivers=attentive")
+    assert told("suite=paper") != told()
 
 
 def test_a_config_that_does_not_know_limits_is_one_without_them() -> None:

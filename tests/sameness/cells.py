@@ -48,23 +48,28 @@ class Cell:
         overrides: What a user types after the command.
         command: The command; those that learn name their seeds themselves.
         model: Whether a language model answers, the one in ``model.py``.
+        suite: The world; that of version 0.1 unless a cell is meant to show another.
     """
 
     name: str
     overrides: tuple[str, ...]
     command: tuple[str, ...] = ("run",)
     model: bool = False
+    suite: str = "paper"
 
     @property
     def typed(self) -> tuple[str, ...]:
         """The whole command but for the name of the run and the address of the model."""
         if self.command == ("memory", "build"):
-            return (*self.command, *self.overrides, "launcher=serial")
-        return (*self.command, *self.overrides, f"seed={SEED}", f"episodes={self.episodes}", "launcher=serial")
+            return (*self.command, f"suite={self.suite}", *self.overrides, "launcher=serial")
+        world = (*self.command, f"suite={self.suite}", *self.overrides)
+        return (*world, f"seed={SEED}", f"episodes={self.episodes}", "launcher=serial")
 
     @property
     def episodes(self) -> int:
         """How many episodes are driven."""
+        if self.suite != "paper":
+            return 1
         learns = self.model or any("memory" in token for token in (*self.command, *self.overrides))
         return EPISODES if FULL or learns else 1
 
@@ -125,6 +130,13 @@ def _environment() -> Iterator[Cell]:
     yield Cell("offline intersection", _in("intersection", "llm=offline"))
 
 
+def _new_world() -> Iterator[Cell]:
+    """The default world of today: limits, and human drivers who differ."""
+    for scenario in LIMITS:
+        for method in ("codriving", "fcfs", "mcts", "pidm"):
+            yield Cell(f"default {method} {scenario}", _in(scenario, f"method={method}"), suite="default")
+
+
 def _memories() -> Iterator[Cell]:
     """Memories are of the intersection and the merge; a low bar lets more of them count."""
     unchecked = ("cda.safety_check=false", "memory.least_similarity=0.8")
@@ -160,4 +172,4 @@ def _models() -> Iterator[Cell]:
     yield Cell("model reflects dilu intersection", dilu, model=True)
 
 
-CELLS = (*_methods(), *_cooperation(), *_environment(), *_memories(), *_models())
+CELLS = (*_methods(), *_cooperation(), *_environment(), *_memories(), *_models(), *_new_world())

@@ -12,7 +12,7 @@ HERE = Path(__file__).parent
 MADE = HERE / "folder-0.1" / "run"
 SETTINGS = (
     "scenario=intersection", "scenario.cavs=2", "scenario.hdvs=[1,1]", "scenario.simulation_frequency=5",
-    "scenario.decision_frequency=1", "seed=10000", "launcher=serial",
+    "scenario.decision_frequency=1", "seed=10000", "launcher=serial", "suite=paper",
 )  # fmt: skip
 PLAIN = ("run", *SETTINGS, "method=codriving,fcfs", "scenario.time_limit=16")
 FROZEN = ("run", *SETTINGS, "memory=frozen", f"memory.file={MEMORY}", "scenario.time_limit=6")
@@ -66,10 +66,18 @@ def test_a_run_is_not_extended(folders: Path, name: str, command: tuple[str, ...
     code, said = codriving(*command, f"episodes={seeds}", f"run={name}")
     assert code == 2
     assert said.splitlines()[-1] == (
-        f"error: {Path('outputs', 'run', name)} was driven by codriving 0.1.0 (behaviour 1, here 2), so it can be "
+        f"error: {Path('outputs', 'run', name)} was driven by codriving 0.1.0 (behaviour 1, here 3), so it can be "
         "replayed and reported but not extended; extend it with codriving 0.1.0, or choose another run=<name>"
     )
     assert everything(folders / name) == everything(MADE / name)
+
+
+def test_the_same_command_without_the_suite_is_told_of_it(folders: Path) -> None:
+    code, said = codriving(*(token for token in PLAIN if token != "suite=paper"), "episodes=2", "run=plain")
+    assert code == 2
+    assert "repeat its settings, of which suite=paper is the world unless it named another, to go on" in said
+    assert "limits.braking was absent, is now 8.0" in said or "drivers" in said
+    assert everything(folders / "plain") == everything(MADE / "plain")
 
 
 @pytest.mark.parametrize(
