@@ -175,6 +175,14 @@ class Method(ABC):
         """
         return {}
 
+    def remark(self, road: Road, world: Mapping[str, str]) -> str:
+        """Return what a reader of its numbers has to know, in one line; empty if it is nothing.
+
+        Args:
+            world: Names of the ``limits`` and ``drivers`` with which it drives.
+        """
+        return ""
+
     @abstractmethod
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing of the one before is left.

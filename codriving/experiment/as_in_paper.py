@@ -17,9 +17,8 @@ def results_of(
 ) -> CellResults:
     """Give the episodes of a cell to the tables."""
     setting = _is_papers_setting(cell)
-    return CellResults(
-        records, swept, cpu, cell.score_name, setting, setting and [record.seed for record in records] == SEEDS
-    )
+    with_seeds = setting and [record.seed for record in records] == SEEDS
+    return CellResults(records, swept, cpu, cell.score_name, setting, with_seeds, cell.remark)
 
 
 def _is_papers_setting(cell: Cell) -> bool:

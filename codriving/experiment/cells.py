@@ -39,6 +39,7 @@ class Cell:
     choices: Mapping[str, str] = field(default_factory=dict)
     files: tuple[NamedFile, ...] = ()
     score: str = ""  # Name of its scores in a record; empty for that of the metric
+    remark: str = ""  # What a reader of its numbers has to know of the method
 
     @property
     def score_name(self) -> str:
@@ -90,8 +91,9 @@ def make_cell(
             raise ConfigError(f"{key}: {type(made).__name__} needs an attribute 'name' of type str for the tables")
     labels = Labels(scenario.name, method.name, method.variant, method.reasoner, method.remembers)
     swept = swept_values(point.swept, resolved) if point else {}
-    files = contents(resolved, method.files(scenario.road))
-    return Cell(folder_name(labels), labels, resolved, scorer.metric.name, swept, choices or {}, files)
+    files, chosen = contents(resolved, method.files(scenario.road)), choices or {}
+    remark = method.remark(scenario.road, {group: chosen[group] for group in ("limits", "drivers") if group in chosen})
+    return Cell(folder_name(labels), labels, resolved, scorer.metric.name, swept, chosen, files, remark=remark)
 
 
 def with_metrics(config: Mapping[str, Any], rows: Sequence[Cell]) -> dict[str, Any]:

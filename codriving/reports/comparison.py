@@ -23,6 +23,7 @@ from codriving.reports.summary import (
     clean_notes,
     number_notes,
     paper_row,
+    remarks,
 )
 from codriving.reports.wording import (
     metrics_text,
@@ -217,6 +218,7 @@ def notes_of(rows: Iterable[tuple[str, str, CellResults | None]], screen: bool) 
         *([ALGORITHM] if any(cell and cell.first.reasoner == "none" for *_, cell in rows) else []),
         *([f"{MISSING.capitalize()}: {missing}; there is no method of this name."] if missing else []),
         *stand_in_notes((cell.first.method, cell.first.reasoner) for *_, cell in rows if cell),
+        *remarks(cell for *_, cell in rows if cell),
         *([f"{QUOTED_ALONE.capitalize()}: {alone}; {theirs}"] if alone else []),
         *([CPU_NOTE] if screen else []),
     ]

@@ -57,6 +57,7 @@ class CellResults:
     # Whether the scenario is driven with the paper's vehicles, and whether also on as many seeds as its rows.
     papers_setting: bool = True
     as_in_paper: bool = True
+    remark: str = ""  # What a reader of its numbers has to know of the method
 
     @property
     def first(self) -> EpisodeRecord:

@@ -190,7 +190,7 @@ def print_summary(
     rows = tuple({**row, "claim": claim} for row, claim in zip(made.rows, claims, strict=True))
     scenarios, reasoners = ([row[key] for row in rows] for key in ("scenario", "reasoner"))
     models = stand_in_notes((row["method"], row["reasoner"]) for row in rows)
-    said = (NOTE, *clean_notes(cells), *number_notes(cells), *models, *model_notes(cells), *notes)
+    said = (NOTE, *clean_notes(cells), *number_notes(cells), *models, *remarks(cells), *model_notes(cells), *notes)
     heading, shown = title("", scenarios, reasoners, metrics), Table((*made.columns, *claimed), rows)
     return printed(heading, shown, scenarios, said, _beside(cells, paper), screen)
 
@@ -198,6 +198,11 @@ def print_summary(
 def clean_notes(cells: Iterable[CellResults]) -> list[str]:
     """Say what a clean success is, where it is shown."""
     return [CLEAN_NOTE] if any(cell.judged for cell in cells) else []
+
+
+def remarks(cells: Iterable[CellResults]) -> list[str]:
+    """Say what has to be known of methods, once each."""
+    return list(dict.fromkeys(cell.remark for cell in cells if cell.remark))
 
 
 def number_notes(cells: Iterable[CellResults]) -> list[str]:

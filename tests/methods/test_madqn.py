@@ -185,6 +185,15 @@ def test_shipped_weights_in_numpy_and_torch_agree(family: str) -> None:
     np.testing.assert_allclose(network(observations), hidden.numpy(), rtol=1e-5, atol=2e-5)
 
 
+@pytest.mark.parametrize("scenario", ["intersection", "merge"])
+def test_weights_of_another_world_are_marked(scenario: str, configured: Make) -> None:
+    road = configured(f"scenario={scenario}").scenario.road
+    assert Madqn(None).remark(road, {"limits": "none", "drivers": "simulator"}) == ""
+    for other in ({"limits": "road", "drivers": "simulator"}, {"limits": "none", "drivers": "rough"}):
+        said = "madqn: its weights were trained in another world, limits=none drivers=simulator."
+        assert Madqn(None).remark(road, other) == said
+
+
 def test_every_scenario_has_weights_for_its_road_and_pace(configured: Make) -> None:
     for scenario in SCENARIOS:
         made, environment = Madqn(None), configured(f"scenario={scenario}")

@@ -152,6 +152,12 @@ def test_rules_in_the_place_of_a_model_are_not_that_method(make: Callable[..., E
     assert said not in print_summary([CellResults([make(0, method="dilu")])], paper).notes
 
 
+def test_what_has_to_be_known_of_a_method_is_said_once(make: Callable[..., EpisodeRecord], paper: Paper) -> None:
+    cells = [CellResults([make(0, scenario=name)], remark="madqn: trained elsewhere.") for name in ("merge", "highway")]
+    assert print_summary(cells, paper).notes.count("madqn: trained elsewhere.") == 1
+    assert "" not in print_summary([CellResults([make(0)])], paper).notes
+
+
 def test_the_papers_row_stands_below_its_own_setting_and_seeds_alone(
     make: Callable[..., EpisodeRecord], paper: Paper
 ) -> None:

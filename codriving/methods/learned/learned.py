@@ -81,6 +81,13 @@ class Learned(Method):
         family = family_of(road)
         self._weights(family).purpose.check(family, target_speeds, decision_interval)
 
+    def remark(self, road: Road, world: Mapping[str, str]) -> str:
+        trained = self._weights(family_of(road)).purpose.world
+        if all(world.get(group, name) == name for group, name in trained.items()):
+            return ""
+        names = " ".join(f"{group}={name}" for group, name in trained.items())
+        return f"{self.name}: its weights were trained in another world, {names}."
+
     def files(self, road: Road) -> Mapping[str, Path]:
         file = shipped(self.name, family_of(road)) if self._file is None else self._file
         return {"weights": file, "weights, purpose": sidecar(file)}

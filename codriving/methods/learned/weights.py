@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any, Self
 
@@ -15,6 +15,9 @@ from safetensors.numpy import save as packed
 from codriving.errors import WeightsError
 from codriving.methods.learned.layout import ACTIONS, FAMILIES, FAR, NEAR, VERSION, feature_count
 from codriving.methods.learned.network import FORMS, PERCEPTRON, AnyNetwork, network_of, shapes, tensors
+
+# That in which weights were trained whose file does not say it: there was no other one.
+FIRST_WORLD: Mapping[str, str] = {"limits": "none", "drivers": "simulator"}
 
 CLOSE = 1e-6  # Numbers of a road and of the weights that differ by less are the same
 
@@ -34,6 +37,7 @@ class Purpose:
     hidden: tuple[int, ...]
     training: Mapping[str, Any]
     form: str = PERCEPTRON  # Kind of the network, ``perceptron`` or ``attention``
+    world: Mapping[str, str] = field(default_factory=lambda: dict(FIRST_WORLD))  # ``limits`` and ``drivers``
 
     @classmethod
     def read(cls, text: str, where: str) -> Self:
@@ -44,8 +48,9 @@ class Purpose:
         """
         try:
             found = json.loads(text)
-            values = {field.name: found[field.name] for field in fields(cls) if field.name != "form"}
+            values = {field.name: found[field.name] for field in fields(cls) if field.name not in ("form", "world")}
             values["form"] = found.get("form", PERCEPTRON)
+            values["world"] = {group: str(found.get("world", FIRST_WORLD)[group]) for group in FIRST_WORLD}
             values["target_speeds"] = tuple(tuple(map(float, grid)) for grid in values["target_speeds"])
             values["actions"], values["hidden"] = tuple(values["actions"]), tuple(map(int, values["hidden"]))
             made = cls(**values)

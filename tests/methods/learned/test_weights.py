@@ -56,6 +56,16 @@ def test_what_is_written_is_read(file: Path) -> None:
         np.testing.assert_array_equal(one, other)
 
 
+def test_weights_say_in_which_world_they_were_trained_and_old_ones_were_trained_in_the_first(file: Path) -> None:
+    there = {"limits": "road", "drivers": "rough"}
+    save(file, replace(trained(), purpose=replace(PURPOSE, world=there)))
+    assert load(file).purpose.world == there
+    text = json.loads(sidecar(file).read_text(encoding="utf-8"))
+    del text["world"]
+    sidecar(file).write_text(json.dumps(text), encoding="utf-8")
+    assert load(file).purpose.world == {"limits": "none", "drivers": "simulator"}
+
+
 def test_the_same_weights_are_the_same_bytes(file: Path, tmp_path: Path) -> None:
     again = tmp_path / "again.safetensors"
     save(again, trained())
