@@ -1,13 +1,13 @@
 """What one CAV knows of the world around it, what a decider is told of that, and all that is decided in one step."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from enum import StrEnum
 from functools import lru_cache
 from math import cos, hypot, isfinite, sin
 from operator import attrgetter
-from typing import Any, cast
+from typing import Any
 
 from codriving.datatypes.experience import Memory
 from codriving.datatypes.order import Conflict, PassingOrder
@@ -242,27 +242,63 @@ def _entry(situation: Situation, decision: Decision, order: dict[str, Any]) -> d
 
 def _plain(value: Any) -> Any:  # noqa: ANN401 - any JSON value
     """Turn dataclasses into dicts, round floats to a millionth, and turn what is no finite number into None."""
-    kind = type(value)  # A line has a thousand values: the frequent kinds come first
-    if kind is float or isinstance(value, float):
-        return round(value, 6) if isfinite(value) else None
-    if kind is str or kind is int or kind is bool or value is None:
-        return value
-    if kind is tuple or kind is list or isinstance(value, (tuple, list)):
-        return [_plain(v) for v in value]
-    record = _record(cast("Hashable", kind))
-    if record is not None:
-        names, read = record
-        return {name: v if type(v) is str else _plain(v) for name, v in zip(names, read(value), strict=True)}
-    if isinstance(value, dict):
-        return {k: _plain(v) for k, v in value.items()}
-    return str(value) if isinstance(value, str) else value
+    kind = type(value)
+    return value if kind in _KEPT else _WRITERS[kind](value)
 
 
-@lru_cache(maxsize=64)
-def _record(kind: Hashable) -> tuple[tuple[str, ...], Callable[[Any], tuple[Any, ...]]] | None:
-    """Names of the fields of a dataclass, in their order, and what reads all of them; None for any other kind."""
-    names = tuple(f.name for f in fields(kind)) if is_dataclass(kind) else ()
+# Types of which values are JSON already. A line has a thousand values: most are these or floats, which are therefore
+# looked at within the loops below and not one call further.
+_KEPT = frozenset({str, int, bool, type(None)})
+
+
+class _Writers(dict[type, Callable[[Any], Any]]):
+    """What makes JSON of a value, by its type."""
+
+    def __missing__(self, kind: type) -> Callable[[Any], Any]:
+        write = self[kind] = self._writer(kind)
+        return write
+
+    @staticmethod
+    def _writer(kind: type) -> Callable[[Any], Any]:
+        if issubclass(kind, float):
+            return lambda value: round(value, 6) if isfinite(value) else None
+        if issubclass(kind, tuple | list):
+            return _list
+        if is_dataclass(kind):
+            return _record(tuple(f.name for f in fields(kind)))
+        if issubclass(kind, dict):
+            return lambda value: {k: _plain(v) for k, v in value.items()}
+        return str if issubclass(kind, str) else lambda value: value
+
+
+_WRITERS = _Writers()
+
+
+@lru_cache(maxsize=1024)
+def _rounded(value: float) -> float | None:
+    """Round a float; within a step most stand several times, since several CAVs see the same vehicles."""
+    return round(value, 6) if isfinite(value) else None
+
+
+def _list(values: Any) -> list[Any]:  # noqa: ANN401 - a tuple or a list
+    return [
+        v
+        if (kind := type(v)) in _KEPT
+        else v and _rounded(v)  # Zeros keep their sign, which no cache could tell
+        if kind is float
+        else _WRITERS[kind](v)
+        for v in values
+    ]
+
+
+def _record(names: tuple[str, ...]) -> Callable[[Any], dict[str, Any]]:
+    """Return what makes a dict of a dataclass with fields of these names."""
+    # Asked for a single name, an attrgetter returns the bare value.
+    read = attrgetter(*names)
     if len(names) == 1:
-        # Asked for a single name, an attrgetter would return the bare value.
-        return names, lambda value: (getattr(value, names[0]),)
-    return (names, attrgetter(*names)) if names else None
+        return lambda value: {names[0]: _plain(read(value))}
+
+    def write(value: Any) -> dict[str, Any]:  # noqa: ANN401 - any dataclass
+        return dict(zip(names, _list(read(value)), strict=True))
+
+    return write

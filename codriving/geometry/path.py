@@ -24,14 +24,21 @@ class Path:
     _y: FloatArray = field(init=False, repr=False)
     _places: list[list[float]] = field(init=False, repr=False)
     _turns: list[float] = field(init=False, repr=False)
+    _axes: FloatArray = field(init=False, repr=False)  # x and y of the points (2, n) [m]
+    _squares: FloatArray = field(init=False, repr=False)  # Their squared distances from the origin (n,) [m2]
+    _directions: FloatArray = field(init=False, repr=False)  # Unit vectors along the path (2, n)
 
     def __post_init__(self) -> None:
+        x, y = self.points.T
         for name, value in (
             ("spacing", self.length / (len(self.points) - 1)),
-            ("_x", np.ascontiguousarray(self.points[:, 0])),
-            ("_y", np.ascontiguousarray(self.points[:, 1])),
+            ("_x", np.ascontiguousarray(x)),
+            ("_y", np.ascontiguousarray(y)),
             ("_places", self.points.tolist()),
             ("_turns", self.headings.tolist()),
+            ("_axes", np.array((x, y))),
+            ("_squares", x * x + y * y),
+            ("_directions", np.array((np.cos(self.headings), np.sin(self.headings)))),
         ):
             object.__setattr__(self, name, value)
 
@@ -139,11 +146,10 @@ def progress(path: Path, x: FloatArray, y: FloatArray, heading: FloatArray) -> F
     Returns:
         Arc length (n,) that never falls [m].
     """
-    px, py = path.points.T
-    ux, uy = np.cos(path.headings), np.sin(path.headings)
+    (px, py), (ux, uy) = path._axes, path._directions
     # Squared distance, but for what is the same at all points of the path.
-    square = px * px + py * py - 2 * (np.column_stack((x, y)) @ np.array((px, py)))
-    towards = np.column_stack((np.cos(heading), np.sin(heading))) @ np.array((ux, uy))
+    square = path._squares - 2 * (np.column_stack((x, y)) @ path._axes)
+    towards = np.column_stack((np.cos(heading), np.sin(heading))) @ path._directions
     square[towards < math.cos(math.pi / 3)] += 1e6
     nearest = square.argmin(axis=1)
     # Linear refinement: how far past the nearest point, along the path there.

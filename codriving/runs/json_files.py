@@ -76,6 +76,8 @@ def _line(name: str, line: Mapping[str, object]) -> str:
 
 def _dump(value: object) -> str:
     text = json.dumps(value, allow_nan=False, ensure_ascii=False, separators=(", ", ": "))
+    if text.isascii() and "\x7f" not in text:
+        return text
     # Such characters stand within strings only.
     return _HARMFUL.sub(lambda found: json.dumps(found[0])[1:-1], text)
 

@@ -53,9 +53,10 @@ def meet_on(road_map: RoadMap, one: Spot, other: Spot, ones: Array, others: Arra
             continue
         if one[1] > zone.exit_i or other[1] > zone.exit_j or reach_one < zone.entry_i or reach_other < zone.entry_j:
             continue
-        for places in others:
-            if np.any((ones >= zone.back(places)) & (ones <= zone.front(places))):
-                return True
+        # Each way in which the one may go on against each of the other one's.
+        back, front = zone.blocked(others[:, None])
+        if ((ones >= back) & (ones <= front)).any():
+            return True
     return False
 
 
