@@ -29,12 +29,14 @@ def sentence(outcome: Outcome, cavs: int) -> str:
         return f"Timeout {after}; {arrived}"
     if outcome.ending is Ending.OFF_ROAD:
         return f"{', '.join(outcome.off_road)} left the road {after}; {arrived}"
+    if outcome.ending is Ending.COUNTED:
+        return f"The window is over {after}; {len(outcome.arrivals)} vehicles have left"
     return f"Error {after}: {outcome.message}"
 
 
 def draw_banner(canvas: Canvas, area: Area, outcome: Outcome, cavs: int) -> None:
     """Draw the banner."""
-    good = outcome.ending is Ending.SUCCESS
+    good = outcome.ending in (Ending.SUCCESS, Ending.COUNTED)
     colour = GREEN if good else VERMILION
     words = shortened(canvas, sentence(outcome, cavs), 17, area.width - 120, bold=True)
     width = canvas.width_of(words, 17, bold=True) + 74

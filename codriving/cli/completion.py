@@ -38,6 +38,7 @@ PLURALS = {
     "launchers": "launcher",
     "limits": "limits",
     "drivers": "drivers",
+    "flows": "flow",
     "suites": SUITE,
     "experiments": EXPERIMENTS,
     "trainings": TRAININGS,

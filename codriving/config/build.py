@@ -17,6 +17,7 @@ from codriving.datatypes import (
     Cooperation,
     Drivers,
     EpisodeLauncher,
+    Flow,
     Method,
     Metric,
     Model,
@@ -250,6 +251,7 @@ EXPECTED |= {
     "launcher": EpisodeLauncher,
     "limits": VehicleLimits,
     "drivers": Drivers,
+    "flow": Flow,
     "environment": Simulator,  # Last, so that refusals name limits.lateral, as a user does
 }
 """What each node has to be, known before its class is called: a file chooses no other code than a part of its kind."""

@@ -37,6 +37,7 @@ FIRST = {
     "llm": ("offline",),
     "limits": ("none", "road"),
     "drivers": ("simulator", "attentive", "mixed", "rough"),
+    "flow": ("none", "steady"),
     SUITE: ("default", "paper"),
     "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),

@@ -28,13 +28,13 @@ def value_shown(value: object) -> str:
 
 
 # The choices that the command line names; one YAML a choice.
-GROUPS = ("scenario", "method", "executor", "cda", "llm", "memory", "metrics", "launcher", "limits", "drivers")
+GROUPS = ("scenario", "method", "executor", "cda", "llm", "memory", "metrics", "launcher", "limits", "drivers", "flow")
 
 NODES = (*GROUPS, "environment")  # The keys of the root that hold a constructor call
 
 SHOWN = ("_tables_", "_style_")  # What a method's YAML says for tables and figures; it is no part of a run
 
-OPTIONAL = ("memory", "limits")  # Those of them that may be null
+OPTIONAL = ("memory", "limits", "flow")  # Those of them that may be null
 
 LARGEST_SEED = 2**31 - 1  # Seeds beyond this are refused by some of the generators below us
 

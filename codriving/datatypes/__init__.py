@@ -1,6 +1,7 @@
 """The nouns: frozen dataclasses that every room speaks in."""
 
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Memory, Verdict
+from codriving.datatypes.flow import Flow
 from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.order import (
     Approach,
@@ -33,6 +34,8 @@ from codriving.datatypes.record import (
     Collision,
     Ending,
     EpisodeRecord,
+    FlowArrival,
+    FlowLog,
     NamedNumber,
     Outcome,
     Participant,
@@ -75,10 +78,11 @@ __all__ = [
     "BLOCKER",
     "Account", "Action", "ActionAssessment", "Approach", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat",
     "Collision", "Conflict", "Cooperation", "Decision", "Deliberation", "Description", "Drivers", "DrivingModel",
-    "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience", "Instance", "Intent", "Interaction", "Kind",
-    "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Memory", "Method", "Metric", "Model",
-    "NamedNumber", "OrderExecutor", "Outcome", "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence",
-    "ReasonedDeliberation", "Relation", "Road", "Role", "Route", "RuleModel", "Scenario", "Scene", "SceneDescription",
-    "Score", "Severity", "Simulator", "Sine", "Situation", "Start", "Straight", "Track", "TrackedVehicle",
-    "Trajectory", "TravelScore", "Turn", "VehicleLimits", "VehicleState", "Verdict", "WorldState", "beside",
+    "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience", "Flow", "FlowArrival", "FlowLog", "Instance",
+    "Intent", "Interaction", "Kind", "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Memory",
+    "Method", "Metric", "Model", "NamedNumber", "OrderExecutor", "Outcome", "Pair", "Participant", "PassingOrder",
+    "Pet", "Point", "Precedence", "ReasonedDeliberation", "Relation", "Road", "Role", "Route", "RuleModel", "Scenario",
+    "Scene", "SceneDescription", "Score", "Severity", "Simulator", "Sine", "Situation", "Start", "Straight", "Track",
+    "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleLimits", "VehicleState", "Verdict", "WorldState",
+    "beside",
 ]  # fmt: skip

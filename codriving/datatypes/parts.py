@@ -9,7 +9,7 @@ from codriving.datatypes.experience import Experience, Interaction, Memory
 from codriving.datatypes.record import Outcome, Score, Trajectory
 from codriving.datatypes.road import Road
 from codriving.datatypes.situation import Deliberation, Situation
-from codriving.datatypes.world import Action, DrivingModel, Scene, WorldState
+from codriving.datatypes.world import Action, DrivingModel, Kind, Scene, Start, WorldState
 
 if TYPE_CHECKING:
     import numpy as np
@@ -44,6 +44,10 @@ class Scenario(ABC):
         Raises:
             ScenarioError: If the vehicles cannot be placed.
         """
+
+    def arrival(self, rng: "np.random.Generator", name: str, kind: Kind, route: str) -> Start | None:
+        """Draw how a vehicle of a flow comes in at the beginning of a route; None if the scenario takes no flows."""
+        return None
 
 
 class Drivers:
@@ -155,6 +159,7 @@ class Method(ABC):
     variant: str = ""  # Its variant in tables; empty if there is only one
     reasoner: str = "none"  # What reasons: ``rules``, the name of a language model, or ``none``
     remembers: str = ""  # Its memory in tables; empty without one
+    most_cavs: int | None = None  # CAVs on the road that it can decide for at most; None for any number
 
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
         """Refuse a road that the method was not made for, before anything is driven.
@@ -232,6 +237,7 @@ class Metric(ABC):
 
     name: str = ""  # Name of the definitions, for instance ``standard``
     against_alone: bool = False  # Whether it needs ``Trajectory.alone``, which costs computing time
+    flows: bool = False  # Whether it measures flows, too, whose ``Outcome.flow`` is not None
 
     @abstractmethod
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:

@@ -47,12 +47,13 @@ class Trajectory:
 
 
 class Ending(StrEnum):
-    """The ways in which an episode ends; ``error`` is never counted as driving."""
+    """The ways in which an episode ends; ``error`` is never counted as driving, and a flow is ``counted``."""
 
     SUCCESS = "success"
     COLLISION = "collision"
     TIMEOUT = "timeout"
     OFF_ROAD = "off_road"
+    COUNTED = "counted"
     ERROR = "error"
 
 
@@ -67,16 +68,36 @@ class Collision:
 
 
 @dataclass(frozen=True, slots=True)
+class FlowArrival:
+    """A vehicle of a flow that wanted to come in."""
+
+    id: str
+    kind: Kind
+    time: float  # When it wanted to [s]
+
+
+@dataclass(frozen=True, slots=True)
+class FlowLog:
+    """What is known of a flow besides its tracks."""
+
+    begins: float  # When the window begins, which ends with the episode [s]
+    step: float  # Simulation step [s]; the road may be empty for a while
+    wanted: tuple[FlowArrival, ...]  # All who wanted to come in, also those who are still waiting outside
+    collisions: tuple[Collision, ...]  # In the warm-up, too
+
+
+@dataclass(frozen=True, slots=True)
 class Outcome:
     """The one end of an episode."""
 
     ending: Ending
     time: float  # Simulated time at the end [s]
-    arrivals: dict[str, float]  # Arrival time of each CAV that arrived [s], by id
+    arrivals: dict[str, float]  # FlowArrival time of each CAV that arrived, and of each vehicle of a flow [s], by id
     collision: Collision | None = None
     bystander_collisions: tuple[Collision, ...] = ()
     off_road: tuple[str, ...] = ()
     message: str = ""  # What went wrong, for ``error``
+    flow: FlowLog | None = None  # None for an episode, whose record does not name it
 
     @property
     def failed(self) -> tuple[str, ...]:
@@ -120,7 +141,7 @@ class NamedNumber:
 class Score:
     """The measured quality of one episode."""
 
-    success: bool
+    success: bool | None  # None for a flow, which neither succeeds nor fails
     pets: tuple[Pet, ...] = ()
     travels: tuple[TravelScore, ...] = ()
     numbers: tuple[NamedNumber, ...] = ()

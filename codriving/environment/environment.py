@@ -8,17 +8,21 @@ import numpy as np
 from codriving.datatypes import (
     Action,
     DrivingModel,
+    Flow,
     Kind,
     Outcome,
     Scenario,
     Scene,
     Simulator,
+    Start,
     Trajectory,
     VehicleLimits,
     WorldState,
 )
 from codriving.environment.alone import drive_alone
+from codriving.environment.arrivals import Newcomer, Outside, draw_newcomers, entries
 from codriving.environment.cav import ConnectedVehicle
+from codriving.environment.counting import Counting
 from codriving.environment.drivers.style import DriverMix
 from codriving.environment.network import build_network
 from codriving.environment.recorder import Recorder, snapshot
@@ -27,7 +31,7 @@ from codriving.environment.termination import Termination
 from codriving.environment.traffic.human_driver import HumanDriver
 from codriving.environment.traffic.route_following import RoutePath, route_path
 from codriving.environment.traffic.traffic import Traffic
-from codriving.errors import EpisodeError
+from codriving.errors import EpisodeError, ScenarioError
 from codriving.geometry import FloatArray, RoadMap, road_map
 
 REMEMBERED = 200  # Scenes of which it is remembered how each vehicle drives alone
@@ -39,8 +43,10 @@ class Environment(Simulator):
     """Several CAVs and human drivers on one road, on highway-env's physics.
 
     Raises:
-        ScenarioError: If the road is not consistent in itself.
+        ScenarioError: If the road is not consistent in itself, or takes no flows.
     """
+
+    _termination: Termination | Counting
 
     def __init__(
         self,
@@ -49,9 +55,15 @@ class Environment(Simulator):
         drivers: DriverProfile | DriverMix,
         corrections: Corrections,
         limits: VehicleLimits | None = None,
+        flow: Flow | None = None,
     ) -> None:
         self.scenario, self.control, self.drivers, self.corrections = scenario, control, drivers, corrections
-        self.limits = limits
+        self.limits, self.flow = limits, flow
+        if flow is not None and type(scenario).arrival is Scenario.arrival:
+            raise ScenarioError(
+                f"{scenario.name} takes no flows, since it does not say how vehicles come in; leave flow out, or give "
+                f"{type(scenario).__name__} a method arrival()"
+            )
         pace = scenario.pace
         step, interval = 1 / pace.simulation_frequency, 1 / pace.decision_frequency
         model = DrivingModel(pace.target_speeds, control.speed, step, interval, pace.detection_range)
@@ -74,13 +86,20 @@ class Environment(Simulator):
             ScenarioError: If the vehicles cannot be placed.
         """
         self._world = self._outcome = None
-        scene = self.scenario.scene(seed)
+        self._seed, step = seed, self.driving_model.step
+        scene, newcomers = self._scene(seed)
+        if self.flow is None:
+            cavs = [start.id for start in scene.starts if start.kind is Kind.CAV]
+            self._termination = Termination(cavs, self.scenario.pace.time_limit, step)
+        else:
+            self._termination, scene = Counting(self.flow, newcomers, step), replace(scene, starts=())
         self._traffic = self._populated(scene)
-        cavs = [start.id for start in scene.starts if start.kind is Kind.CAV]
-        self._termination = Termination(cavs, self.scenario.pace.time_limit, self.driving_model.step)
+        lanes = {lane: self._network.get_lane(lane) for lane in entries(self.scenario.road)}
+        self._outside = Outside(newcomers, lanes)
         self._steps = self._decisions = 0
         self._recorder = Recorder()
         self._recorder.record(0, self._traffic.vehicles, {})
+        self._let_in()
         return self._look()
 
     def step(self, actions: Mapping[str, Action]) -> WorldState:
@@ -102,12 +121,22 @@ class Environment(Simulator):
             self._outcome = self._termination.check(self._traffic, self._time)
             if self._outcome is not None:
                 break
+        else:
+            self._let_in()
         self._decisions += 1
         return self._look()
 
+    def _let_in(self) -> None:
+        """Let vehicles of a flow come in."""
+        there = len(self._traffic.vehicles)
+        for start in self._outside.come_in(self._traffic, self._time):
+            self._put(self._traffic, self._seed, (start,))
+        self._recorder.record(self._steps, self._traffic.vehicles[there:], {})
+
     def alone(self, seed: int) -> Mapping[str, FloatArray]:
         """Drive each vehicle of an episode alone, from the same start along the same route."""
-        scene, model, time_limit = self.scenario.scene(seed), self.driving_model, self.scenario.pace.time_limit
+        model, time_limit = self.driving_model, self.scenario.pace.time_limit
+        scene, _ = self._scene(seed)
         # Cells of other methods drive the same scenes in the same world.
         world = (scene, model, time_limit, self.control, self.drivers, self.corrections)
         key = (self.road_map, repr(world))
@@ -122,14 +151,29 @@ class Environment(Simulator):
             }
         return _ALONE[key]
 
+    def _scene(self, seed: int) -> tuple[Scene, tuple[Newcomer, ...]]:
+        """Return who takes part, and of a flow also who wants to come in when."""
+        if self.flow is None:
+            return self.scenario.scene(seed), ()
+        newcomers = draw_newcomers(self.scenario, self.flow, seed, self.driving_model.decision_interval)
+        return Scene(seed, tuple(newcomer.start for newcomer in newcomers)), newcomers
+
     def _populated(self, scene: Scene) -> Traffic:
         """Put the vehicles of a scene on the road."""
         rng = np.random.default_rng(np.random.SeedSequence(entropy=scene.seed, spawn_key=(1,)))
         styled = isinstance(self.drivers, DriverMix)
         traffic = Traffic(self._network, rng, self.road_map, self.corrections, styled)
+        self._put(traffic, scene.seed, scene.starts)
+        return traffic
+
+    def _put(self, traffic: Traffic, seed: int, starts: tuple[Start, ...]) -> None:
+        """Put vehicles on the road; in a flow a driver does not depend on who came before."""
+        if self.flow is not None and starts:
+            key = np.random.SeedSequence(entropy=seed, spawn_key=(1, *starts[0].id.encode()))
+            traffic.np_random = np.random.default_rng(key)
+        scene = Scene(seed, starts)
         spawn(traffic, scene, self._route_paths, self.driving_model.target_speeds, self.control, self.drivers)
         limit(traffic, self.limits)
-        return traffic
 
     @property
     def outcome(self) -> Outcome | None:

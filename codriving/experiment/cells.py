@@ -13,6 +13,7 @@ from codriving.datatypes import Scenario
 from codriving.errors import ConfigError
 from codriving.experiment.contents import contents
 from codriving.experiment.episode import Labels
+from codriving.experiment.flows import check_flow
 from codriving.experiment.objects import make_method, memory_of, model_of
 from codriving.experiment.scoring import names_of_scores, scorers_of, settings_of_metric
 from codriving.runs import CHOICES, CellEntry, NamedFile, fingerprint, redact, settings_of
@@ -83,8 +84,10 @@ def make_cell(
 ) -> Cell:
     """Make the cell of a config; its labels are what its objects call themselves."""
     scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
-    method = make_method(resolved, model_of(resolved), memory_of(resolved))
+    memory = memory_of(resolved)
+    method = make_method(resolved, model_of(resolved), memory)
     (scorer,) = scorers_of(resolved).values()
+    check_flow(resolved, method, scorer.metric, memory)
     method.check_road(scenario.road, scenario.pace.target_speeds, 1 / scenario.pace.decision_frequency)
     for key, made in (("scenario", scenario), ("method", method), ("metrics", scorer.metric)):
         if not made.name:

@@ -24,7 +24,8 @@ from codriving.errors import ConfigError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.cells import Cell
 from codriving.experiment.drive import Driven, Outputs, drive
-from codriving.experiment.plan import make_plan
+from codriving.experiment.flows import is_flow
+from codriving.experiment.plan import Plan, make_plan
 from codriving.experiment.run import Command
 from codriving.reports import (
     METHOD_CHOICE,
@@ -32,12 +33,14 @@ from codriving.reports import (
     comparison_rows,
     comparison_table,
     cpu_per_decision,
+    flow_table,
     load_figure,
     load_rows,
     load_table,
     markdown_text,
     print_comparison,
     print_each_load,
+    print_flows,
     print_loads,
     print_pairs,
     read_paper,
@@ -72,8 +75,10 @@ def comparison_command(table: str | None) -> Command:
     if not isinstance(table, str) or table not in TABLES:
         given = "compare needs the name of a table" if table is None else f"unknown table {table!r}"
         raise ConfigError(f"{given}; write codriving compare TABLE [KEY=VALUE]..., tables: {', '.join(TABLES)}")
-    make_outputs = make_loads if table == LOAD else partial(make_comparison, table)
-    return Command(f"compare {table}", partial(comparison, table), make_outputs=make_outputs)
+    points, name = partial(comparison, table), f"compare {table}"
+    if table == LOAD:
+        return Command(name, points, _refuse_flows, make_loads)
+    return Command(name, points, make_outputs=partial(make_comparison, table))
 
 
 def compare_frames(table: str, *overrides: str, config_dir: str | Path | None = None) -> Comparison:
@@ -132,6 +137,8 @@ def setting(resolved: Mapping[str, Any]) -> str:
 
 def make_comparison(table: str, driven: Driven) -> Outputs:
     """Make a comparison of methods."""
+    if driven.flows:
+        return _compared_flows(driven)
     paper, metrics = read_paper(experiments_dir()), driven.metrics
     blocks: dict[str, list[CellResults]] = {}
     for cell, results in _results(driven):
@@ -144,6 +151,24 @@ def make_comparison(table: str, driven: Driven) -> Outputs:
     page = markdown_text(kept) + (f"\n{markdown_text(against, level=2)}" if against else "")
     files = {"comparison.csv": whole.csv().encode(), "comparison.md": page.encode()}
     return Outputs(files, (printed, against) if against else (printed,), (whole,))
+
+
+def _compared_flows(driven: Driven) -> Outputs:
+    """Make a comparison of methods in flows, in which nothing is paired."""
+    cells = [results for _, results in _results(driven)]
+    swept = tuple(dict.fromkeys(key for results in cells for key in results.swept))
+    kept, printed = (print_flows(cells, driven.metrics, swept, screen=screen) for screen in (False, True))
+    whole = flow_table(cells, swept)
+    files = {"comparison.csv": whole.csv().encode(), "comparison.md": markdown_text(kept).encode()}
+    return Outputs(files, (printed,), (whole,))
+
+
+def _refuse_flows(plan: Plan) -> None:
+    if any(is_flow(cell.resolved) for cell in plan.cells):
+        raise ConfigError(
+            "codriving compare load varies the number of CAVs, which a flow does not have; write for instance "
+            "codriving compare baselines flow=steady flow.arrivals=200,400,600"
+        )
 
 
 def make_loads(driven: Driven) -> Outputs:

@@ -17,6 +17,7 @@ from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell, with_metrics
 from codriving.experiment.film import FilmEpisode
+from codriving.experiment.flows import is_flow
 from codriving.experiment.launchers import Launcher, Serial
 from codriving.experiment.objects import BuildObjects, modules_to_preload
 from codriving.experiment.plan import Plan
@@ -32,6 +33,7 @@ from codriving.reports import (
     RunTables,
     Table,
     TimedEpisode,
+    flow_tables,
     read_paper,
     run_tables,
     table,
@@ -90,6 +92,11 @@ class Driven:
     def metrics(self) -> str:
         """Name of the definitions by which they were scored."""
         return ", ".join(dict.fromkeys(cell.metrics for cell in self.cells))
+
+    @property
+    def flows(self) -> bool:
+        """Whether these are flows."""
+        return is_flow(self.cells[0].resolved)
 
 
 @dataclass(frozen=True, slots=True)
@@ -353,7 +360,10 @@ def _write(plan: Plan, driven: Driven, outputs: Outputs) -> RunTables:
     """Write the tables of every run, and what the command adds."""
     each = list(zip(driven.cells, driven.records, driven.timings, strict=True))
     results = [results_of(cell, records, cell.swept) for cell, records, _ in each]
-    tables = run_tables(results, read_paper(experiments_dir()), driven.metrics, plan.notes)
+    if driven.flows:
+        tables = flow_tables(results, driven.metrics, plan.notes)
+    else:
+        tables = run_tables(results, read_paper(experiments_dir()), driven.metrics, plan.notes)
     # What was driven once has cost time once, by however many metrics it was scored.
     once = {cell.folder: (cell, records, timings) for cell, records, timings in each}
     timed = [

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from codriving.config import ROOT, Point, build, compose_named, validate
 from codriving.errors import ConfigError
 from codriving.experiment.cells import Cell, distinct, make_cell, repeated
+from codriving.experiment.flows import refuse_mixed
 from codriving.experiment.launchers import Launcher
 from codriving.experiment.objects import modules_to_preload
 from codriving.experiment.remembering import pinned
@@ -61,6 +62,7 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
         # Imports take a second: let them pass while the configs are checked here.
         launcher.prepare(first["workers"], first["episodes"] * len(configs), modules_to_preload(configs))
     validated(points, configs)
+    refuse_mixed(configs)
     configs = each_cell(points, configs, pinned)
     cells = each_cell(points, list(zip(configs, points, choices, strict=True)), lambda part: make_cell(*part))
     return Plan(

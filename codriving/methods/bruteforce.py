@@ -15,7 +15,7 @@ LESS = 1e-9  # An order is better only if it saves more than this [s]
 class BruteForce(SearchedOrder):
     """Goes through all orders that what is physically fixed allows, except those that cannot be better."""
 
-    name = "bruteforce"
+    name, most_cavs = "bruteforce", MOST
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
         """Return the best order."""

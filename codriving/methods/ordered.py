@@ -39,6 +39,7 @@ class Ordered(Method):
 
     def __init__(self, rule: OrderRule, executor: Executor) -> None:
         self.rule, self.executor, self.name = rule, executor, rule.name
+        self.most_cavs = rule.most_cavs
         driven = "" if executor.name == "planned" else executor.name
         self.variant = "/".join(word for word in (rule.variant, driven) if word)
 

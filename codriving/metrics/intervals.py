@@ -80,3 +80,23 @@ def mean_interval(
         rng=np.random.default_rng(0),
     ).confidence_interval
     return float(found.low), float(found.high)
+
+
+def rate_interval(events: Sequence[float], units: Sequence[float]) -> tuple[float, float] | None:
+    """Bootstrap the rate of events a unit, over pairs of both (B. Efron, 1979; percentiles).
+
+    Of no event resampling would tell nothing: then the upper limit is 3 / units (rule of three; J. A. Hanley and
+    A. Lippman-Hand, 1983).
+
+    Returns:
+        Lower and upper limit; None of fewer than ``FEWEST`` pairs, or of no units.
+    """
+    n = len(events)
+    if n < FEWEST or not sum(units) > 0:
+        return None
+    if not any(events):
+        return 0.0, 3 / sum(units)
+    rows = np.random.default_rng(0).integers(n, size=(RESAMPLES, n))
+    drawn, of = (np.asarray(values, dtype=np.float64)[rows].sum(axis=1) for values in (events, units))
+    low, high = np.quantile(drawn[of > 0] / of[of > 0], (0.025, 0.975))
+    return float(low), float(high)

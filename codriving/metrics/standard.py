@@ -10,6 +10,7 @@ from codriving.errors import ConfigError
 from codriving.geometry import TRUE, RoadMap
 from codriving.metrics.comfort import hard_braking, jerk, reversals, stops
 from codriving.metrics.delay import drives, jain
+from codriving.metrics.flows import flow_numbers
 from codriving.metrics.following import Closest, closest
 from codriving.metrics.from_behind import struck_from_behind
 from codriving.metrics.pet import has_area, post_encroachment_times
@@ -25,7 +26,7 @@ class StandardMetrics(Metric):
     """
 
     name = "standard"
-    against_alone = True
+    against_alone, flows = True, True
 
     def __init__(self, free_speed: float | None = None, near_miss: float = 1.5, hard_braking: float = 3.4) -> None:
         if free_speed is not None and not free_speed > 0:
@@ -38,7 +39,9 @@ class StandardMetrics(Metric):
         self.free_speed, self.near_miss, self.hard_braking = free_speed, near_miss, hard_braking
 
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
-        """Return the score of an episode."""
+        """Return the score of an episode or of a flow."""
+        if outcome.flow is not None:
+            return Score(None, numbers=flow_numbers(trajectory, outcome, outcome.flow, road, self.hard_braking))
         success = outcome.ending is Ending.SUCCESS
         pets, nearest = post_encroachment_times(trajectory, road), closest(trajectory)
         if meets(road):

@@ -16,6 +16,7 @@ from codriving.reports.results import CellResults, named_numbers
 from codriving.reports.summary import (
     BY_KEY,
     CLEAN,
+    CPU,
     FALLBACK_NOTE,
     FALLBACKS,
     MEASURED,
@@ -43,8 +44,6 @@ DRIVEN, MISSING, QUOTED_ALONE = "driven", "not there yet", "only in the paper"
 
 # The swept key that two methods of one name are told apart by; it belongs to a row, all others to a block.
 METHOD_CHOICE = "method_choice"
-
-CPU = "CPU [ms]"  # Head of the column of computing time; on the screen alone, since it differs from machine to machine
 
 ALGORITHM = "Reasoner none: an algorithm that has no reasoner. Rules are never a language model."
 CPU_NOTE = "CPU: computing time of one decision for all CAVs, of this machine; it stands here and in timing.csv alone."

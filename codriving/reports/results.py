@@ -162,7 +162,7 @@ class ScoredEpisode:
     @property
     def success(self) -> bool:
         """Whether it succeeded."""
-        return self.score is not None and self.score.success
+        return self.score is not None and bool(self.score.success)
 
     @property
     def clean(self) -> bool | None:

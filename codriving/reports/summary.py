@@ -37,6 +37,8 @@ STEP_NOTE = "Step: time that a decision step waited for the model, on average; s
 
 CLAIM = "the paper says"  # Head of the column of the paper's statements
 
+CPU = "CPU [ms]"  # Head of the column of computing time; on the screen alone, since it differs from machine to machine
+
 NAME: Column[CellResults] = Column("name", lambda c: c.name, METHOD, words=True, csv=False)
 
 # With the labels, the columns that users rely on, in their fixed order.

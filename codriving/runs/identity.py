@@ -51,13 +51,14 @@ CHOICES = ("scenario", "method", "executor", "llm", "memory")
 
 DRIVERS, ENVIRONMENT = "drivers", "environment"  # Drivers are told by their values in the environment, as before
 
-LIMITS = "limits"  # Without limits a world is that of a run whose config did not know them yet
+# Without limits a world is that of a run whose config did not know them yet, and without a flow likewise.
+LIMITS, FLOW = "limits", "flow"
 
 MEMORY = "memory"
 SNAPSHOT, AUTO = "snapshot", "auto"  # Where a memory's snapshot is told by its contents, its file may lie anywhere
 
 # Nodes of the root to which other nodes refer, and which therefore stand in these once more.
-_COPIED = (*CHOICES, "cda", LIMITS)
+_COPIED = (*CHOICES, "cda", LIMITS, FLOW)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +94,9 @@ class CellEntry:
 def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out of a resolved config what does not change what is driven, the names of classes, and repetitions."""
     values = {key: _plain(node, resolved) for key, node in resolved.items() if key not in WITHOUT_EFFECT}
-    if values.get(LIMITS) is None:
-        values.pop(LIMITS, None)
+    for key in (LIMITS, FLOW):
+        if values.get(key) is None:
+            values.pop(key, None)
     environment = values.get(ENVIRONMENT)
     if DRIVERS in values and isinstance(environment, Mapping) and environment.get(DRIVERS) == values[DRIVERS]:
         values.pop(DRIVERS)

@@ -27,6 +27,10 @@ _HARMFUL = re.compile(
 )
 
 
+# Fields that came later, and are written where they hold something: other files are as before.
+_CAME_LATER = ("flow",)
+
+
 @functools.cache
 def _adapter(kind: type) -> TypeAdapter[Any]:
     # In a tuple, since Pydantic takes no settings for a plain dataclass by itself.
@@ -41,12 +45,16 @@ def encode(value: "DataclassInstance") -> str:
         ValueError: If a field is of another type than declared, or not finite.
     """
     try:
-        text = json.dumps(asdict(value), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+        text = json.dumps(asdict(value, dict_factory=_named), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
     except TypeError as error:
         raise ValueError(f"{type(value).__name__}: {error}") from error
     # A record that could not be read again is worse than none: find out now.
     decode(type(value), text)
     return text
+
+
+def _named(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    return {name: value for name, value in pairs if value is not None or name not in _CAME_LATER}
 
 
 def decode(kind: type[T], text: str) -> T:

@@ -65,6 +65,8 @@ def _trajectory(rows: Sequence[Mapping[str, str]], record: EpisodeRecord) -> Tra
         return None
     # Over the whole episode, since a single time is rounded.
     step = (times[-1] - times[0]) / (len(times) - 1) if len(times) > 1 else 1.0
+    if (flow := record.outcome.flow) is not None:
+        step = flow.step
     driven: dict[str, list[Mapping[str, str]]] = defaultdict(list)
     for row in rows:
         driven[row["id"]].append(row)

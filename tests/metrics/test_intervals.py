@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from codriving.metrics import intervals as paired
-from codriving.metrics.intervals import mcnemar, mean_interval, wilson_interval
+from codriving.metrics.intervals import mcnemar, mean_interval, rate_interval, wilson_interval
 
 FEWEST = 10
 
@@ -105,3 +105,17 @@ def test_memory_is_bounded_however_many_pairs_there_are(monkeypatch: pytest.Monk
     at_once = mean_interval(differences)
     monkeypatch.setattr(paired, "_AT_ONCE", 1000)
     assert mean_interval(differences) == pytest.approx(at_once)
+
+
+def test_of_no_event_the_limit_is_that_of_the_rule_of_three() -> None:
+    assert rate_interval([0.0] * 12, [25.0] * 12) == (0.0, 0.01), "3 / 300"
+    assert rate_interval([0.0] * 9, [25.0] * 9) is None
+    assert rate_interval([0.0] * 12, [0.0] * 12) is None
+
+
+def test_a_rate_is_that_of_the_sums_and_its_interval_holds_it() -> None:
+    assert rate_interval([1.0] * 10, [20.0] * 10) == pytest.approx((0.05, 0.05))
+    events, units = [0.0, 3.0] * 10, [10.0, 50.0] * 10
+    low, high = rate_interval(events, units) or (0.0, 0.0)
+    assert 0.035 < low < 0.05 < high < 0.06, "3 of 60, and never above 3 of 50"
+    assert (low, high) == rate_interval(events, units)

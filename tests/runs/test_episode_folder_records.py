@@ -15,6 +15,8 @@ from codriving.datatypes.record import (
     Collision,
     Ending,
     EpisodeRecord,
+    FlowArrival,
+    FlowLog,
     NamedNumber,
     Outcome,
     Participant,
@@ -22,6 +24,7 @@ from codriving.datatypes.record import (
     Score,
     TravelScore,
 )
+from codriving.datatypes.world import Kind
 from codriving.errors import RunFolderError
 from codriving.runs.episode_folder import RECORD, read_record
 from codriving.runs.json_files import decode, encode
@@ -30,6 +33,7 @@ NUMBER = st.floats(allow_nan=False, allow_infinity=False)
 BETTER = st.sampled_from(["higher", "lower", None])
 WORD = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
 COLLISION = st.builds(Collision, NUMBER, WORD, WORD, WORD)
+ARRIVAL = st.builds(FlowArrival, WORD, st.sampled_from(Kind), NUMBER)
 RECORDS = st.builds(
     EpisodeRecord,
     *[WORD] * 4,
@@ -43,12 +47,13 @@ RECORDS = st.builds(
         st.lists(COLLISION, max_size=2).map(tuple),
         st.lists(WORD, max_size=2).map(tuple),
         WORD,
+        st.none() | st.builds(FlowLog, NUMBER, NUMBER, st.lists(ARRIVAL, max_size=2).map(tuple), st.just(())),
     ),
     scores=st.dictionaries(
         WORD,
         st.builds(
             Score,
-            st.booleans(),
+            st.sampled_from([True, False, None]),
             st.lists(st.builds(Pet, WORD, WORD, WORD, NUMBER), max_size=2).map(tuple),
             st.lists(st.builds(TravelScore, WORD, NUMBER, NUMBER, st.none() | NUMBER), max_size=2).map(tuple),
             st.lists(st.builds(NamedNumber, WORD, st.none() | NUMBER, WORD, BETTER), max_size=2).map(tuple),
@@ -169,3 +174,12 @@ def test_bytes_that_are_no_text_are_damage(tmp_path: Path) -> None:
     (tmp_path / RECORD).write_bytes(b"\xff\xfe")
     with pytest.raises(RunFolderError, match="damaged"):
         read_record(tmp_path)
+
+
+def test_the_record_of_an_episode_does_not_name_a_flow(record: EpisodeRecord) -> None:
+    """So records of episodes are, byte for byte, what they were before there were flows."""
+    assert '"flow"' not in encode(record)
+    log = FlowLog(30.0, 0.1, (FlowArrival("CAV1a", Kind.CAV, 2.5),), ())
+    flow = dataclasses.replace(record, outcome=Outcome(Ending.COUNTED, 60.0, {}, flow=log))
+    assert json.loads(encode(flow))["outcome"]["flow"]["wanted"] == [{"id": "CAV1a", "kind": "CAV", "time": 2.5}]
+    assert decode(EpisodeRecord, encode(flow)) == flow

@@ -63,6 +63,16 @@ def test_a_config_that_does_not_know_limits_is_one_without_them() -> None:
     assert told("limits=road") != told("limits=none") != told("limits=road", "limits.braking=7")
 
 
+def test_a_config_that_does_not_know_flows_is_one_of_episodes() -> None:
+    resolved = compose([])
+    before = {key: value for key, value in resolved.items() if key != "flow"}
+    before["environment"] = {key: value for key, value in before["environment"].items() if key != "flow"}
+    assert fingerprint(NAMES, {}, resolved, ()) == fingerprint(NAMES, {}, before, ())
+    assert settings_of(resolved) == settings_of(before)
+    assert settings_of(compose(["flow=steady"])).items() >= {"flow.arrivals": "300.0", "flow.window": "120.0"}.items()
+    assert told("flow=steady") != told() != told("flow=steady", "flow.arrivals=200") != told("flow=steady")
+
+
 def test_a_config_that_does_not_know_the_group_of_drivers_is_one_with_those_of_the_simulator() -> None:
     resolved = compose(["drivers=simulator"])
     before = {key: value for key, value in resolved.items() if key != "drivers"}

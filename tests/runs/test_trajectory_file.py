@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from codriving.datatypes.record import Ending, EpisodeRecord, Outcome, Participant, Track, Trajectory
+from codriving.datatypes.record import Ending, EpisodeRecord, FlowLog, Outcome, Participant, Track, Trajectory
 from codriving.datatypes.world import Kind
 from codriving.errors import RunFolderError
 from codriving.runs.trajectory_file import TRAJECTORY, read_trajectory, trajectory_text
@@ -63,6 +63,15 @@ def test_what_was_written_is_read_back(
             assert getattr(before, name) == getattr(after, name)
         for name in ("x", "y", "heading", "speed", "acceleration"):
             np.testing.assert_allclose(getattr(before, name), getattr(after, name), atol=1e-4)
+
+
+def test_in_a_flow_the_road_may_be_empty_for_a_while(record: EpisodeRecord, tmp_path: Path) -> None:
+    flow = replace(record, outcome=Outcome(Ending.COUNTED, 9.0, {}, flow=FlowLog(5.0, 0.1, (), ())))
+    tracks = (track("CAV1", Kind.CAV, 0, [0, 1, 2], "IDLE"), track("HDV1", Kind.HDV, 50, [5, 6], ""))
+    found = stored(tmp_path, Trajectory(0.1, tracks), flow)
+    assert found is not None
+    assert found.step == 0.1
+    assert [(one.id, one.first_step, len(one.x)) for one in found.tracks] == [("CAV1", 0, 3), ("HDV1", 50, 2)]
 
 
 def test_a_single_row_is_read(record: EpisodeRecord, tmp_path: Path) -> None:

@@ -199,3 +199,7 @@ class PlacedScenario(Scenario):
     def scene(self, seed: int) -> Scene:
         """Draw a start for every vehicle."""
         return place(seed, self.crowd, self.road, self.draw)
+
+    def arrival(self, rng: np.random.Generator, name: str, kind: Kind, route: str) -> Start:
+        """Let a vehicle of a flow come in at the edge of the road, at a start speed."""
+        return self.crowd.start_on(rng, name, kind, route, (LENGTH / 2, LENGTH / 2))

@@ -94,6 +94,7 @@ class OrderRule(ABC):
 
     name: str = ""
     variant: str = ""
+    most_cavs: int | None = None  # CAVs that it orders at most; None for any number
 
     def reset(self, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
