@@ -22,7 +22,7 @@ def test_all_that_come_in_leave_at_their_goal_until_the_window_is_over() -> None
     assert outcome is not None
     assert outcome.flow is not None
     assert (outcome.ending, outcome.time, outcome.flow.begins) == (Ending.COUNTED, 60.0, 10.0)
-    assert len(outcome.arrivals) > 5
+    assert len(outcome.arrivals) >= 3
     for name, arrived in outcome.arrivals.items():
         track = tracks[name]
         goal = {"r0": 190, "r1": 190, "near": 150}[track.route]
