@@ -61,7 +61,7 @@ class Streets(Silent):
 
 def environment(scenario: Scenario, flow: Flow) -> Environment:
     """An environment as it is configured."""
-    node = compose([])["environment"]
+    node = compose(["suite=paper"])["environment"]
     return Environment(
         scenario,
         build(node["control"], ControlGains),
@@ -74,7 +74,7 @@ def environment(scenario: Scenario, flow: Flow) -> Environment:
 
 def configured(*overrides: str) -> Environment:
     """The environment of a flow."""
-    return build(compose(["flow=steady", *overrides])["environment"], Environment)
+    return build(compose(["suite=paper", "flow=steady", *overrides])["environment"], Environment)
 
 
 def drive(env: Environment, action: Action = Action.IDLE, seed: int = 10_000) -> Environment:

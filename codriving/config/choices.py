@@ -16,8 +16,9 @@ LISTED = (*GROUPS, SUITE, EXPERIMENTS)  # Every group that has choices
 
 TRAININGS = "train"  # The folder of the configs of trainings; no group of a run, which has no training
 
-# Groups of which one command can take every choice; a snapshot has to be named, so not every memory can be taken.
-SWEPT = tuple(group for group in GROUPS if group not in ("launcher", "memory"))
+# Groups of which one command can take every choice; a snapshot has to be named, so not every memory can be taken; and
+# flows and episodes are not mixed.
+SWEPT = tuple(group for group in GROUPS if group not in ("launcher", "memory", "flow"))
 
 ALL = "all"  # The word for every choice of a group; no YAML may be called so
 

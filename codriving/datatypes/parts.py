@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from codriving.datatypes.experience import Experience, Interaction, Memory
 from codriving.datatypes.record import Outcome, Score, Trajectory
-from codriving.datatypes.road import Road
+from codriving.datatypes.road import Road, Route
 from codriving.datatypes.situation import Deliberation, Situation
 from codriving.datatypes.world import Action, DrivingModel, Kind, Scene, Start, WorldState
 
@@ -45,9 +45,19 @@ class Scenario(ABC):
             ScenarioError: If the vehicles cannot be placed.
         """
 
-    def arrival(self, rng: "np.random.Generator", name: str, kind: Kind, route: str) -> Start | None:
-        """Draw how a vehicle of a flow comes in at the beginning of a route; None if the scenario takes no flows."""
-        return None
+    @property
+    def ways(self) -> tuple[Route, ...]:
+        """The routes that vehicles are drawn on."""
+        return self.road.routes
+
+    @property
+    def without_flows(self) -> str:
+        """Why it takes no flows; empty if it does."""
+        return "" if type(self).arrival is not Scenario.arrival else "its class has no method arrival()"
+
+    def arrival(self, rng: "np.random.Generator", name: str, kind: Kind, route: str) -> Start:
+        """Draw how a vehicle of a flow comes in at the beginning of a route."""
+        raise NotImplementedError(self.without_flows)
 
 
 class Drivers:

@@ -9,7 +9,7 @@ from string import ascii_lowercase
 import numpy as np
 from highway_env.road.lane import AbstractLane
 
-from codriving.datatypes import Flow, Kind, LaneId, Road, Scenario, Start
+from codriving.datatypes import Flow, Kind, LaneId, Scenario, Start
 from codriving.environment.scenarios.placement import LENGTH, braking_gap
 from codriving.environment.traffic.traffic import Traffic
 
@@ -23,10 +23,10 @@ class Newcomer:
     start: Start
 
 
-def entries(road: Road) -> dict[LaneId, tuple[str, ...]]:
-    """Return the lanes that lead into a road, and the routes that begin on each."""
+def entries(scenario: Scenario) -> dict[LaneId, tuple[str, ...]]:
+    """Return the lanes that lead into the road of a scenario, and the routes on which vehicles come in there."""
     found: dict[LaneId, tuple[str, ...]] = {}
-    for route in road.routes:
+    for route in scenario.ways:
         found[route.lanes[0]] = (*found.get(route.lanes[0], ()), route.id)
     return found
 
@@ -42,7 +42,7 @@ def draw_newcomers(scenario: Scenario, flow: Flow, seed: int, interval: float) -
         interval: Vehicles come in when the CAVs decide, every so often [s]; times are rounded up to that.
     """
     found = []
-    for number, (lane, routes) in enumerate(entries(scenario.road).items()):
+    for number, (lane, routes) in enumerate(entries(scenario).items()):
         key = "/".join(map(str, lane)).encode()
         times, traits = (
             np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(3, part, *key))) for part in (0, 1)
@@ -53,7 +53,6 @@ def draw_newcomers(scenario: Scenario, flow: Flow, seed: int, interval: float) -
             kind = Kind.CAV if float(traits.random()) < flow.share else Kind.HDV
             route = routes[int(traits.integers(len(routes)))]
             start = scenario.arrival(traits, f"{kind}{count}{_letters(number)}", kind, route)
-            assert start is not None
             looked = math.ceil(time / interval - 1e-9) * interval
             if looked < flow.ends:
                 found.append(Newcomer(round(looked, 9), lane, start))

@@ -59,10 +59,9 @@ class Environment(Simulator):
     ) -> None:
         self.scenario, self.control, self.drivers, self.corrections = scenario, control, drivers, corrections
         self.limits, self.flow = limits, flow
-        if flow is not None and type(scenario).arrival is Scenario.arrival:
+        if flow is not None and scenario.without_flows:
             raise ScenarioError(
-                f"{scenario.name} takes no flows, since it does not say how vehicles come in; leave flow out, or give "
-                f"{type(scenario).__name__} a method arrival()"
+                f"{scenario.name} takes no flows: {scenario.without_flows}; change that, or leave flow out"
             )
         pace = scenario.pace
         step, interval = 1 / pace.simulation_frequency, 1 / pace.decision_frequency
@@ -94,7 +93,7 @@ class Environment(Simulator):
         else:
             self._termination, scene = Counting(self.flow, newcomers, step), replace(scene, starts=())
         self._traffic = self._populated(scene)
-        lanes = {lane: self._network.get_lane(lane) for lane in entries(self.scenario.road)}
+        lanes = {lane: self._network.get_lane(lane) for lane in entries(self.scenario)}
         self._outside = Outside(newcomers, lanes)
         self._steps = self._decisions = 0
         self._recorder = Recorder()

@@ -25,7 +25,7 @@ def of(newcomers: tuple[Newcomer, ...], number: int) -> list[Newcomer]:
 
 
 def test_lanes_that_lead_in_and_the_routes_that_begin_there() -> None:
-    assert entries(streets(2).road) == {("a0", "b0", 0): ("r0", "near"), ("a1", "b1", 0): ("r1",)}
+    assert entries(streets(2)) == {("a0", "b0", 0): ("r0", "near"), ("a1", "b1", 0): ("r1",)}
 
 
 def test_as_many_as_asked_for_arrive_and_none_sooner_than_the_headway() -> None:

@@ -132,5 +132,24 @@ def test_all_four_roads_take_flows_on_each_lane_that_leads_in(scenario: str, lan
 
 
 def test_a_scenario_that_does_not_say_how_vehicles_come_in_is_refused() -> None:
-    with pytest.raises(ScenarioError, match="by hand takes no flows, since it does not say how vehicles come in"):
+    with pytest.raises(
+        ScenarioError,
+        match=r"by hand takes no flows: its class has no method arrival\(\); change that, or leave flow out",
+    ):
         environment(Silent(NARROW), FLOW)
+
+
+def test_vehicles_come_in_on_the_ways_that_the_scenario_takes() -> None:
+    env = drive(configured(*LEGS, "scenario.turns=[left]", "flow.share=0.0"))
+    assert {track.route for track in env.trajectory().tracks} <= {
+        "south-west",
+        "west-north",
+        "north-east",
+        "east-south",
+    }
+
+
+@pytest.mark.parametrize("override", ["scenario.pattern=standoff", "scenario.blocked_exit=15"])
+def test_what_says_how_an_episode_begins_is_refused(override: str) -> None:
+    with pytest.raises(ScenarioError, match="intersection takes no flows: pattern=standoff and blocked_exit say how"):
+        configured(override)

@@ -78,6 +78,12 @@ class JunctionScenario(PlacedScenario):
         """The routes that vehicles are drawn on."""
         return tuple(route for route in self.road.routes if route.turn in self.turns)
 
+    @property
+    def without_flows(self) -> str:
+        if self.pattern != "random" or self.blocked_exit:
+            return "pattern=standoff and blocked_exit say how an episode begins"
+        return super().without_flows
+
     def draw(self, rng: np.random.Generator, name: str, kind: Kind) -> Start:
         route = self.ways[int(rng.integers(len(self.ways)))]
         return self.crowd.start_on(rng, name, kind, route.id, self.between(rng, name, kind, route))
