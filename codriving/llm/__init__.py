@@ -1,27 +1,27 @@
 """Questions to a language model and its answers: prompts, requests, retries, limits, costs and parsing."""
 
+from importlib import import_module
 from typing import TYPE_CHECKING
-
-from codriving.llm.ledger import Ledger
-from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for, one_line, seen_names
-from codriving.llm.prompts.render import Prompts, load_prompts, template_files
-from codriving.llm.prompts.replies import (
-    CorrectionReply,
-    DecisionReply,
-    LessonReply,
-    OrderReply,
-    correction_reply,
-    decision_reply,
-    first_of_pairs,
-    order_reply,
-)
-from codriving.llm.prompts.variables import decision_view, lane_views, negotiation_view, reflection_view
-from codriving.llm.prompts.views import MeaningView, SeenView, WayView
-from codriving.llm.question import Answer, Chat, Question
-from codriving.llm.sqlite_file import connect_sqlite, create_sqlite
 
 if TYPE_CHECKING:
     from codriving.llm.embeddings import EmbeddingModel
+    from codriving.llm.ledger import Ledger
+    from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for, one_line, seen_names
+    from codriving.llm.prompts.render import Prompts, load_prompts, template_files
+    from codriving.llm.prompts.replies import (
+        CorrectionReply,
+        DecisionReply,
+        LessonReply,
+        OrderReply,
+        correction_reply,
+        decision_reply,
+        first_of_pairs,
+        order_reply,
+    )
+    from codriving.llm.prompts.variables import decision_view, lane_views, negotiation_view, reflection_view
+    from codriving.llm.prompts.views import MeaningView, SeenView, WayView
+    from codriving.llm.question import Answer, Chat, Question
+    from codriving.llm.sqlite_file import connect_sqlite, create_sqlite
 
 __all__ = [
     "LONGEST_MEMORY", "Answer", "Chat", "CorrectionReply", "DecisionReply", "EmbeddingModel", "Ledger", "LessonReply",
@@ -32,10 +32,25 @@ __all__ = [
 ]  # fmt: skip
 
 
-def __getattr__(name: str) -> object:
-    """Import asyncio and what sends requests, which takes a tenth of a second, only where a provider embeds texts."""
-    if name != "EmbeddingModel":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from codriving.llm.embeddings import EmbeddingModel
+_FILES = {
+    "embeddings": ("EmbeddingModel",),
+    "ledger": ("Ledger",),
+    "prompts.free_text": ("LONGEST_MEMORY", "Names", "names_for", "one_line", "seen_names"),
+    "prompts.render": ("Prompts", "load_prompts", "template_files"),
+    "prompts.replies": (
+        "CorrectionReply", "DecisionReply", "LessonReply", "OrderReply", "correction_reply", "decision_reply",
+        "first_of_pairs", "order_reply",
+    ),
+    "prompts.variables": ("decision_view", "lane_views", "negotiation_view", "reflection_view"),
+    "prompts.views": ("MeaningView", "SeenView", "WayView"),
+    "question": ("Answer", "Chat", "Question"),
+    "sqlite_file": ("connect_sqlite", "create_sqlite"),
+}  # fmt: skip
 
-    return EmbeddingModel
+
+def __getattr__(name: str) -> object:
+    """Import a file with the first use of a name in it: where rules reason, no prompt and no reply is needed."""
+    for file, names in _FILES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{file}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -3,12 +3,15 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from codriving.datatypes import Account, CaseMemory, DrivingModel, Method, Model, Road
 from codriving.errors import ConfigError
 from codriving.geometry import RoadMap
-from codriving.llm import Answer, Chat, Ledger, Prompts, Question, load_prompts, template_files
+from codriving.llm import Answer, Chat, Ledger, Question
+
+if TYPE_CHECKING:
+    from codriving.llm import Prompts
 
 
 @dataclass(frozen=True)
@@ -16,7 +19,7 @@ class PromptedModel:
     """A model, its templates, and where its answers are noted."""
 
     chat: Chat
-    prompts: Prompts
+    prompts: "Prompts"
     ledger: Ledger
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
@@ -29,13 +32,18 @@ class PromptedModel:
 
 def prompted(llm: Model) -> PromptedModel | None:
     """Return the model of an episode, with an empty ledger; None for the built-in rules."""
-    chat = llm.chat()
-    return None if chat is None else PromptedModel(chat, load_prompts(llm.prompts), Ledger())
+    if (chat := llm.chat()) is None:
+        return None
+    from codriving.llm import load_prompts
+
+    return PromptedModel(chat, load_prompts(llm.prompts), Ledger())
 
 
 def check_model(llm: Model, memory: CaseMemory | None) -> None:
     """Try the templates out, so that a broken one is found before anything is driven."""
     if llm.prompts is not None:
+        from codriving.llm import load_prompts
+
         load_prompts(llm.prompts)
     if memory is not None and memory.reflections and llm.chat() is None:
         raise ConfigError("memory.reflection=llm needs a language model; set llm= to one, or memory.reflection=rules")
@@ -56,6 +64,8 @@ class ModelMethod(Method):
         """Return the templates with which a model is asked; none where the built-in rules reason."""
         if self.llm.chat() is None:
             return {}
+        from codriving.llm import template_files
+
         return template_files(self.llm.prompts, (*self.asked, self.reflects) if self.corrects() else self.asked)
 
     def corrects(self) -> bool:
