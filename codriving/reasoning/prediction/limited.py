@@ -16,26 +16,30 @@ SLOW = 0.05  # Vehicles that stand are taken to start within a row of a speed pr
 class _Tables:
     """Speed profiles of several states, put one after another so that all are looked up at once."""
 
-    def __init__(self, along: Sequence[Along], dimensions: int, scale: float) -> None:
+    def __init__(self, along: Sequence[Along], shape: tuple[int, ...], scale: float) -> None:
         profiles = list({id(profile): profile for profile, _ in along}.values())
         starts = np.cumsum([0, *(len(profile.base) for profile in profiles)])
         first = {id(profile): start for profile, start in zip(profiles, starts.tolist(), strict=False)}
         self.base = np.concatenate([profile.base for profile in profiles]) * scale
         self.slopes = np.concatenate([profile.slopes for profile in profiles]) * scale
-        column = (len(along), *(1,) * (dimensions - 1))
+        column = (len(along), *(1,) * (len(shape) - 1))
         self.rows = np.array([1 / profile.spacing for profile, _ in along]).reshape(column)
         self.now = np.array([max(s, 0.0) / profile.spacing for profile, s in along]).reshape(column)
         self.first = np.array([first[id(profile)] for profile, _ in along], dtype=np.intp).reshape(column)
+        # A hundred steps write to the same places.
+        shape = (len(along), *shape[1:])
+        self._x, self._slope, self._base, self._k = *(np.empty(shape) for _ in range(3)), np.empty(shape, dtype=np.intp)
 
     def reference(self, travelled: Array) -> Array:
-        """Return the reference speed after some distance [m], in m/s times the scale."""
-        x = travelled * self.rows
+        """Return the reference speed after some distance [m], in m/s times the scale; good until the next call."""
+        x, k, found = self._x, self._k, self._slope
+        np.multiply(travelled, self.rows, out=x)
         x += self.now
-        k = x.astype(np.intp)
+        np.copyto(k, x, casting="unsafe")
         k += self.first
-        found: Array = self.slopes.take(k, mode="clip")
+        self.slopes.take(k, out=found, mode="clip")
         found *= x
-        found += self.base.take(k, mode="clip")
+        found += self.base.take(k, out=self._base, mode="clip")
         return found
 
 
@@ -77,7 +81,8 @@ def limited(
     hardest, slowest = limits.acceleration * step**2, -limits.braking * step**2
     v, goal, s, pedal = np.empty(shape), np.empty(shape), np.zeros(shape), np.empty(shape)
     v.T[...], goal.T[...] = np.multiply(speeds, step), np.multiply(targets, step)
-    tables, curved = _Tables(along, len(shape), step) if along else None, len(along)
+    tables = _Tables(along, shape, step) if along else None
+    here = s[: len(along)]
     samples = steps // stride
     distances, reached = np.zeros((samples + 1, *shape)), np.empty((samples + 1, *shape))
     reached[0] = v
@@ -93,9 +98,11 @@ def limited(
             if bounds:
                 goal[:, -2] = np.minimum(kept[:, -2], stepped[:, -2])
                 goal[:, -1] = np.maximum(kept[:, -1], stepped[:, -1])
-        np.subtract(goal, v, out=pedal)
+            aim, wanted = goal.copy(), goal[: len(along)]
+            told = aim[: len(along)]
         if tables is not None:
-            np.minimum(pedal[:curved], tables.reference(s[:curved]) - v[:curved], out=pedal[:curved])
+            np.minimum(wanted, tables.reference(here), out=told)
+        np.subtract(aim, v, out=pedal)
         pedal *= gain
         np.minimum(pedal, hardest, out=pedal)
         np.maximum(pedal, slowest, out=pedal)
