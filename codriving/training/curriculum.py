@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from codriving.config import compose_named
 from codriving.errors import ConfigError
 from codriving.gym import RewardWeights
 from codriving.methods import ACTIONS
@@ -23,6 +24,12 @@ def at_least(part: object, **least: int) -> None:
 def overrides(world: Mapping[str, str]) -> tuple[str, ...]:
     """Return the overrides of a run that say in what world it drives."""
     return tuple(f"{group}={choice}" for group, choice in world.items())
+
+
+def world_of(chosen: Mapping[str, str]) -> dict[str, str]:
+    """Return which limits and drivers a training has, of what its config chooses."""
+    _, choices = compose_named(overrides(chosen))
+    return {group: choices[group] for group in ("limits", "drivers")}
 
 
 @dataclass(frozen=True, slots=True)

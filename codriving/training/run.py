@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 from codriving.errors import TrainingError
 from codriving.methods import ACTIONS, FAR, NEAR, VERSION, AnyNetwork, Purpose, Trained, load, save
 from codriving.runs import whole_file, whole_folder, write_text
+from codriving.training.curriculum import world_of
 from codriving.training.curve import COLLISION, DURATION, SUCCESS, curve_csv, curve_png
 from codriving.training.display import Display
 from codriving.training.folder import Stop, TrainingFolder
@@ -107,6 +108,7 @@ def _purpose(settings: AnySettings, folder: TrainingFolder, said: Mapping[str, A
         hidden=settings.hidden,
         training={"command": folder.command, "config": folder.fingerprint, "seed": settings.seed, **taught, **said},
         form=settings.form,
+        world=world_of(settings.world),
     )
 
 

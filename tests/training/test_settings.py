@@ -9,7 +9,7 @@ import pytest
 from codriving.config.build import build
 from codriving.config.training import compose_training, trainings
 from codriving.errors import ConfigError
-from codriving.training.curriculum import shares
+from codriving.training.curriculum import shares, world_of
 from codriving.training.settings import MadqnSettings
 
 MADQN = [name for name in trainings() if name.startswith("madqn")]
@@ -30,6 +30,11 @@ def test_every_training_builds_and_shows_all_of_its_settings(name: str, smoke: b
     assert name == f"madqn_{settings.family}"
     assert len(settings.exams) * 1000 < 100_000
     assert all(exam.episodes <= 1000 for exam in settings.exams)
+
+
+def test_world_of_a_training_is_named_by_its_limits_and_drivers() -> None:
+    assert world_of(made().world) == {"limits": "none", "drivers": "simulator"}
+    assert world_of({"drivers": "rough"}) == {"limits": "road", "drivers": "rough"}
 
 
 def test_smoke_changes_what_it_says_and_nothing_else() -> None:
