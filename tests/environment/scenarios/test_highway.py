@@ -119,3 +119,13 @@ def test_markings_separate_lanes_and_end_the_road() -> None:
         ["none", "striped"],
         ["none", "continuous_line"],
     ]
+
+
+@pytest.mark.parametrize(("change", "hdvs"), [({}, 18), ({"cavs": 10, "start": (20.0, 400.0)}, 30)])
+def test_more_human_drivers_fit(change: dict[str, Any], hdvs: int) -> None:
+    of = scenario("highway", **change, hdvs=(hdvs, hdvs))
+    for seed in range(15):
+        scene = of.scene(seed)
+        assert sum(start.kind is Kind.HDV for start in scene.starts) == hdvs
+        for lane in {start.route for start in scene.starts}:
+            check_room([start for start in scene.starts if start.route == lane], 10.0)

@@ -182,3 +182,20 @@ def test_arrival_is_on_the_main_road_past_the_end_of_the_ramp() -> None:
         x, y = road.paths[route.id].position(route.goal)
         assert x == pytest.approx(ends + PAST_MERGE, abs=2.0)
         assert 0.0 <= y <= 4.0 * (of.lanes - 1)
+
+
+@pytest.mark.parametrize(
+    ("change", "hdvs"),
+    [
+        ({"ramp_hdvs": 0.5}, 8),
+        ({}, 10),
+        ({"cavs": 10, "before": 400.0, "start": (5.0, 390.0)}, 20),
+    ],
+)
+def test_more_human_drivers_fit(change: dict[str, Any], hdvs: int) -> None:
+    of = scenario("merge", **change, hdvs=(hdvs, hdvs))
+    for seed in range(15):
+        scene = of.scene(seed)
+        assert sum(start.kind is Kind.HDV for start in scene.starts) == hdvs
+        for lane in {start.route for start in scene.starts}:
+            check_room([start for start in scene.starts if start.route == lane], 10.0)
