@@ -17,7 +17,7 @@ from codriving.reasoning.ordering.coordinator import RuleCoordinator
 from codriving.reasoning.perception import Moment, states
 from codriving.reasoning.prediction.expectation import expect
 from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.prediction.rollout import PLANS
+from codriving.reasoning.prediction.rollout import plan_library
 from codriving.reasoning.safety.safety_input import CONTINUATIONS, LONGITUDINAL, SafetyInput, safety_input
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
 from codriving.reasoning.sharing.sharing import SharedStates, StateSharing
@@ -154,7 +154,8 @@ class Junction:
         start, end, index = lane
         found = self.road_map.lanes
         sides = ((Action.LANE_LEFT, (start, end, index - 1)), (Action.LANE_RIGHT, (start, end, index + 1)))
-        return (*LONGITUDINAL, *(action for action, side in sides if side in found and not found[side].forbidden))
+        along = (a for a in LONGITUDINAL if a is not Action.HOLD or self.model.steady)
+        return (*along, *(action for action, side in sides if side in found and not found[side].forbidden))
 
     def world(self, *cars: Car, time: float = 0.0, step: int = 0) -> WorldState:
         """The world with some vehicles in it."""
@@ -188,12 +189,14 @@ class Junction:
 
     def forecast(self) -> Forecast:
         """Predictions with every plan that the reasoning asks for."""
-        return Forecast(self.model, (*CONTINUATIONS, *PLANS), self.road_map)
+        return Forecast(self.model, (*CONTINUATIONS, *plan_library(self.model)), self.road_map)
 
     def drive(self, *starts: Start) -> Environment:
         """An environment in which given vehicles start."""
         e = self.environment
-        return Environment(ByHand(e, starts), e.control, e.drivers, e.corrections, e.limits)
+        return Environment(
+            ByHand(e, starts), e.control, e.drivers, e.corrections, e.limits, steady=e.driving_model.steady
+        )
 
 
 def standing(given: SafetyInput, name: str, time: float) -> SafetyInput:

@@ -17,6 +17,7 @@ SIGNS = {
     Action.FASTER: (_UP, _UP + _LOW),
     Action.SLOWER: (_DOWN, _DOWN - _LOW),
     Action.IDLE: (_BAR - _LOW / 2, _BAR + _LOW / 2),
+    Action.HOLD: (_BAR,),
     Action.LANE_LEFT: (_LEFT,),
     Action.LANE_RIGHT: (_RIGHT,),
 }

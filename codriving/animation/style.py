@@ -25,6 +25,7 @@ ACTIONS = {
     Action.FASTER: GREEN,
     Action.SLOWER: VERMILION,
     Action.IDLE: FAINT,
+    Action.HOLD: FAINT,
     Action.LANE_LEFT: BLUE,
     Action.LANE_RIGHT: BLUE,
 }

@@ -49,11 +49,12 @@ class Action(StrEnum):
     FASTER = "FASTER"
     LANE_LEFT = "LANE_LEFT"
     LANE_RIGHT = "LANE_RIGHT"
+    HOLD = "HOLD"  # Keeps the speed that is driven; only where the setting is on
 
 
 @dataclass(frozen=True, slots=True)
 class DrivingModel:
-    """The vehicle model seen through the five actions (paper Eq. 1)."""
+    """The vehicle model seen through the actions (paper Eq. 1)."""
 
     target_speeds: tuple[float, ...]  # Allowed target speeds, uniformly spaced and rising [m/s]
     speed_gain: float  # Proportional gain K_a of the speed law a = K_a (v_r - v) [1/s]
@@ -63,6 +64,7 @@ class DrivingModel:
     limits: VehicleLimits | None = None  # What a vehicle can do; None if it can do anything
     human_braking: float = 6.0  # Hardest braking of a human driver [m/s2]
     human_acceleration: float = 1.5  # Hardest acceleration of a human driver [m/s2]; exceeded where there are no limits
+    steady: bool = False  # Whether HOLD is an action, and whether CAVs are to avoid reversals, gridlocks and full exits
 
     @property
     def top_speed(self) -> float:
@@ -72,13 +74,14 @@ class DrivingModel:
     def target_after(self, action: Action, speed: float, target: float) -> float | None:
         """Return the target speed after an action at a speed [m/s], None for a lane change.
 
-        FASTER and SLOWER step from the speed that is driven to the next allowed target; every other action keeps it.
+        FASTER and SLOWER step from the speed that is driven to the next allowed target, HOLD makes it the target, and
+        IDLE keeps the target.
         """
-        steps = {Action.SLOWER: -1, Action.IDLE: 0, Action.FASTER: 1}
+        if action in (Action.IDLE, Action.HOLD):
+            return target if action is Action.IDLE else speed
+        steps = {Action.SLOWER: -1, Action.FASTER: 1}
         if action not in steps:
             return None
-        if action is Action.IDLE:
-            return target
         low, top = self.target_speeds[0], len(self.target_speeds) - 1
         nearest = round((speed - low) / (self.target_speeds[-1] - low) * top)
         return self.target_speeds[min(max(min(max(nearest, 0), top) + steps[action], 0), top)]

@@ -11,9 +11,10 @@ from codriving.environment.traffic.route_following import RouteFollower, RoutePa
 
 
 class ConnectedVehicle(RouteFollower, MDPVehicle):
-    """A vehicle that takes one of the five actions a decision (paper Section II and Eq. 1)."""
+    """A vehicle that takes one of the five actions a decision (paper Section II and Eq. 1), or HOLD if that is one."""
 
     kind = Kind.CAV
+    may_hold: bool = False  # Whether HOLD is an action
     reckoned: float  # Where it was at the last decision, and how far it has driven since [m]
 
     @classmethod
@@ -46,6 +47,8 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
             self.speed_index = self.speed_to_index(self.speed) + (1 if action == Action.FASTER else -1)
             self.speed_index = min(max(self.speed_index, 0), len(self.target_speeds) - 1)
             self.target_speed = float(self.target_speeds[self.speed_index])
+        elif action == Action.HOLD:
+            self.target_speed = self.speed
         self.action = {"steering": self.keep_lane(), "acceleration": self.speed_control(self.target_speed)}
 
     def odometer(self, dt: float) -> float:
@@ -61,7 +64,7 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
 
     def available(self) -> tuple[Action, ...]:
         """Return the actions that the road allows now; speed can always be changed."""
-        actions = [Action.SLOWER, Action.IDLE, Action.FASTER]
+        actions = [Action.SLOWER, Action.IDLE, *([Action.HOLD] * self.may_hold), Action.FASTER]
         start, end, index = self.target_lane_index
         lanes = self.road.network.graph[start][end]
         for action, other in ((Action.LANE_LEFT, index - 1), (Action.LANE_RIGHT, index + 1)):

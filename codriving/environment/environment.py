@@ -56,6 +56,7 @@ class Environment(Simulator):
         corrections: Corrections,
         limits: VehicleLimits | None = None,
         flow: Flow | None = None,
+        steady: bool = False,
     ) -> None:
         self.scenario, self.control, self.drivers, self.corrections = scenario, control, drivers, corrections
         self.limits, self.flow = limits, flow
@@ -65,7 +66,7 @@ class Environment(Simulator):
             )
         pace = scenario.pace
         step, interval = 1 / pace.simulation_frequency, 1 / pace.decision_frequency
-        model = DrivingModel(pace.target_speeds, control.speed, step, interval, pace.detection_range)
+        model = DrivingModel(pace.target_speeds, control.speed, step, interval, pace.detection_range, steady=steady)
         if isinstance(drivers, DriverMix):
             model = replace(model, human_braking=drivers.limit, human_acceleration=drivers.acceleration)
         self.driving_model = model if limits is None else limited_model(model, limits, drivers)
@@ -173,6 +174,9 @@ class Environment(Simulator):
         scene = Scene(seed, starts)
         spawn(traffic, scene, self._route_paths, self.driving_model.target_speeds, self.control, self.drivers)
         limit(traffic, self.limits)
+        for vehicle in traffic.vehicles:
+            if isinstance(vehicle, ConnectedVehicle):
+                vehicle.may_hold = self.driving_model.steady
 
     @property
     def outcome(self) -> Outcome | None:

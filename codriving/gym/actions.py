@@ -1,4 +1,4 @@
-"""The five decisions as numbers, and which of them the road allows."""
+"""Decisions as numbers, and which of them the road allows."""
 
 from collections.abc import Collection
 from operator import index
@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.config import LARGEST_SEED
-from codriving.datatypes import Action
+from codriving.datatypes import Action, DrivingModel
 from codriving.errors import EpisodeError
 
 # Smallest seed that is drawn; tables use smaller ones, so no training drives the episodes of a table.
@@ -35,18 +35,23 @@ def check_seed(seed: object) -> int:
     return number
 
 
-ACTIONS = tuple(Action)  # What the numbers 0 to 4 mean
+ACTIONS = tuple(Action)  # What the numbers mean: 0 to 4, and 5 only where HOLD is an action
 
 
-def action_mask(available: Collection[Action]) -> NDArray[np.int8]:
+def action_count(model: DrivingModel) -> int:
+    """Return how many actions there are."""
+    return len(ACTIONS) if model.steady else len(ACTIONS) - 1
+
+
+def action_mask(available: Collection[Action], count: int) -> NDArray[np.int8]:
     """Mark the actions that the road allows."""
-    return np.array([action in (available or (Action.IDLE,)) for action in ACTIONS], dtype=np.int8)
+    return np.array([action in (available or (Action.IDLE,)) for action in ACTIONS[:count]], dtype=np.int8)
 
 
-def action_of(agent: str, number: object) -> Action:
+def action_of(agent: str, number: object, count: int) -> Action:
     """Return the action of a number."""
     found = _whole(number)
-    if not 0 <= found < len(ACTIONS):
-        names = ", ".join(f"{i} {action}" for i, action in enumerate(ACTIONS))
+    if not 0 <= found < count:
+        names = ", ".join(f"{i} {action}" for i, action in enumerate(ACTIONS[:count]))
         raise EpisodeError(f"the action of {agent} must be one of {names}; got {number!r}")
     return ACTIONS[found]

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from codriving.datatypes import Action, Ending, Kind, WorldState
 from codriving.environment import Environment
 from codriving.errors import EpisodeError, ScenarioError
-from codriving.gym.actions import action_mask, action_of
+from codriving.gym.actions import action_count, action_mask, action_of
 from codriving.gym.observation import FloatArray, Observer
 from codriving.gym.reward import CavStep, RewardWeights, rewards
 
@@ -31,6 +31,7 @@ class AgentEpisode:
     def __init__(self, environment: Environment, observer: Observer, weights: RewardWeights) -> None:
         self.environment, self.observer, self.weights = environment, observer, weights
         self.cavs = [start.id for start in environment.scenario.scene(0).starts if start.kind is Kind.CAV]
+        self.count = action_count(environment.driving_model)
         self.driving: list[str] = []
         self.world: WorldState | None = None
         self.actions: dict[str, Action] = {}
@@ -80,7 +81,7 @@ class AgentEpisode:
         outcome = self.environment.outcome
         involved = () if outcome is None else outcome.failed
         return {
-            "action_mask": action_mask(self.world.available.get(name, ())),
+            "action_mask": action_mask(self.world.available.get(name, ()), self.count),
             "refused": self._refused[name],
             "arrived": name not in self.world.available,
             "outcome": "" if outcome is None else str(outcome.ending),
@@ -96,7 +97,7 @@ class AgentEpisode:
         if missing or unknown:
             fault = f"none for {', '.join(missing)}" if missing else f"one for {', '.join(unknown)}"
             raise EpisodeError(f"one action for each of {', '.join(self.driving)} is needed, got {fault}")
-        wanted = {name: action_of(name, actions[name]) for name in self.driving}
+        wanted = {name: action_of(name, actions[name], self.count) for name in self.driving}
         for name, action in wanted.items():
             if action not in world.available[name]:
                 wanted[name] = Action.IDLE

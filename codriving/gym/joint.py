@@ -9,7 +9,7 @@ from gymnasium.spaces import MultiDiscrete
 from numpy.typing import NDArray
 
 from codriving.errors import EpisodeError
-from codriving.gym.actions import ACTIONS, check_seed, draw_seed
+from codriving.gym.actions import check_seed, draw_seed
 from codriving.gym.episode import Info
 from codriving.gym.observation import FloatArray
 from codriving.gym.parallel import METADATA, ParallelDriving
@@ -24,7 +24,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         self.parallel = ParallelDriving(name, f"suite={suite}", *overrides, **settings)
         self.render_mode, self.metadata = self.parallel.render_mode, self.parallel.metadata
         self.observation_space = self.parallel.state_space
-        self.action_space = MultiDiscrete([len(ACTIONS)] * len(self.parallel.possible_agents))
+        self.action_space = MultiDiscrete([int(space.n) for space in self.parallel.action_spaces.values()])
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[FloatArray, Info]:
         """Begin an episode."""
@@ -54,7 +54,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         self.parallel.close()
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return the masks of all CAVs one after another (5 x cavs,), as MaskablePPO of sb3-contrib wants them."""
+        """Return the masks of all CAVs one after another, as MaskablePPO of sb3-contrib wants them."""
         return np.concatenate([info["action_mask"] for info in self._infos()]).astype(np.bool_)
 
     def _info(self) -> Info:

@@ -12,7 +12,7 @@ from pettingzoo import ParallelEnv
 from codriving.animation import LivePicture
 from codriving.datatypes import WorldState
 from codriving.errors import ConfigError, EpisodeError
-from codriving.gym.actions import ACTIONS, check_seed, draw_seed
+from codriving.gym.actions import check_seed, draw_seed
 from codriving.gym.configured import configured
 from codriving.gym.episode import AgentEpisode, Info
 from codriving.gym.observation import CdaObserver, FloatArray, Layout
@@ -68,7 +68,7 @@ class ParallelDriving(ParallelEnv):
         self.metadata = {**METADATA, "name": f"codriving_{name}_v{version}", "render_fps": 1 / model.decision_interval}
         self.possible_agents = list(self._drive.cavs)
         self.observation_spaces = {agent: observer.space() for agent in self.possible_agents}
-        self.action_spaces = {agent: Discrete(len(ACTIONS)) for agent in self.possible_agents}
+        self.action_spaces = {agent: Discrete(self._drive.count) for agent in self.possible_agents}
         spaces = self.observation_spaces.values()
         self.state_space = Box(np.stack([s.low for s in spaces]), np.stack([s.high for s in spaces]), dtype=np.float32)
         self._rng: np.random.Generator | None = None

@@ -101,7 +101,8 @@ KINDS: tuple[tuple[str, float, tuple[str, ...]], ...] = (
     ("driver", 1.0, ("CAV", "human", "unknown")),
 )
 
-ACTIONS, ALLOWED = tuple(str(action) for action in Action), 1.0  # What may be allowed, and the weight of that
+# What may be allowed, of the five actions of the paper, and the weight of that.
+ACTIONS, ALLOWED = tuple(str(action) for action in Action if action is not Action.HOLD), 1.0
 
 # Share of its weight with which a number counts where it is not there: two empty lanes are alike, but not very.
 ABSENT = 0.2

@@ -21,7 +21,6 @@ from codriving.methods.pipeline import Pipeline
 from codriving.reasoning import (
     CONTINUATIONS,
     HIDDEN_INTENTS,
-    PLANS,
     SHARED_INTENTS,
     AgreedOrder,
     CdaLevel,
@@ -38,6 +37,7 @@ from codriving.reasoning import (
     ThreeLayers,
     Tracking,
     decide_one,
+    plan_library,
 )
 
 
@@ -55,7 +55,7 @@ class CoDriving(ModelMethod):
         """Fill the slots for a new episode."""
         super().reset(road_map, model, seed)
         coordinator, decider = ports(self._model, self.llm.ask_plain, self.cda.binding, self.cda.intent_sharing)
-        forecast = Forecast(model, (*CONTINUATIONS, *PLANS), road_map)
+        forecast = Forecast(model, (*CONTINUATIONS, *plan_library(model)), road_map)
         states = SharedStates() if self.cda.state_sharing else SensedStates()
         intents = SHARED_INTENTS if self.cda.intent_sharing else HIDDEN_INTENTS
         perception = Perception(road_map, forecast, Tracking(road_map), states, intents)

@@ -15,7 +15,6 @@ from codriving.geometry import RoadMap
 from codriving.reasoning import (
     CONTINUATIONS,
     LONGITUDINAL,
-    PLANS,
     SHARED_INTENTS,
     Drive,
     Executor,
@@ -27,6 +26,7 @@ from codriving.reasoning import (
     SharedStates,
     Tracking,
     agreement,
+    plan_library,
     pose,
 )
 
@@ -45,7 +45,7 @@ class Ordered(Method):
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
-        forecast = Forecast(model, (*CONTINUATIONS, *PLANS, *self.executor.library), road_map)
+        forecast = Forecast(model, (*CONTINUATIONS, *plan_library(model), *self.executor.library), road_map)
         self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SHARED_INTENTS)
         self._requests, self._lag = LaneRequests(), round(self.executor.margin / forecast.sample)
         self.rule.reset(seed)

@@ -38,7 +38,7 @@ from codriving.reasoning.prediction.clearance import stays_behind
 from codriving.reasoning.prediction.expectation import Expected, expect_all
 from codriving.reasoning.prediction.forecast import HORIZON, Forecast
 from codriving.reasoning.prediction.idm import IntelligentDriver
-from codriving.reasoning.prediction.rollout import PLANS, Plan, rollout
+from codriving.reasoning.prediction.rollout import Plan, plan_library, rollout
 from codriving.reasoning.safety.assessment import NoCheck, SafetyCheck, ThreeLayers
 from codriving.reasoning.safety.safety_input import (
     CONTINUATIONS,
@@ -56,7 +56,7 @@ from codriving.reasoning.sharing.tracking import STANDING, Places, Tracking
 
 __all__ = [
     "ALIGNED", "CONTINUATIONS", "CONTROL_RADIUS", "HIDDEN_INTENTS", "HORIZON", "LANE_END_GAP",
-    "LONGEST_WAIT", "LONGITUDINAL", "OPEN", "PLANS", "SAME_LANE", "SHARED_INTENTS", "SIDES", "SLOWEST", "STANDING",
+    "LONGEST_WAIT", "LONGITUDINAL", "OPEN", "SAME_LANE", "SHARED_INTENTS", "SIDES", "SLOWEST", "STANDING",
     "AgreedOrder", "CdaLevel", "Coordinator", "Decider", "Drive", "Executor", "Expected", "Forecast",
     "IntelligentDriver", "JointPlan", "JointPlanner", "LaneRequests", "Moment", "Negotiation", "NoCheck", "Objective",
     "OrderRule", "Ordering", "OwnOrders", "Perception", "Places", "Plan", "Premise", "Problem", "Request",
@@ -64,6 +64,6 @@ __all__ = [
     "TicketBook", "Tracking", "after_windows", "agreement", "best_subset", "by_slot", "by_ticket", "carried_over",
     "clear_time", "decide_one", "describe_scenes", "evacuation_time", "expect_all", "favour", "find_circle",
     "find_conflicts", "humans_expected", "in_order", "inserted", "is_behind", "is_open", "is_plain", "left",
-    "open_pairs", "pose", "premise", "reasons", "repaired", "rollout", "safety_input", "schedule", "sequence",
-    "single_vehicle_perception", "stays_behind", "then_stop", "timed", "total_delay", "ttcp", "with_roles",
+    "open_pairs", "plan_library", "pose", "premise", "reasons", "repaired", "rollout", "safety_input", "schedule",
+    "sequence", "single_vehicle_perception", "stays_behind", "then_stop", "timed", "total_delay", "ttcp", "with_roles",
 ]  # fmt: skip

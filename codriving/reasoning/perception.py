@@ -35,6 +35,7 @@ class Perception:
     tracking: Tracking
     state_sharing: StateSharing
     intent_sharing: IntentSharing
+    may_hold: bool = True  # Whether those who decide know HOLD
 
     def perceive(self, world: WorldState) -> Moment:
         """Return what every CAV knows, and begin the predictions of this step."""
@@ -47,9 +48,10 @@ class Perception:
             conflicts = {ego: find_conflicts(scene, self.road_map) for ego, scene in scenes.items()}
             scenes = {ego: with_conflicts(scene, conflicts[ego], self.road_map) for ego, scene in scenes.items()}
         vehicles = {ego: scene.vehicles() for ego, scene in scenes.items()}
-        return Moment(
-            world.time, scenes, conflicts, vehicles, world.available, self.road_map, self.forecast, finds_conflicts
-        )
+        available = world.available
+        if not self.may_hold:
+            available = {name: tuple(a for a in known if a is not Action.HOLD) for name, known in available.items()}
+        return Moment(world.time, scenes, conflicts, vehicles, available, self.road_map, self.forecast, finds_conflicts)
 
 
 def states(world: WorldState, road_map: RoadMap, model: DrivingModel) -> list[State]:
@@ -67,6 +69,6 @@ def single_vehicle_perception(road_map: RoadMap, forecast: Forecast) -> Percepti
 
     It knows position, speed and heading of every vehicle within the detection range, cannot tell a CAV from a human
     driver, and knows the ways that each may take from the map, narrowed down as it watches. Routes, intents, actions
-    and negotiated orders of others stay hidden.
+    and negotiated orders of others stay hidden. HOLD is none of its actions.
     """
-    return Perception(road_map, forecast, Tracking(road_map), SensedStates(headings=True), GUESSED_INTENTS)
+    return Perception(road_map, forecast, Tracking(road_map), SensedStates(headings=True), GUESSED_INTENTS, False)

@@ -54,6 +54,8 @@ DRIVERS, ENVIRONMENT = "drivers", "environment"  # Drivers are told by their val
 # Without limits a world is that of a run whose config did not know them yet, and without a flow likewise.
 LIMITS, FLOW = "limits", "flow"
 
+STEADY = "steady"  # Where it is false a world is that of a run whose config did not know it yet
+
 MEMORY = "memory"
 SNAPSHOT, AUTO = "snapshot", "auto"  # Where a memory's snapshot is told by its contents, its file may lie anywhere
 
@@ -100,6 +102,8 @@ def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     environment = values.get(ENVIRONMENT)
     if DRIVERS in values and isinstance(environment, Mapping) and environment.get(DRIVERS) == values[DRIVERS]:
         values.pop(DRIVERS)
+    if isinstance(environment, Mapping) and not environment.get(STEADY, True):
+        values[ENVIRONMENT] = {name: value for name, value in environment.items() if name != STEADY}
     dropped: dict[str, Sequence[str]] = {"llm": HOW_A_MODEL_IS_ASKED}
     if snapshot_of(resolved):
         dropped[MEMORY] = (SNAPSHOT, "file")

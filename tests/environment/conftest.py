@@ -104,11 +104,12 @@ def by_hand() -> Drive:
         drivers: dict[str, float] | None = None,
         limits: VehicleLimits | None = None,
         people: DriverMix | DriverProfile | None = None,
+        steady: bool = False,
     ) -> Environment:
         road = road or Intersection(**INTERSECTION).road
         scenario = ByHand(road, Pace(10.0, 2.0, time_limit, target_speeds, 50.0), tuple(starts))
         profile = people or DriverProfile(**{**DRIVERS, **(drivers or {})})
-        return Environment(scenario, GAINS, profile, corrections(*off), limits)
+        return Environment(scenario, GAINS, profile, corrections(*off), limits, steady=steady)
 
     return build
 

@@ -13,7 +13,8 @@ from codriving.datatypes.world import Action, Kind, Start
 from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.environment import Environment
 from codriving.environment.settings import ControlGains
-from codriving.errors import ConfigError
+from codriving.errors import ConfigError, EpisodeError
+from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.rollout import rollout
 
 Build = Callable[..., Environment]
@@ -23,6 +24,8 @@ STREET = Road(
     (Lane(("a", "b", 0), Straight((0.0, 0.0), (300.0, 0.0))),),
     (Route("along", (("a", "b", 0),), Turn.STRAIGHT, entry=200.0, goal=290.0),),
 )
+SIDES = (Action.LANE_LEFT, Action.LANE_RIGHT)
+
 PLANS = tuple(product((Action.SLOWER, Action.IDLE, Action.FASTER), repeat=5))
 
 
@@ -61,6 +64,41 @@ def test_actions_do_what_prediction_says_at_the_limits(speed: float, by_hand: Bu
         track = env.trajectory().tracks[0]
         assert np.allclose(track.x - 20.0, distances[0, k], rtol=0, atol=1e-9)
         assert np.allclose(track.speed, reached[0, k], rtol=0, atol=1e-9)
+
+
+HOLDING = [(a, Action.HOLD, b, Action.HOLD) for a in Action for b in Action if not {a, b} & set(SIDES)]
+
+
+@pytest.mark.parametrize("limits", [None, VehicleLimits(4.0, 8.0, 4.0, 3.0, 2.4)])
+@pytest.mark.parametrize("speed", [0.0, 4.4, 17.3, 27.0])
+def test_hold_keeps_the_speed_as_prediction_says(speed: float, limits: VehicleLimits | None, by_hand: Build) -> None:
+    speeds = (0.0, 10.0, 20.0, 30.0)
+    start = Start("CAV1", Kind.CAV, "along", 20.0, speed)
+    env = by_hand(starts=[start], road=STREET, target_speeds=speeds, limits=limits, steady=True)
+    target, steps = env.reset(0).intents["CAV1"].target_speed, 4 * env.driving_model.substeps
+    forecast = Forecast(env.driving_model, HOLDING)
+    travels = forecast.travel(speed, target, HOLDING)
+    distances, reached = rollout(env.driving_model, [speed], [target], tuple(HOLDING), steps)
+    for k, plan in enumerate(HOLDING):
+        env.reset(0)
+        for action in plan:
+            env.step({"CAV1": action})
+        track = env.trajectory().tracks[0]
+        assert np.allclose(track.x - 20.0, distances[0, k], rtol=0, atol=1e-9)
+        assert np.allclose(track.speed, reached[0, k], rtol=0, atol=1e-9)
+        # From the last decision on the speed is kept, and the plan goes on like that.
+        assert np.allclose(track.speed[-6:], track.speed[-6], rtol=0, atol=1e-9)
+        assert np.allclose(travels[k, : steps // 2 + 1], distances[0, k, ::2], rtol=0, atol=1e-9)
+
+
+def test_hold_is_an_action_only_where_the_setting_is_on(by_hand: Build) -> None:
+    start = Start("CAV1", Kind.CAV, "along", 20.0, 4.4)
+    env, steady = (by_hand(starts=[start], road=STREET, steady=steady) for steady in (False, True))
+    assert env.reset(0).available["CAV1"] == (Action.SLOWER, Action.IDLE, Action.FASTER)
+    assert steady.reset(0).available["CAV1"] == (Action.SLOWER, Action.IDLE, Action.HOLD, Action.FASTER)
+    assert steady.step({"CAV1": Action.HOLD}).intents["CAV1"].target_speed == 4.4
+    with pytest.raises(EpisodeError, match="CAV1 cannot do HOLD here; it can do SLOWER, IDLE, FASTER"):
+        env.step({"CAV1": Action.HOLD})
 
 
 def test_acceleration_is_proportional_to_the_missing_speed(by_hand: Build) -> None:

@@ -62,6 +62,18 @@ def test_masks_serve_to_sample(joint: JointDriving) -> None:
     assert joint.action_masks().dtype == np.bool_
 
 
+def test_hold_is_the_last_action_where_it_is_one() -> None:
+    env = make(overrides=["environment.steady=true"])
+    info = env.reset(seed=4)[1]
+    assert env.action_space.nvec.tolist() == [6] * 4
+    assert info["action_mask"].tolist() == [[1, 1, 1, 0, 0, 1]] * 4
+    for _ in range(3):
+        env.step([FASTER] * 4)
+    before = {v.id: v.speed for v in env.parallel.world.cavs}
+    env.step([5] * 4)
+    assert {v.id: v.speed for v in env.parallel.world.cavs} == pytest.approx(before)
+
+
 def test_who_has_arrived_is_zeros_and_its_action_is_ignored() -> None:
     env = make(cavs=2, hdvs=(0, 0), reward={"arrival": 8.0})
     env.reset(seed=0)

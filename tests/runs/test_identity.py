@@ -52,6 +52,13 @@ def test_a_suite_is_told_by_its_values_alone() -> None:
     assert told("suite=paper") != told()
 
 
+def test_a_config_that_does_not_know_steady_driving_is_one_without_it() -> None:
+    resolved = compose(["environment.steady=false"])
+    before = {**resolved, "environment": {k: v for k, v in resolved["environment"].items() if k != "steady"}}
+    assert settings_of(before) == settings_of(resolved)
+    assert told("environment.steady=true") != told("environment.steady=false")
+
+
 def test_a_config_that_does_not_know_limits_is_one_without_them() -> None:
     resolved = compose(["limits=none"])
     before = {key: value for key, value in resolved.items() if key != "limits"}

@@ -105,6 +105,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
             ActionView(("IDLE",), True, ("no action is safe; this one is the least dangerous",), None, (inf,)),
             ActionView(("FASTER",), False, ("same lane: FASTER leaves too little room",), None, ()),
         ],
+        "may_hold": True,
         "memories": ["Slowing down early let CAV2 pass without a stop."],
         "allowed": ["SLOWER", "IDLE"],
     },

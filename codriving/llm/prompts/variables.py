@@ -6,6 +6,7 @@ from math import inf
 from typing import Any
 
 from codriving.datatypes import (
+    Action,
     ActionAssessment,
     Conflict,
     Experience,
@@ -76,6 +77,7 @@ def decision_view(situation: Situation, nearest: int | None = None, with_memorie
         "before": [OrderView(names(p.first), names.sentence(p.reason)) for p in pairs if p.second == ego],
         "after": [OrderView(names(p.second), names.sentence(p.reason)) for p in pairs if p.first == ego],
         "actions": _actions(situation.assessments, list(groups.values()), names),
+        "may_hold": any(a.action is Action.HOLD for a in situation.assessments),
         "memories": [names.sentence(m.text, LONGEST_MEMORY) for m in situation.memories] if with_memories else [],
         "allowed": [str(action) for action in situation.allowed],
     }

@@ -10,7 +10,7 @@ from codriving.methods.language_model.prompted_model import PromptedModel
 from codriving.reasoning import Decider, decide_one, is_plain
 
 # Actions in the order in which they stand in for an answer that is missing.
-SAFEST = (Action.SLOWER, Action.IDLE, Action.FASTER, Action.LANE_RIGHT, Action.LANE_LEFT)
+SAFEST = (Action.SLOWER, Action.IDLE, Action.HOLD, Action.FASTER, Action.LANE_RIGHT, Action.LANE_LEFT)
 
 
 class ModelDecider(Decider):

@@ -62,8 +62,10 @@ def family_of(road: Road) -> str:
     return LANES if any(lane.id[2] > 0 for lane in road.lanes) else JUNCTION
 
 
+FIVE = (Action.SLOWER, Action.IDLE, Action.FASTER, Action.LANE_LEFT, Action.LANE_RIGHT)
+
 # The action of each output, by family.
-ACTIONS: dict[str, tuple[Action, ...]] = {JUNCTION: (Action.SLOWER, Action.IDLE, Action.FASTER), LANES: tuple(Action)}
+ACTIONS: dict[str, tuple[Action, ...]] = {JUNCTION: (Action.SLOWER, Action.IDLE, Action.FASTER), LANES: FIVE}
 
 
 def allowed(family: str, available: Collection[Action]) -> NDArray[np.bool_]:

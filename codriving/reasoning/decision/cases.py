@@ -10,7 +10,8 @@ from math import log2
 
 from codriving.datatypes import Action, ActionAssessment, Decision, Memory, Situation, Verdict
 
-BY_SPEED = (Action.SLOWER, Action.IDLE, Action.FASTER)  # Actions along the lane from the slowest to the fastest
+# Actions along the lane from the slowest to the fastest.
+BY_SPEED = (Action.SLOWER, Action.IDLE, Action.HOLD, Action.FASTER)
 
 
 # How an effect speaks for or against an action.

@@ -6,8 +6,12 @@ from collections.abc import Mapping, Sequence
 
 from codriving.datatypes import Action, Decision, Role, SceneDescription, Situation, TrackedVehicle
 from codriving.reasoning.decision.cases import reconsider
+from codriving.reasoning.prediction.reversals import reverses
 
-EAGERNESS = (Action.FASTER, Action.IDLE, Action.SLOWER)  # Actions along the lane from the most to the least progress
+# Actions along the lane from the most to the least progress; IDLE and HOLD in the other order while a CAV slows down.
+EAGERNESS = (Action.FASTER, Action.IDLE, Action.HOLD, Action.SLOWER)
+
+SLOWING = (Action.FASTER, Action.HOLD, Action.IDLE, Action.SLOWER)
 
 SIDES = {Action.LANE_LEFT: -1, Action.LANE_RIGHT: 1}  # By how much a lane change changes the index of the lane
 
@@ -47,8 +51,10 @@ def decide_one(situation: Situation) -> Decision:
 
     Lanes are changed where the route asks for it as soon as that is allowed, and elsewhere to get clearly farther.
     """
-    ego = situation.scene.ego.id
+    scene, ego = situation.scene, situation.scene.ego.id
     allowed = [action for action in EAGERNESS if action in situation.allowed]
+    if scene.intent.target_speed < scene.ego.speed:
+        allowed.sort(key=SLOWING.index)
     if any(a.safe and a.reasons for a in situation.assessments):
         least = situation.allowed[0]
         return Decision(ego, least, f"no action is safe, and {least} is the least dangerous")
@@ -67,8 +73,15 @@ def decide_one(situation: Situation) -> Decision:
         kept = f"the order cannot be kept with {waits_for or 'others'}"
         return Decision(ego, action, f"{kept}; {action} is the {how} action that is safe")
     best = max(ahead.values())
-    action = next(action for action in allowed if ahead.get(action, -math.inf) >= best * (1 - TOLERANCE))
+    near = [action for action in allowed if ahead.get(action, -math.inf) >= best * (1 - TOLERANCE)]
+    action = next((a for a in near if not _takes_back(situation, a)), near[0])
     return Decision(ego, action, _reason(action, allowed, waits_for))
+
+
+def _takes_back(situation: Situation, action: Action) -> bool:
+    """Whether an action reverses what a CAV is doing, where it could hold its speed instead."""
+    scene, may_hold = situation.scene, any(a.action is Action.HOLD for a in situation.assessments)
+    return may_hold and reverses(action, scene.ego.speed, scene.intent.target_speed)
 
 
 def _lane_change(situation: Situation, reached: Mapping[Action, float]) -> Decision | None:

@@ -13,7 +13,8 @@ from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Flags, Steps, first_true
 from codriving.reasoning.prediction.expectation import planning_order, worth
-from codriving.reasoning.prediction.rollout import PLANS, Plan
+from codriving.reasoning.prediction.reversals import price
+from codriving.reasoning.prediction.rollout import Plan, plan_library
 from codriving.reasoning.safety.safety_input import SIDES, then_stop
 from codriving.reasoning.safety.same_lane import LANE_END_GAP
 
@@ -31,6 +32,7 @@ class JointPlans(JointPlanner):
     """The plans of one moment.
 
     Attributes:
+        plans: Every plan that a CAV may follow, before the one that it planned a step ago.
         travels: Distance of each plan over time, by id (plans, steps + 1) [m].
         gains: What each plan is worth, by id (plans,) [m].
     """
@@ -43,12 +45,15 @@ class JointPlans(JointPlanner):
         self._continued = {name: before[name] for name in self.vehicles if name in before}
         self._ahead = drives_ahead(moment, self.vehicles)
         own = self._continuations()
+        self.plans = plan_library(moment.forecast.model)
         self.travels: dict[str, Array] = {}
         self._alone: dict[str, Steps] = {}
         for v in self.vehicles.values():
-            travels = moment.forecast.travel(v.speed, v.target, PLANS, v.routes[0])
+            travels = moment.forecast.travel(v.speed, v.target, self.plans, v.routes[0])
             self.travels[v.id] = np.concatenate([travels, own[v.id]]) if v.id in own else travels
         self.gains = {name: worth(travels) for name, travels in self.travels.items()}
+        if moment.forecast.model.steady:
+            self.gains = {name: gained - self._price(name) for name, gained in self.gains.items()}
         self._met: dict[tuple[str, str], list[Meeting]] = {}
         self._pairs: dict[tuple[str, int, str], Steps] = {}
         self._joint: dict[tuple[tuple[str, ...], tuple[tuple[str, float], ...]], Joint] = {}
@@ -62,9 +67,15 @@ class JointPlans(JointPlanner):
         states, plans = [(v.speed, v.target, *v.routes[0]) for v in cavs], [self._continued[name] for name in names]
         return dict(zip(names, self.moment.forecast.travel_each(states, plans)[:, None], strict=True))
 
+    def _price(self, name: str) -> Array:
+        """Return what the reversals of each plan of a CAV count as (plans,) [m]."""
+        now = self.vehicles[name].speed, self.vehicles[name].target
+        known = price(*now, self.plans)
+        return np.append(known, price(*now, (self._continued[name],))) if name in self._continued else known
+
     def plan_of(self, name: str, k: int) -> Plan:
         """Return a plan of a CAV."""
-        return PLANS[k] if k < len(PLANS) else self._continued[name]
+        return self.plans[k] if k < len(self.plans) else self._continued[name]
 
     def joint(self, sequence: Sequence[str], not_before: Mapping[str, float] | None = None) -> Joint:
         """Plan all CAVs, some of which may reach their first zone at a time at the earliest, by id [s]."""

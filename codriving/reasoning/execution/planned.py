@@ -12,7 +12,7 @@ from codriving.reasoning.execution.joint_planner import Joint, JointPlans
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.expectation import Expected, expect_human, progress_by_action
-from codriving.reasoning.prediction.rollout import PLANS, Plan
+from codriving.reasoning.prediction.rollout import Plan
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,8 @@ def drive_of(moment: Moment, plans: JointPlans, joint: Joint, ordering: Ordering
     for name, k in joint.chosen.items():
         actions[name] = plans.plan_of(name, k)[0]
         reasons[name] = _reason(plans, joint, name, ordering.sequence)
-        gains = progress_by_action(np.where(joint.works[name][: len(PLANS)], plans.gains[name][: len(PLANS)], -np.inf))
+        n = len(plans.plans)
+        gains = progress_by_action(np.where(joint.works[name][:n], plans.gains[name][:n], -np.inf), plans.plans)
         progress[name] = gains
         expected[name] = tuple(
             Expected(route, place + plans.travels[name][k], k == 0, gains if r == 0 else {})
@@ -115,5 +116,5 @@ def _reason(plans: JointPlans, joint: Joint, name: str, sequence: Sequence[str])
     earlier = sequence[: sequence.index(name)] if name in sequence else sequence
     waits = [other for other in earlier if other in joint.chosen and plans.meetings(other, name)]
     action = plans.plan_of(name, joint.chosen[name])[0]
-    what = {Action.FASTER: "accelerates", Action.IDLE: "keeps its speed", Action.SLOWER: "slows down"}[action]
+    what = {Action.FASTER: "accelerates", Action.SLOWER: "slows down"}.get(action, "keeps its speed")
     return f"{what} to arrive after {', '.join(waits)}" if waits else f"{what} because of human drivers or those ahead"

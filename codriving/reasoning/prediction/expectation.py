@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -10,12 +11,12 @@ from codriving.geometry import ConflictZone
 from codriving.reasoning.conflicts import has_joined, is_behind, is_open
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Flags, stays_behind
-from codriving.reasoning.prediction.rollout import PLANS, STARTS_WITH
+from codriving.reasoning.prediction.reversals import price
+from codriving.reasoning.prediction.rollout import Plan, plan_library, starts_with
 
 # Time gap to the vehicle ahead that is planned for [s]; the safety check alone would allow less or ask for more.
 HEADWAY = 0.8
 
-_BEGINNINGS = [plans[0] for plans in STARTS_WITH.values()]  # Plans that begin alike stand together
 
 EARLY = 0.3  # Weight of the mean distance within the horizon against the distance at its end
 
@@ -67,8 +68,8 @@ def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str,
     cavs = {v.id: v for v in vehicles.values() if v.is_cav}
     for v in (cavs[name] for name in planning_order(order.sequence, cavs, _ahead(moment, cavs.values()))):
         travels, keeps = plans_that_keep(moment, ego, v, found, order, lag)
-        gained = np.where(keeps, worth(travels), -np.inf)
-        best = int(np.argmax(gained)) if keeps.any() else len(PLANS) - 1
+        gained = np.where(keeps, valued(moment, v, travels), -np.inf)
+        best = int(np.argmax(gained)) if keeps.any() else len(travels) - 1
         gains = _with_guesses(moment, ego, v, travels, gained, found, order, lag)
         found[v.id] = tuple(
             Expected(route, place + travels[best], best == 0, gains if k == 0 else {})
@@ -92,7 +93,8 @@ def _with_guesses(
     Of several such drivers the one counts that holds the vehicle up most. On a route on which no plan keeps the order
     the vehicle has to stop, which the safety check sees to.
     """
-    gains = unhindered = progress_by_action(gained)
+    plans = plan_library(moment.forecast.model)
+    gains = unhindered = progress_by_action(gained, plans)
     if not moment.sees_conflicts:
         return gains
     (route, place), stops = vehicle.routes[0], dict[Action, float]()
@@ -105,9 +107,9 @@ def _with_guesses(
             if not bounds:
                 each.append(unhindered)
                 continue
-            stops = stops or progress_by_action(-worth(travels))
+            stops = stops or progress_by_action(-worth(travels), plans)
             keeps = _keeps(place + travels, bounds)
-            each.append(progress_by_action(np.where(keeps, gained, -np.inf)))
+            each.append(progress_by_action(np.where(keeps, gained, -np.inf), plans))
         gains = {
             action: min(gain, sum(way[action] if action in way else -stops[action] for way in each) / len(each))
             for action, gain in gains.items()
@@ -166,8 +168,8 @@ def plans_that_keep(
 ) -> tuple[Array, Flags]:
     """Return how far each plan takes a vehicle (plans, n) [m], and whether it keeps the order on each of its routes."""
     forecast = moment.forecast
-    travels = forecast.travel(vehicle.speed, vehicle.target, PLANS, vehicle.routes[0])
-    keeps = np.ones(len(PLANS), dtype=np.bool_)
+    travels = forecast.travel(vehicle.speed, vehicle.target, plan_library(forecast.model), vehicle.routes[0])
+    keeps = np.ones(len(travels), dtype=np.bool_)
     for k, (route, place) in enumerate(vehicle.routes):
         # A lane that the vehicle is leaving is minded until its body is off it.
         until = forecast.steps + 1 if k == 0 else forecast.clears
@@ -229,6 +231,13 @@ def _bounds(
                     yield zone, motion.places, after
 
 
+def valued(moment: Moment, vehicle: TrackedVehicle, travels: Array) -> Array:
+    """Return what each plan of the library is worth to a vehicle, its reversals counted [m]."""
+    model = moment.forecast.model
+    gained = worth(travels)
+    return gained - price(vehicle.speed, vehicle.target, plan_library(model)) if model.steady else gained
+
+
 def worth(travels: Array) -> Array:
     """Return what a plan is worth: the distance at the end of the horizon, and a little of being closer before.
 
@@ -237,7 +246,15 @@ def worth(travels: Array) -> Array:
     return np.asarray((1 - EARLY) * travels[:, -1] + EARLY * travels.mean(axis=1))
 
 
-def progress_by_action(gained: Array) -> dict[Action, float]:
+def progress_by_action(gained: Array, plans: tuple[Plan, ...]) -> dict[Action, float]:
     """Return how far a vehicle gets at best after each action."""
-    best = np.maximum.reduceat(gained, _BEGINNINGS).tolist()
-    return {action: gain for action, gain in zip(STARTS_WITH, best, strict=True) if gain > -np.inf}
+    firsts, beginnings = _beginnings(plans)
+    best = np.maximum.reduceat(gained, beginnings).tolist()
+    return {action: gain for action, gain in zip(firsts, best, strict=True) if gain > -np.inf}
+
+
+@lru_cache(maxsize=8)
+def _beginnings(plans: tuple[Plan, ...]) -> tuple[tuple[Action, ...], list[int]]:
+    """Return the actions with which plans begin, in their order, and the first plan of each."""
+    found = starts_with(plans)
+    return tuple(found), [which[0] for which in found.values()]

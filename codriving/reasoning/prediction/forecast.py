@@ -83,7 +83,8 @@ class Forecast:
         widest = LANE if road_map is None else road_map.widest
         clears = CLEARS if model.limits is None else model.limits.clears_after(widest)
         self.clears = round(clears / self.sample) + 1
-        asked = tuple(dict.fromkeys((*library, BRAKE, GO)))
+        known = (plan for plan in library if model.steady or Action.HOLD not in plan)
+        asked = tuple(dict.fromkeys((*known, BRAKE, GO)))
         # Plans that mean the same, written differently, are worked out once.
         self._library = tuple(dict.fromkeys(canonical(plan) for plan in asked))
         rows = {plan: k for k, plan in enumerate(self._library)}

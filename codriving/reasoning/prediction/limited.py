@@ -60,7 +60,8 @@ def limited(
     Args:
         speeds: Speed of each state (n,) [m/s].
         targets: Target speed of each state (n,) [m/s].
-        changes: Steps of the target speed at each decision (decisions, plans); each for one state if paired.
+        changes: Steps of the target speed at each decision (decisions, plans); each for one state if paired. Not a
+            number where the speed that is driven becomes the target.
         steps: Number of simulation steps.
         stride: Simulation steps between two samples.
         along: The way of each of the first states; curves make no difference to the others.
@@ -75,6 +76,8 @@ def limited(
     if bounds:
         extremes = np.tile([-1.0, 1.0], (len(changes), 1))
         changes = np.concatenate((changes, extremes), axis=1)
+    holds = np.isnan(changes)
+    holding = [bool(row.any()) for row in holds]
     shape = (len(speeds),) if paired else (len(speeds), changes.shape[1])
     # Speeds are counted in metres a step, which saves two operations out of ten.
     step, gain = model.step, model.speed_gain * model.step
@@ -95,6 +98,8 @@ def limited(
             stepped = (low + span / top * np.minimum(np.maximum(index, 0), top)) * step
             kept = goal
             goal = np.where(change == 0, kept, stepped)
+            if holding[n // model.substeps]:
+                np.copyto(goal, v, where=holds[n // model.substeps])
             if bounds:
                 goal[:, -2] = np.minimum(kept[:, -2], stepped[:, -2])
                 goal[:, -1] = np.maximum(kept[:, -1], stepped[:, -1])

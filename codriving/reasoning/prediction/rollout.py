@@ -1,8 +1,9 @@
 """What CAVs do when they are given lists of actions: highway-env's rule, simulated exactly; the library of plans."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import nan
 
 import numpy as np
 
@@ -12,11 +13,12 @@ from codriving.reasoning.prediction.limited import Along, limited
 
 Plan = tuple[Action, ...]  # Actions, one a decision; the last one is repeated for ever
 
-# Steps of the target speed that an action asks for; every other action leaves the target alone.
-CHANGE = {Action.SLOWER: -1, Action.FASTER: 1}
+# Steps of the target speed that an action asks for; no number of steps leads to the present speed, which HOLD asks for.
+# Every other action leaves the target alone.
+CHANGE = {Action.SLOWER: -1.0, Action.FASTER: 1.0, Action.HOLD: nan}
 
 
-FIRST = (Action.FASTER, Action.IDLE, Action.SLOWER)  # What a vehicle may do now, most progress first
+FIRST = (Action.FASTER, Action.IDLE, Action.HOLD, Action.SLOWER)  # What a vehicle may do now, most progress first
 
 WAITS = (0, 1, 2, 3, 4, 6, 8, 11, 14)  # For how many decisions it may then slow down before it goes for good
 
@@ -32,16 +34,28 @@ def _after(first: Action) -> Iterator[Plan]:
     for slows in (0, 1):
         yield from ((first, *(Action.SLOWER,) * slows, *(Action.IDLE,) * k, Action.FASTER) for k in ROLLS)
     yield from ((first, *(change,) * k, Action.IDLE) for k in HOLDS for change in (Action.FASTER, Action.SLOWER))
+    if first is not Action.HOLD:
+        yield from ((first, *(Action.SLOWER,) * k, Action.HOLD) for k in HOLDS[:3])
+        yield from ((first, Action.HOLD, *(Action.IDLE,) * k, Action.FASTER) for k in ROLLS[::2])
     yield first, Action.SLOWER
 
 
 # Every plan: something now, then slowing down or rolling for a while or for good, then going or keeping the speed.
-PLANS: tuple[Plan, ...] = tuple(dict.fromkeys(plan for first in FIRST for plan in _after(first)))
+HOLDING_PLANS: tuple[Plan, ...] = tuple(dict.fromkeys(plan for first in FIRST for plan in _after(first)))
 
-# Indices of the plans that begin with an action.
-STARTS_WITH: dict[Action, tuple[int, ...]] = {
-    first: tuple(i for i, plan in enumerate(PLANS) if plan[0] is first) for first in FIRST
-}
+PLANS: tuple[Plan, ...] = tuple(plan for plan in HOLDING_PLANS if Action.HOLD not in plan)  # Those of five actions
+
+
+def plan_library(model: DrivingModel) -> tuple[Plan, ...]:
+    """Return every plan that a vehicle may follow."""
+    return HOLDING_PLANS if model.steady else PLANS
+
+
+@lru_cache(maxsize=8)
+def starts_with(plans: tuple[Plan, ...]) -> Mapping[Action, tuple[int, ...]]:
+    """Return the indices of the plans that begin with each action."""
+    firsts = [first for first in FIRST if any(plan[0] is first for plan in plans)]
+    return {first: tuple(i for i, plan in enumerate(plans) if plan[0] is first) for first in firsts}
 
 
 def canonical(plan: Plan) -> Plan:
@@ -120,6 +134,7 @@ def rollout(
     for change in _known_changes(plans, -(-steps // model.substeps)):
         index = np.minimum(np.maximum(np.rint((v - law.low) / law.span * law.top), 0), law.top)
         goal = np.where(change != 0, law.low + law.spacing * np.minimum(np.maximum(index + change, 0), law.top), goal)
+        goal = np.where(np.isnan(change), v, goal)
         excess = v - goal
         distances.append(s[..., None] + goal[..., None] * law.elapsed + excess[..., None] * law.summed)
         reached.append(goal[..., None] + excess[..., None] * law.left)
@@ -153,6 +168,8 @@ def travelled(
     v.T[...], goals[-1].T[...] = speeds, targets
     # No plan steps beyond the highest or lowest target; where the target stays it is copied from the decision before.
     least, most, stays = np.maximum(changes, 0), law.top + np.minimum(changes, 0), changes == 0
+    holds = np.isnan(changes)
+    holding = [bool(row.any()) for row in holds]
     for k in range(decisions):
         goal, over = goals[k], excess[k]
         np.subtract(v, law.low, out=goal)
@@ -165,6 +182,8 @@ def travelled(
         goal *= law.spacing
         goal += law.low
         np.copyto(goal, goals[k - 1], where=stays[k])
+        if holding[k]:
+            np.copyto(goal, v, where=holds[k])
         np.subtract(v, goal, out=over)
         np.multiply(over, law.left[-1], out=v)
         v += goal

@@ -8,7 +8,8 @@ import numpy as np
 from codriving.datatypes import Action, ActionAssessment
 from codriving.reasoning.conflicts import is_behind, is_open
 from codriving.reasoning.prediction.clearance import Array, Steps, first_overlap
-from codriving.reasoning.prediction.expectation import plans_that_keep, progress_by_action, worth
+from codriving.reasoning.prediction.expectation import plans_that_keep, progress_by_action, valued
+from codriving.reasoning.prediction.rollout import plan_library
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
 from codriving.reasoning.safety.conflict_lane import check_conflicts
 from codriving.reasoning.safety.safety_input import LONGITUDINAL, SafetyInput
@@ -88,7 +89,8 @@ def progress(given: SafetyInput, action: Action) -> float | None:
     travels, keeps = plans_that_keep(
         there.moment, there.ego, there.vehicles[there.ego], there.expected, there.order, there.lag
     )
-    return progress_by_action(np.where(keeps, worth(travels), -np.inf)).get(Action.IDLE)
+    gained = np.where(keeps, valued(there.moment, there.vehicles[there.ego], travels), -np.inf)
+    return progress_by_action(gained, plan_library(there.forecast.model)).get(Action.IDLE)
 
 
 def least_dangerous(given: SafetyInput) -> Action:

@@ -15,7 +15,7 @@ from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.rollout import Plan
 from codriving.reasoning.sharing.scenes import with_conflicts, with_roles
 
-LONGITUDINAL = (Action.SLOWER, Action.IDLE, Action.FASTER)
+LONGITUDINAL = (Action.SLOWER, Action.IDLE, Action.HOLD, Action.FASTER)
 
 # By how much a lane change changes the index of the lane.
 SIDES: Mapping[Action, int] = {Action.LANE_LEFT: -1, Action.LANE_RIGHT: 1}

@@ -53,6 +53,26 @@ def test_the_fastest_of_those_that_get_equally_far(junction: Junction) -> None:
     assert decide_one(told).action is Action.FASTER
 
 
+@pytest.mark.parametrize(
+    ("target", "fastest"), [(9.0, Action.FASTER), (6.0, Action.FASTER), (3.0, Action.HOLD), (5.69, Action.HOLD)]
+)
+def test_what_was_begun_is_not_taken_back_if_holding_gets_as_far(
+    target: float, fastest: Action, junction: Junction
+) -> None:
+    along = (Action.SLOWER, Action.IDLE, Action.HOLD, Action.FASTER)
+    me = car("CAV1", "south-north", 60.0, 6.0, target)
+    assert decide_one(situation(junction, dict.fromkeys(along, (True, 80.0)), me=me)).action is fastest
+    far = {**dict.fromkeys(along, (True, 78.3)), Action.FASTER: (True, 80.0)}
+    assert decide_one(situation(junction, far, me=me)).action is Action.FASTER, "more than 2 % farther"
+    five = dict.fromkeys((Action.SLOWER, Action.IDLE, Action.FASTER), (True, 80.0))
+    assert decide_one(situation(junction, five, me=me)).action is Action.FASTER
+
+
+def test_accelerating_is_not_taken_back_either(junction: Junction) -> None:
+    gains = {Action.SLOWER: (True, 80.0), Action.IDLE: (True, 10.0), Action.HOLD: (True, 79.0)}
+    assert decide_one(situation(junction, gains, me=car("CAV1", "south-north", 60.0, 6.0, 9.0))).action is Action.HOLD
+
+
 def test_much_more_progress_is_worth_waiting_for(junction: Junction) -> None:
     told = situation(
         junction,

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from worlds import LAG, Junction, Thoughts, car, order_of
 
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.world import Action
+from codriving.datatypes.world import Action, DrivingModel
 from codriving.reasoning.conflicts import is_behind
 from codriving.reasoning.prediction.clearance import first_overlap
 from codriving.reasoning.prediction.expectation import Expected, expect, keeps_order, worth
-from codriving.reasoning.prediction.rollout import FIRST, HOLDS, PLANS, ROLLS, STARTS_WITH, WAITS
+from codriving.reasoning.prediction.rollout import FIRST, HOLDS, PLANS, ROLLS, WAITS, plan_library, starts_with
 
 HEADWAY = 0.8
 
@@ -119,7 +119,7 @@ def test_who_changes_lanes_is_expected_on_both_of_them(highway: Junction) -> Non
     thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, 20.0, offset=2.5))
     entered, left = expected(thoughts, PassingOrder((), ()))["CAV1"]
     assert (entered.route, left.route) == ("lane-0", "lane-1")
-    assert set(entered.progress) == set(FIRST)
+    assert set(entered.progress) == set(FIRST) - {Action.HOLD}
     assert left.progress == {}
     assert np.allclose(entered.places, left.places)
 
@@ -156,7 +156,7 @@ def test_progress_is_that_of_the_best_plan_that_begins_with_an_action(junction: 
     thoughts = junction.thoughts(car("CAV1", "south-north", 60.0, 6.0))
     ((motion,),) = expected(thoughts, PassingOrder((), ())).values()
     assert motion.free
-    assert set(motion.progress) == set(FIRST)
+    assert set(motion.progress) == set(FIRST) - {Action.HOLD}
     assert motion.progress[Action.FASTER] > motion.progress[Action.IDLE] > motion.progress[Action.SLOWER] > 0
     assert motion.progress[Action.FASTER] == pytest.approx(float(worth((motion.places - motion.places[0])[None])[0]))
 
@@ -182,14 +182,25 @@ def test_plans_are_each_something_now_then_waiting_or_rolling_then_going_or_hold
     assert len(set(PLANS)) == len(PLANS)
     assert PLANS[0] == (faster, faster), "the vehicle that is best off with it is held up by none"
     assert PLANS[-1] == (slower, slower), "what is expected of the vehicle that cannot keep the order"
-    assert sorted(k for indices in STARTS_WITH.values() for k in indices) == list(range(len(PLANS)))
-    for action, indices in STARTS_WITH.items():
+    first = starts_with(PLANS)
+    assert sorted(k for indices in first.values() for k in indices) == list(range(len(PLANS)))
+    for action, indices in first.items():
         mine = {PLANS[k] for k in indices}
         assert {plan[0] for plan in mine} == {action}
         assert {(action, faster), (action, slower), (action, idle)} <= mine
         assert {(action, *(slower,) * k, faster) for k in WAITS} <= mine
         assert {(action, *(idle,) * k, faster) for k in ROLLS} <= mine
         assert {(action, *(change,) * k, idle) for change in (slower, faster) for k in HOLDS} <= mine
+
+
+def test_plans_of_steady_driving_are_those_of_before_and_such_as_hold() -> None:
+    faster, hold, idle, slower = Action.FASTER, Action.HOLD, Action.IDLE, Action.SLOWER
+    model = DrivingModel((0.0, 3.0, 6.0, 9.0), 1.6, 0.1, 0.5, 50.0)
+    steady = plan_library(replace(model, steady=True))
+    assert plan_library(model) == PLANS == tuple(plan for plan in steady if hold not in plan)
+    assert (steady[0], steady[-1]) == (PLANS[0], PLANS[-1])
+    assert {(hold, faster), (hold, idle), (hold, slower), (faster, hold), (slower, slower, hold)} <= set(steady)
+    assert set(starts_with(steady)) == {faster, idle, hold, slower}
 
 
 def test_who_is_behind_whom(junction: Junction) -> None:
