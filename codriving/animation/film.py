@@ -151,7 +151,9 @@ class EpisodeFilm:
         roads = road_map(road)
         self._replay = StoredFrames(roads, trajectory, decisions, record.outcome)
         self.duration = self._replay.duration
-        cavs = sorted((track.id for track in trajectory.tracks if track.kind is Kind.CAV), key=natural)
+        # In a flow there are too many for the panel.
+        tracks = () if record.outcome.flow else trajectory.tracks
+        cavs = sorted((track.id for track in tracks if track.kind is Kind.CAV), key=natural)
         method = f"{record.method} ({record.variant})" if record.variant else record.method
         title = (f"{record.scenario}, seed {record.seed}", f"{method}, reasoner: {record.reasoner}")
         self._picture = Picture(roads, tuple(cavs), title, WIDTH, HEIGHT, scale)

@@ -1,6 +1,7 @@
 """The side panel: when it is, who passes first, what every CAV does and why, and what the signs mean."""
 
 from collections.abc import Sequence
+from string import ascii_lowercase
 from typing import Any
 
 import numpy as np
@@ -91,9 +92,10 @@ def _gone(canvas: Canvas, x: float, y: float, name: str, moment: FrameContent) -
 
 
 def natural(name: str) -> tuple[str, int, str]:
-    """Order names as people do: ``CAV2`` before ``CAV10``."""
-    stem = name.rstrip("0123456789")
-    digits = name[len(stem) :]
+    """Order names as people do: ``CAV2`` before ``CAV10``, and ``CAV2a`` before ``CAV10a``."""
+    plain = name.rstrip(ascii_lowercase)
+    stem = plain.rstrip("0123456789")
+    digits = plain[len(stem) :]
     return stem, int(digits) if digits else -1, name
 
 
@@ -137,7 +139,7 @@ _PER_ROW, _CHIP, _MOST_ROWS = 5, 21.0, 3
 
 
 class SidePanel:
-    """Draws the panel; what stays from one frame to the next is kept."""
+    """Draws the panel; what stays from one frame to the next is kept. Without CAVs it shows those on the road."""
 
     def __init__(self, area: Area, title: tuple[str, str], cavs: Sequence[str]) -> None:
         self._area, self._title, self._cavs = area, title, tuple(cavs)
@@ -170,7 +172,8 @@ class SidePanel:
         _rule(canvas, inner, a.top + _HEAD)
         y = self._order(canvas, a.top + _HEAD, moment)
         bottom = a.top + a.height - LEGEND
-        cards = Cards(Area(inner.left, y, inner.width, bottom - y), self._cavs)
+        there = sorted((body.id for body in moment.bodies if body.kind is Kind.CAV), key=natural)
+        cards = Cards(Area(inner.left, y, inner.width, bottom - y), self._cavs or there)
         cards.draw(canvas, moment, worst_first(moment.meetings))
         draw_legend(canvas, Area(inner.left, bottom, inner.width, LEGEND))
         return cards

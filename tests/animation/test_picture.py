@@ -8,9 +8,10 @@ from crossing import Frame, crossing, episode, line, share
 
 from codriving.animation.canvas import Canvas
 from codriving.animation.film import EpisodeFilm
+from codriving.animation.panel import natural
 from codriving.animation.picture import sentence
 from codriving.animation.style import ASPHALT, BLUE, GREEN, GROUND, INK, ORANGE, PANEL, PAPER, VERMILION
-from codriving.datatypes.record import Collision, Ending, EpisodeRecord, Outcome
+from codriving.datatypes.record import Collision, Ending, EpisodeRecord, FlowLog, Outcome
 
 TRAJECTORY, OUTCOME = episode()
 ROAD = 1280 - round(PANEL)
@@ -108,3 +109,22 @@ def test_vehicles_move_by_less_than_a_pixel_a_frame_where_they_should() -> None:
         frames.append(canvas.pixels.astype(int))
     edge = np.abs(frames[1] - frames[0]).max()
     assert 30 < edge < 70
+
+
+def test_of_a_flow_the_panel_shows_who_is_on_the_road() -> None:
+    """After 2 s CAV1 is gone; an episode keeps its card with a tick, a flow has too many for that."""
+    flow = screening(Outcome(Ending.COUNTED, 3.0, OUTCOME.arrivals, flow=FlowLog(0.0, 0.1, (), ())))
+    before, after = (flow.frame(time)[:, ROAD:].copy() for time in (1.9, 2.5))
+    assert share(before, BLUE) > share(after, BLUE) > 0
+    assert share(after, GREEN) < share(screening().frame(2.5)[:, ROAD:], GREEN)
+
+
+def test_the_end_of_a_flow_in_words() -> None:
+    flow = Outcome(Ending.COUNTED, 150.0, {"CAV1a": 20.0, "HDV1b": 30.0}, flow=FlowLog(30.0, 0.1, (), ()))
+    assert sentence(flow, 0) == "The window is over after 150.0 s; 2 vehicles have left"
+
+
+def test_names_are_ordered_as_people_do() -> None:
+    assert sorted(["CAV10a", "CAV2a", "CAV2", "CAV10", "CAV1b"], key=natural) == [
+        *("CAV1b", "CAV2", "CAV2a", "CAV10", "CAV10a"),
+    ]
