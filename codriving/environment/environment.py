@@ -36,6 +36,8 @@ from codriving.geometry import FloatArray, RoadMap, road_map
 
 REMEMBERED = 200  # Scenes of which it is remembered how each vehicle drives alone
 
+LONGEST = 600.0  # How long a vehicle of a flow drives alone at most; a flow has no time limit [s]
+
 _ALONE: dict[tuple[RoadMap, str], Mapping[str, FloatArray]] = {}
 
 
@@ -135,7 +137,8 @@ class Environment(Simulator):
 
     def alone(self, seed: int) -> Mapping[str, FloatArray]:
         """Drive each vehicle of an episode alone, from the same start along the same route."""
-        model, time_limit = self.driving_model, self.scenario.pace.time_limit
+        model = self.driving_model
+        time_limit = self.scenario.pace.time_limit if self.flow is None else LONGEST
         scene, _ = self._scene(seed)
         # Cells of other methods drive the same scenes in the same world.
         world = (scene, model, time_limit, self.control, self.drivers, self.corrections)

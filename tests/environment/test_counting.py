@@ -153,3 +153,12 @@ def test_vehicles_come_in_on_the_ways_that_the_scenario_takes() -> None:
 def test_what_says_how_an_episode_begins_is_refused(override: str) -> None:
     with pytest.raises(ScenarioError, match="intersection takes no flows: pattern=standoff and blocked_exit say how"):
         configured(override)
+
+
+def test_the_time_limit_of_episodes_is_none_of_flows() -> None:
+    """500 m at 6 m/s take 83 s, alone too."""
+    env = configured("scenario.leg_length=500", "scenario.hdv_speed=[6,6]", "scenario.time_limit=5", "flow.share=0.0")
+    alone = env.alone(10_000)
+    assert len(alone) > 10
+    assert all(places[-1] >= 510 for places in alone.values())
+    assert max(len(places) for places in alone.values()) * 0.1 > 80
