@@ -44,6 +44,11 @@ class JunctionScenario(PlacedScenario):
         )
         if self.pattern == "standoff":
             self._check_rows()
+            if self.blocked_exit and len(self.turns) == 1 and self.cavs <= LEGS:
+                raise ScenarioError(
+                    f"blocked_exit needs an exit that {WISHES} CAVs want, and {self.cavs} CAVs who come by a leg each "
+                    f"and all go {self.turns[0]} want one each; use more turns or more than {LEGS} CAVs"
+                )
 
     def _check_rows(self) -> None:
         rows, crowd = math.ceil(self.cavs / LEGS), self.crowd

@@ -115,6 +115,7 @@ def place(
     rng = np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(0,)))
     number = int(rng.integers(crowd.hdvs[0], crowd.hdvs[1] + 1))
     names = [(f"CAV{i + 1}", Kind.CAV) for i in range(crowd.cavs)] + [(f"HDV{i + 1}", Kind.HDV) for i in range(number)]
+    fitted = False
     for _ in range(SCENES):
         starts: list[Start] = []
         for name, kind in names:
@@ -125,8 +126,15 @@ def place(
                     break
             else:
                 break
-        if len(starts) == len(names) and (suits is None or suits(starts)):
-            return Scene(seed=seed, starts=tuple(starts))
+        if len(starts) == len(names):
+            if suits is None or suits(starts):
+                return Scene(seed=seed, starts=tuple(starts))
+            fitted = True
+    if fitted:
+        raise ScenarioError(
+            f"{road.name}: of {SCENES} scenes drawn for seed {seed} none has what the settings ask of all starts "
+            "together, such as an exit that two CAVs want; use more CAVs or other settings"
+        )
     raise ScenarioError(
         f"{road.name} with starts {crowd.start[0]:g} to {crowd.start[1]:g} m: {crowd.cavs} CAVs and {number} HDVs "
         f"do not fit with {crowd.spacing:g} m and a braking gap between them (seed {seed}); use fewer vehicles or a "

@@ -167,12 +167,24 @@ def test_a_blocked_exit_changes_nothing_else(name: str) -> None:
             "up to 5 HDVs cannot start behind 12 CAVs in rows 14 m apart within 25 to 70 m along 4 legs, where 4 have "
             "room; use fewer vehicles or a longer start interval",
         ),
+        (
+            {"pattern": "standoff", "turns": ("straight",), "blocked_exit": 20.0},
+            "blocked_exit needs an exit that 2 CAVs want, and 4 CAVs who come by a leg each and all go straight want "
+            "one each; use more turns or more than 4 CAVs",
+        ),
     ],
 )
 def test_settings_that_do_not_fit_are_refused(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ConfigError, match=re.escape(message)):
         junction("intersection", **change)
     junction("intersection", pattern="standoff", cavs=5, row_gap=13.4, cav_speed=(8.0, 9.0))
+
+
+def test_five_who_all_go_straight_share_an_exit() -> None:
+    of = junction("intersection", pattern="standoff", turns=("straight",), blocked_exit=20.0, cavs=5)
+    for seed in range(5):
+        last = cavs(of.scene(seed))[4]
+        assert out(of.scene(seed).starts[-1]) == out(last)
 
 
 @pytest.mark.parametrize("name", ["merge", "highway"])

@@ -1,7 +1,7 @@
 """Starts leave room to brake, and a scene that is too full is refused."""
 
 import re
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -138,3 +138,19 @@ def test_draws_stay_within_the_intervals() -> None:
     elsewhere = [CROWD.start_on(rng, "A", Kind.HDV, "r", (100.0, 110.0)).position for _ in range(50)]
     assert min(elsewhere) >= 100.0
     assert max(elsewhere) <= 110.0
+
+
+def test_a_scene_that_does_not_suit_is_drawn_again_and_at_last_refused() -> None:
+    some, asked = crowd(2, (0, 0), (0.0, 30.0)), []
+
+    def draw(rng: np.random.Generator, name: str, kind: Kind) -> Start:
+        return some.start_on(rng, name, kind, "r")
+
+    def suits(starts: Sequence[Start]) -> bool:
+        asked.append(starts)
+        return len(asked) == 3
+
+    assert place(7, some, ROAD, draw, suits=suits).starts == tuple(asked[2])
+    message = "street: of 200 scenes drawn for seed 7 none has what the settings ask of all starts together, such as"
+    with pytest.raises(ScenarioError, match=message):
+        place(7, some, ROAD, draw, suits=suits)
