@@ -39,6 +39,7 @@ class SpeedProfile:
     slopes: FloatArray = field(init=False, repr=False)  # Reference = base[k] + slopes[k] * x with x = s / spacing
     base: FloatArray = field(init=False, repr=False)
     elapsed: FloatArray = field(init=False, repr=False)  # Time from the first row at least (n,) [s]
+    _places: FloatArray = field(init=False, repr=False)  # Arc length of each row (n,) [m]
     _padded: FloatArray = field(init=False, repr=False)
     _slopes: list[float] = field(init=False, repr=False)
     _base: list[float] = field(init=False, repr=False)
@@ -54,6 +55,7 @@ class SpeedProfile:
         paces = 1 / np.minimum(self.speeds, self.top)
         elapsed = np.concatenate(([0.0], np.cumsum((paces[1:] + paces[:-1]) / 2 * self.spacing)))
         object.__setattr__(self, "elapsed", elapsed)
+        object.__setattr__(self, "_places", np.arange(len(elapsed)) * self.spacing)
         for name, value in (("slopes", slopes), ("base", base), ("_slopes", slopes.tolist()), ("_base", base.tolist())):
             object.__setattr__(self, name, value)
 
@@ -78,7 +80,7 @@ class SpeedProfile:
     def duration(self, s: float, length: float) -> float:
         """Return how long it takes at least to go on from an arc length [m] by a length, which may be negative [m]."""
         end = s + length
-        rows = np.interp((s, end), np.arange(len(self.elapsed)) * self.spacing, self.elapsed)
+        rows = np.interp((s, end), self._places, self.elapsed)
         last = (len(self.elapsed) - 1) * self.spacing
         outside = end - min(max(end, 0.0), last) - (s - min(max(s, 0.0), last))
         return float(rows[1] - rows[0] + outside / self.top)

@@ -91,12 +91,14 @@ class Forecast:
         self._index = {plan: rows[canonical(plan)] for plan in asked}
         self._asked: tuple[Plan, ...] = ()
         self._rows: NDArray[np.intp] = np.empty(0, dtype=np.intp)
+        self._along: dict[tuple[float, Where], tuple[Along, ...]] = {}
         self._travel: dict[State, Array] = {}
         self._reach: dict[tuple[bool, float, Where], Reach] = {}
         self._likely: dict[tuple[float, Where], tuple[Array, Array]] = {}
 
     def begin_step(self, states: Sequence[State] = ()) -> None:
         """Forget the predictions of the step before, and predict the CAVs of this one."""
+        self._along.clear()
         self._travel.clear()
         self._reach.clear()
         self._likely.clear()
@@ -111,8 +113,11 @@ class Forecast:
         """Return the way of a CAV for `rollout`; nothing where it makes no difference within the horizon."""
         if not self._limited or where == NOWHERE:
             return ()
-        profile, ahead = self._profiles[where[0]], max(speed, self.model.top_speed)
-        return () if profile.allows(self.model.top_speed, where[1], ahead * HORIZON) else ((profile, where[1]),)
+        if (speed, where) not in self._along:
+            profile, ahead = self._profiles[where[0]], max(speed, self.model.top_speed)
+            free = profile.allows(self.model.top_speed, where[1], ahead * HORIZON)
+            self._along[speed, where] = () if free else ((profile, where[1]),)
+        return self._along[speed, where]
 
     def _predict(self, states: Sequence[State]) -> None:
         new = list(dict.fromkeys(state for state in states if state not in self._travel))
