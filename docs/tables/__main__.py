@@ -88,11 +88,11 @@ class Cells(string.Formatter):
             return ""
 
 
-def joined(runs: Mapping[str, Numbers], only: Mapping[str, str]) -> Iterator[dict[str, Any]]:
-    """Yield a row for each scenario, method and variant, with the numbers of each run that has it below its name."""
+def joined(worlds: Mapping[str, Sequence[Numbers]], only: Mapping[str, str]) -> Iterator[dict[str, Any]]:
+    """Yield a row for each scenario, method and variant, with its numbers in each world below the name of that."""
     rows: dict[tuple[str, ...], dict[str, Any]] = {}
-    for name, run in runs.items():
-        for row in run.rows:
+    for name, runs in worlds.items():
+        for row in (row for run in runs for row in run.rows):
             key = tuple(str(row[k]) for k in KEYS)
             if all(str(row[k]) in wanted.split(",") for k, wanted in only.items()):
                 rows.setdefault(key, dict(zip(KEYS, key, strict=True)))[name] = SimpleNamespace(**row)
@@ -101,16 +101,17 @@ def joined(runs: Mapping[str, Numbers], only: Mapping[str, str]) -> Iterator[dic
 
 def markdown(name: str, spec: Mapping[str, Any]) -> str:
     """Write a table with the commands and versions that made it, between its two marks."""
-    runs = {run: Numbers.read(HERE / f"{run}.csv") for run in spec["runs"]}
-    columns, cells = spec["columns"], Cells()
-    found = [[cells.cell(template, row) for template in columns.values()] for row in joined(runs, spec.get("only", {}))]
+    worlds = {world: [Numbers.read(HERE / f"{run}.csv") for run in runs] for world, runs in spec["runs"].items()}
+    columns, cells, only = spec["columns"], Cells(), spec.get("only", {})
+    found = [[cells.cell(template, row) for template in columns.values()] for row in joined(worlds, only)]
     if not found:
         raise TableError(f"table {name} has no rows: look at its runs and at only: in tables.yaml")
     found += [list(map(str, line)) for line in spec.get("more", [])]
     align = ["---" if "." not in template else "---:" for template in columns.values()]
     lines = [f"| {' | '.join(line)} |" for line in (list(columns), *found)]
     lines.insert(1, f"|{'|'.join(align)}|")
-    made = [f"`codriving {run.command}` (version {run.version}, behaviour {run.behaviour})" for run in runs.values()]
+    used = [run for runs in worlds.values() for run in runs]
+    made = [f"`codriving {run.command}` (version {run.version}, behaviour {run.behaviour})" for run in used]
     text = "\n".join((BEGIN.format(name), *lines, "", *_sentences(made), END.format(name)))
     return re.sub(" +[|]", " |", text)
 

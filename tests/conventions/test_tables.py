@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = runpy.run_path(str(ROOT / "docs" / "tables" / "__main__.py"))
 
 SPEC = {
-    "runs": ["old", "new"],
+    "runs": {"old": ["old"], "new": ["new", "more"]},
     "only": {"scenario": "intersection"},
     "columns": {
         "method": "`{method}` {variant}",
@@ -33,6 +33,7 @@ def keep(folder: Path, name: str, behaviour: int, *rows: str) -> None:
 def made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     keep(tmp_path, "old", 2, "intersection,codriving,full,0.98125,4.86", "intersection,fcfs,,0.99,5", "merge,fcfs,,1,5")
     keep(tmp_path, "new", 3, "intersection,fcfs,,1,", "intersection,codriving,full,0.5,7.449")
+    keep(tmp_path, "more", 3, "intersection,mcts,,0.25,2.04")
     for names in (PROGRAM["markdown"].__globals__, PROGRAM["main"].__globals__):
         monkeypatch.setitem(names, "HERE", tmp_path)
         monkeypatch.setitem(names, "ROOT", tmp_path)
@@ -45,12 +46,14 @@ TABLE = """<!-- table one: made by make tables -->
 |---|---:|---:|
 | `codriving` full | 98.1 %, 50 % | 7.4 |
 | `fcfs` | 99 %, 100 % | |
+| `mcts` | | 2.0 |
 | *the paper* | *90 %* | *10.3* |
 
 From
 
 - `codriving run of=old` (version 0.2.0, behaviour 2)
 - `codriving run of=new` (version 0.2.0, behaviour 3)
+- `codriving run of=more` (version 0.2.0, behaviour 3)
 <!-- end of table one -->"""
 
 
@@ -78,8 +81,8 @@ def test_page_gets_the_numbers_that_are_kept_and_a_number_changed_by_hand_is_fou
     ("spec", "arguments", "said"),
     [
         ({}, ["--pages"], "page.md has a table 'one', but tables.yaml does not"),
-        ({"one": {**SPEC, "runs": ["none"]}}, ["--pages"], "none.csv is not there: make tables drives and writes it"),
-        ({"one": {**SPEC, "only": {"method": "mcts"}}}, ["--pages"], "table one has no rows"),
+        ({"one": {**SPEC, "runs": {"new": ["none"]}}}, ["--pages"], "none.csv is not there: make tables"),
+        ({"one": {**SPEC, "only": {"method": "idfst"}}}, ["--pages"], "table one has no rows"),
         ({"one": SPEC}, ["other"], "no run other in tables.yaml"),
     ],
 )
