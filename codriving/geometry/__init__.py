@@ -1,6 +1,6 @@
 """Shapes: paths by arc length, oriented boxes, and the conflict zones between routes."""
 
-from codriving.geometry.box import PLANNING, TRUE, Footprint, corners, overlap, separation
+from codriving.geometry.box import PLANNING, TRUE, Footprint, corners, overlap, overlaps, separation
 from codriving.geometry.curve import FloatArray
 from codriving.geometry.lane_path import lane_path, lane_starts
 from codriving.geometry.path import Path, progress
@@ -10,5 +10,5 @@ from codriving.geometry.zone import ConflictZone
 
 __all__ = [
     "PLANNING", "TRUE", "ConflictZone", "FloatArray", "Footprint", "Path", "RoadMap", "SpeedProfile", "corners",
-    "lane_path", "lane_starts", "overlap", "progress", "road_map", "separation",
+    "lane_path", "lane_starts", "overlap", "overlaps", "progress", "road_map", "separation",
 ]  # fmt: skip

@@ -9,6 +9,7 @@ from codriving.datatypes import TrackedVehicle
 from codriving.geometry import TRUE
 from codriving.reasoning.conflicts import is_behind, is_open
 from codriving.reasoning.execution.violations import SIZES, Meeting, meetings_behind, minds_humans
+from codriving.reasoning.exits import full_exit
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Flags, Steps, first_true
@@ -45,6 +46,8 @@ class JointPlans(JointPlanner):
         self._continued = {name: before[name] for name in self.vehicles if name in before}
         self._ahead = drives_ahead(moment, self.vehicles)
         own = self._continuations()
+        full = ((name, full_exit(moment, moment.vehicles[name], v)) for name, v in self.vehicles.items())
+        self._waits = {name: exit_[1] for name, exit_ in full if exit_ is not None}
         self.plans = plan_library(moment.forecast.model)
         self.travels: dict[str, Array] = {}
         self._alone: dict[str, Steps] = {}
@@ -79,7 +82,9 @@ class JointPlans(JointPlanner):
 
     def joint(self, sequence: Sequence[str], not_before: Mapping[str, float] | None = None) -> Joint:
         """Plan all CAVs, some of which may reach their first zone at a time at the earliest, by id [s]."""
-        order = tuple(planning_order(sequence, self.vehicles, self._ahead))
+        # No vehicle waits for one that waits for room past the junction.
+        goes = sorted(sequence, key=lambda name: name in self._waits)
+        order = tuple(planning_order(goes, self.vehicles, self._ahead))
         held = tuple(sorted((not_before or {}).items()))
         if (order, held) not in self._joint:
             self._joint[order, held] = self._plan(order, dict(held))
@@ -119,6 +124,8 @@ class JointPlans(JointPlanner):
         if name not in self._alone:
             v, travels = self.vehicles[name], self.travels[name]
             steps = minds_humans(self.moment, v, travels, self._lag, self._following, self.pad)
+            if name in self._waits:
+                steps = np.minimum(steps, first_true(v.routes[0][1] + travels >= self._waits[name]))
             change = self.moment.scenes[name].must_change
             if change is not None:
                 firsts = [self.plan_of(name, k)[0] for k in range(len(travels))]

@@ -11,7 +11,7 @@ from codriving.datatypes import Conflict, TrackedVehicle
 from codriving.geometry import PLANNING, TRUE, ConflictZone, Footprint
 from codriving.reasoning.conflicts import has_joined, is_behind
 from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.clearance import Array, Steps, first_true
+from codriving.reasoning.prediction.clearance import Array, Steps, first_true, halts_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.conflict_lane import BODY
 
@@ -45,6 +45,7 @@ class Meeting:
     until: int
     lag: int
     pad: float  # Additional room along the route [m]
+    halts: float = 0.0  # Time between two samples if it must be able to stop behind, too [s]
 
     def steps(self, travels: Array, first: Array) -> Steps:
         """Return when each plan (plans, n) [m] first comes too close to the one that goes first (n,) [m]."""
@@ -58,6 +59,9 @@ class Meeting:
                 found = np.minimum(found, np.where(steps < self.until, steps, n))
             if found.any():
                 break
+        if self.halts:
+            halted = halts_behind(zones[0], self.place + travels, self.there + first, self.halts)
+            found = np.where(halted, found, np.minimum(found, n - 1))
         return found
 
 
@@ -69,16 +73,17 @@ def meetings_behind(
     Where ways merge the margins of a conflict hold until it has joined the stretch behind the other one.
     """
     n, short, zones = moment.forecast.steps + 1, moment.forecast.clears, moment.road_map.zones
+    sample = moment.forecast.sample if moment.forecast.model.steady else 0.0
     found = []
     for r, (route, place) in enumerate(behind.routes):
         until = short if r else n
         for other, there in ahead.routes:
             for zone in (z for z in zones(route, other) if is_behind(z, place, there)):
                 if has_joined(zone, place):
-                    found.append(Meeting(((zone,),), place, there, until, following, 0.0))
+                    found.append(Meeting(((zone,),), place, there, until, following, 0.0, 0.0 if r else sample))
                 else:
                     sizes = ((zone,), *(zones(route, other, size) for size in SIZES[1:]))
-                    found.append(Meeting(sizes, place, there, until, lag, pad))
+                    found.append(Meeting(sizes, place, there, until, lag, pad, 0.0 if r else sample))
     return found
 
 

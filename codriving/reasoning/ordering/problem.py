@@ -19,6 +19,7 @@ from codriving.datatypes import (
     Turn,
 )
 from codriving.geometry import TRUE, ConflictZone, Footprint, RoadMap
+from codriving.reasoning.exits import full_exit, gets_out
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.right_of_way import gives_way
 
@@ -166,16 +167,21 @@ def _is_ahead(c: Conflict, road_map: RoadMap) -> bool:
 def _add_windows(moment: Moment, vehicle: ApproachingVehicle) -> dict[str, Window]:
     """Block the times at which human drivers may pass; return the blocked interval of each of them."""
     found: dict[str, Window] = {}
+    known = moment.vehicles[vehicle.id]
+    if full_exit(moment, known, known[vehicle.id]) is not None:
+        vehicle.windows.append((-FOREVER, FOREVER))
     for c in moment.conflicts[vehicle.id]:
         n = moment.scenes[vehicle.id].neighbour(c.other)
         if n is None or n.intent is not None:
             continue
         begin, end = window(moment, c, n, vehicle.reference)
-        if n.standing > 0 and is_blocked(c, moment.road_map):
+        if gets_out(moment, known[vehicle.id], n, False):
+            begin, end = inf, inf
+        elif n.standing > 0 and is_blocked(c, moment.road_map):
             begin, end = -FOREVER, FOREVER
         vehicle.windows.append((begin, end))
-        known = found.get(c.other, (begin, end))
-        found[c.other] = (min(begin, known[0]), max(end, known[1]))
+        before = found.get(c.other, (begin, end))
+        found[c.other] = (min(begin, before[0]), max(end, before[1]))
     return found
 
 

@@ -5,6 +5,8 @@ from numpy.typing import NDArray
 
 from codriving.geometry import ConflictZone
 
+CALM = 3.0  # Braking with which a plan may come to a stop past the horizon [m/s2]
+
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Steps = NDArray[np.int64]
@@ -34,6 +36,20 @@ def stays_ahead(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: flo
     """Whether the ego vehicle has left a zone before the other one can enter it."""
     earlier = np.concatenate([np.repeat(ego[:, :1], lag, axis=1), ego[:, : ego.shape[1] - lag]], axis=1)
     return np.asarray((earlier > zone.front(other) + pad).all(axis=1))
+
+
+def halts_behind(zone: ConflictZone, ego: Array, other: Array, sample: float) -> Flags:
+    """Whether the ego vehicle, which ends up behind the other one, could still stop there if that one stops, too.
+
+    Otherwise a vehicle that stands far behind one that stands might plan for ever to start just before the horizon.
+    """
+    return np.asarray(_halt(other, sample) > zone.over_i.highest(_halt(ego, sample)))
+
+
+def _halt(places: Array, sample: float) -> Array:
+    """Return where vehicles come to a stop after a motion [m]."""
+    pace = (places[..., -1] - places[..., -2]) / sample
+    return np.asarray(places[..., -1] + pace**2 / (2 * CALM))
 
 
 def reacts(zone: ConflictZone, ego: Array, other: Array, sample: float) -> Array:

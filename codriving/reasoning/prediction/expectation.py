@@ -9,14 +9,19 @@ import numpy as np
 from codriving.datatypes import Action, PassingOrder, TrackedVehicle
 from codriving.geometry import ConflictZone
 from codriving.reasoning.conflicts import has_joined, is_behind, is_open
+from codriving.reasoning.exits import full_exit
 from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.clearance import Array, Flags, stays_behind
+from codriving.reasoning.prediction.clearance import Array, Flags, halts_behind, stays_behind
 from codriving.reasoning.prediction.reversals import price
 from codriving.reasoning.prediction.rollout import Plan, plan_library, starts_with
 
 # Time gap to the vehicle ahead that is planned for [s]; the safety check alone would allow less or ask for more.
 HEADWAY = 0.8
 
+
+# What a motion has to stay behind: the zone in which both meet, the places of the other one, the lag in samples, and
+# the time between two samples if it must be able to stop there, too [s].
+Bound = tuple[ConflictZone, Array, int, float]
 
 EARLY = 0.3  # Weight of the mean distance within the horizon against the distance at its end
 
@@ -166,7 +171,10 @@ def plans_that_keep(
     order: PassingOrder,
     lag: int,
 ) -> tuple[Array, Flags]:
-    """Return how far each plan takes a vehicle (plans, n) [m], and whether it keeps the order on each of its routes."""
+    """Return how far each plan takes a vehicle (plans, n) [m], and whether it keeps the order on each of its routes.
+
+    Before an exit that is full a plan has to stop.
+    """
     forecast = moment.forecast
     travels = forecast.travel(vehicle.speed, vehicle.target, plan_library(forecast.model), vehicle.routes[0])
     keeps = np.ones(len(travels), dtype=np.bool_)
@@ -175,6 +183,9 @@ def plans_that_keep(
         until = forecast.steps + 1 if k == 0 else forecast.clears
         minds = moment.sees_conflicts and k == 0
         keeps &= keeps_order(moment, ego, vehicle.id, route, place + travels[:, :until], expected, order, lag, minds)
+    full = full_exit(moment, moment.vehicles[ego], vehicle)
+    if full is not None:
+        keeps &= vehicle.routes[0][1] + travels[:, -1] < full[1]
     return travels, keeps
 
 
@@ -194,11 +205,13 @@ def keeps_order(
     return _keeps(places, _bounds(moment, ego, name, route, place, expected, order, lag, minds_conflicts))
 
 
-def _keeps(places: Array, bounds: Iterable[tuple[ConflictZone, Array, int]]) -> Flags:
-    """Whether motions stay behind others: each with the zone in which they meet, its places, and a lag."""
+def _keeps(places: Array, bounds: Iterable[Bound]) -> Flags:
+    """Whether motions stay behind others."""
     keeps: Flags = np.ones(len(places), dtype=np.bool_)
-    for zone, other, after in bounds:
+    for zone, other, after, halts in bounds:
         keeps &= stays_behind(zone, places, other[: places.shape[1]], after, 0.0)
+        if halts:
+            keeps &= halts_behind(zone, places, other[: places.shape[1]], halts)
     return keeps
 
 
@@ -212,8 +225,9 @@ def _bounds(
     order: PassingOrder,
     lag: int,
     minds_conflicts: bool,
-) -> Iterator[tuple[ConflictZone, Array, int]]:
-    """Say behind what a vehicle has to stay on a route of its own: zone, places of the other one, and lag."""
+) -> Iterator[Bound]:
+    """Say behind what a vehicle has to stay on a route of its own."""
+    forecast = moment.forecast
     vehicles = moment.vehicles[ego]
     for other, motions in expected.items():
         if other == name:
@@ -227,8 +241,9 @@ def _bounds(
                 following = is_behind(zone, place, there)
                 if following or (minds and is_open(zone, place, there)):
                     keeps_lane = following and has_joined(zone, place)
-                    after = min(lag, round(HEADWAY / moment.forecast.sample)) if keeps_lane else lag
-                    yield zone, motion.places, after
+                    after = min(lag, round(HEADWAY / forecast.sample)) if keeps_lane else lag
+                    halts = forecast.sample if following and forecast.model.steady else 0.0
+                    yield zone, motion.places, after, halts
 
 
 def valued(moment: Moment, vehicle: TrackedVehicle, travels: Array) -> Array:

@@ -34,9 +34,11 @@ def _after(first: Action) -> Iterator[Plan]:
     for slows in (0, 1):
         yield from ((first, *(Action.SLOWER,) * slows, *(Action.IDLE,) * k, Action.FASTER) for k in ROLLS)
     yield from ((first, *(change,) * k, Action.IDLE) for k in HOLDS for change in (Action.FASTER, Action.SLOWER))
-    if first is not Action.HOLD:
+    held = () if first is Action.HOLD else (Action.HOLD,)
+    if held:
         yield from ((first, *(Action.SLOWER,) * k, Action.HOLD) for k in HOLDS[:3])
-        yield from ((first, Action.HOLD, *(Action.IDLE,) * k, Action.FASTER) for k in ROLLS[::2])
+        yield from ((first, *held, *(Action.IDLE,) * k, Action.FASTER) for k in ROLLS[::2])
+    yield from ((first, *held, *(Action.IDLE,) * k, Action.SLOWER) for k in ROLLS[::2])
     yield first, Action.SLOWER
 
 

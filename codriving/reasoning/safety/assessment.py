@@ -11,7 +11,7 @@ from codriving.reasoning.prediction.clearance import Array, Steps, first_overlap
 from codriving.reasoning.prediction.expectation import plans_that_keep, progress_by_action, valued
 from codriving.reasoning.prediction.rollout import plan_library
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
-from codriving.reasoning.safety.conflict_lane import check_conflicts
+from codriving.reasoning.safety.conflict_lane import check_conflicts, check_exit
 from codriving.reasoning.safety.safety_input import LONGITUDINAL, SafetyInput
 from codriving.reasoning.safety.same_lane import check_ahead, check_behind
 
@@ -41,7 +41,7 @@ class ThreeLayers(SafetyCheck):
         Braking hard in front of a vehicle is only removed while a faster action is safe.
         """
         reasons: dict[Action, list[str]] = {action: [] for action in given.actions}
-        for layer in (check_ahead, check_adjacent, check_conflicts):
+        for layer in (check_ahead, check_adjacent, check_conflicts, check_exit):
             for action, why in layer(given).items():
                 # Lane changes are judged by the second layer, as if the CAV were on the other lane already.
                 if layer is check_adjacent or action in LONGITUDINAL:

@@ -6,6 +6,7 @@ import numpy as np
 
 from codriving.datatypes import Action, Conflict, Relation, TrackedVehicle
 from codriving.geometry import TRUE, ConflictZone, Footprint
+from codriving.reasoning.exits import full_exit, gets_out
 from codriving.reasoning.prediction.clearance import Array, Flags, first_overlap, reacts, stays_ahead, stays_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.safety_input import SafetyInput
@@ -42,6 +43,15 @@ def check_conflicts(given: SafetyInput) -> dict[Action, list[str]]:
             if inside[k] and not through[k]:
                 add(found, action, f"after {action} the CAV might have to stop in the way of {c.other}")
     return found
+
+
+def check_exit(given: SafetyInput) -> dict[Action, list[str]]:
+    """Remove actions after which the CAV could not stop before a junction past which there is no room for it."""
+    full = full_exit(given.moment, given.vehicles, given.vehicles[given.ego])
+    if full is None:
+        return {}
+    why = f"exit: {full[0]} stands past the junction and leaves no room there"
+    return {a: [why] for a, stop in zip(given.actions, given.stops[:, -1].tolist(), strict=True) if stop >= full[1]}
 
 
 def gets_through(given: SafetyInput, conflicts: Sequence[Conflict], passes: Sequence[Flags]) -> Flags:
@@ -103,6 +113,8 @@ def passes_and_stops(given: SafetyInput, c: Conflict) -> tuple[Flags, Flags]:
     goes_first = given.order.first_of(c.ego, c.other) == c.ego
     if goes_first and (other.is_cav or gives_way(c, other, given.road_map)):
         fine |= keeps_clear(given, c, motions, place + reach.least)
+    if gets_out(given.moment, given.vehicles[c.ego], other, goes_first):
+        fine[:] = True
     goes, stops = fine[: len(given.goes)], fine[len(given.goes) :]
     if (goes_first or not (given.order.binding and other.is_cav)) and c.distances[1] > 0:
         late = np.flatnonzero(~goes)

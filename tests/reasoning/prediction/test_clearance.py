@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Junction
 
-from codriving.reasoning.prediction.clearance import first_overlap, reacts, stays_ahead, stays_behind
+from codriving.reasoning.prediction.clearance import first_overlap, halts_behind, reacts, stays_ahead, stays_behind
 
 TIMES = np.arange(51) * 0.2
 PLACES = st.floats(60.0, 125.0)
@@ -52,6 +52,15 @@ def test_first_overlap_is_the_moment_of_meeting(junction: Junction) -> None:
     steps = first_overlap(zone, mine, stands)
     assert steps[1] == 51
     assert abs(mine[0, steps[0]] - zone.entry_i) < 4.0
+
+
+def test_a_motion_that_ends_behind_another_can_stop_there(junction: Junction) -> None:
+    (following,) = junction.road_map.zones("south-north", "south-north")
+    mine = (60.0 + 6.0 * TIMES)[None]
+    # It comes to 120 m, stops 6^2 / (2 x 3) = 6 m on, and needs 6 m to the centre of the vehicle ahead.
+    assert halts_behind(following, mine, np.full(51, 132.1), 0.2).tolist() == [True]
+    assert halts_behind(following, mine, np.full(51, 131.9), 0.2).tolist() == [False]
+    assert halts_behind(following, mine, 66.1 + 6.0 * TIMES, 0.2).tolist() == [True], "it stops as late"
 
 
 def test_a_driver_reacts_to_a_vehicle_in_the_zone_and_no_other(junction: Junction) -> None:
