@@ -39,7 +39,8 @@ def flow_numbers(
     hours = (window.ends - window.begins) / HOUR
     wanted = [arrival for arrival in log.wanted if window.holds(arrival.time)]
     left = sum(map(window.holds, outcome.arrivals.values()))
-    collisions = sum(window.holds(collision.time) for collision in log.collisions)
+    collisions = [collision for collision in log.collisions if window.holds(collision.time)]
+    with_cav = sum(Kind.CAV in collision.pair for collision in collisions)
     ended = {*outcome.arrivals, *outcome.off_road}.union(*((c.striker, c.struck) for c in log.collisions)) & {*tracks}
     vehicles = sum(window.holds(_last(tracks[name], window)) for name in ended)
     off_road = sum(window.holds(_last(tracks[name], window)) for name in outcome.off_road)
@@ -51,10 +52,11 @@ def flow_numbers(
         NamedNumber("delay", delays[0], "s", "lower"),
         NamedNumber("delay_cavs", delays[1], "s", "lower"),
         NamedNumber("delay_hdvs", delays[2], "s", "lower"),
-        NamedNumber("collisions", float(collisions), "", "lower"),
+        NamedNumber("collisions", float(len(collisions)), "", "lower"),
+        NamedNumber("collisions_cavs", float(with_cav), "", "lower"),
         NamedNumber("off_road", float(off_road), "", "lower"),
         NamedNumber("vehicles", float(vehicles)),
-        NamedNumber("collisions_per_1000", 1000 * collisions / vehicles if vehicles else None, "", "lower"),
+        NamedNumber("collisions_per_1000", 1000 * len(collisions) / vehicles if vehicles else None, "", "lower"),
         NamedNumber("velocity", driven / time if time > 0 else None, "m/s", "higher"),
         NamedNumber("hard_braking", braking / (driven / KILOMETRE) if driven > 0 else None, "1/km", "lower"),
         NamedNumber("waiting", float(len(log.wanted) - len(tracks)), "", "lower"),

@@ -22,6 +22,8 @@ SHOWN = (
 
 COLLISIONS, PER = "collisions_per_1000", 1000
 
+SUMS = ("collisions", "collisions_cavs", "off_road", "vehicles")  # What is added up over seeds
+
 NOTES = (
     "Counted in the window alone: means over seeds, with 95 % bootstrap intervals over seeds where there are "
     f"{FEWEST} or more.",
@@ -62,10 +64,11 @@ def flow_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Table
         Column("demand", lambda c: c.numbers.get("demand"), "demand [1/h]", lambda value: fixed(value, 0), rank=5),
         *(column for key, head, digits in SHOWN[:2] for column in _measured(key, head, digits)),
         *_columns(COLLISIONS, "collisions per 1,000", 1, _collision_rate, rank=1),
+        Column("hits", _hits, "collisions (with a CAV)", csv=False, rank=3),
         *(column for key, head, digits in SHOWN[2:] for column in _measured(key, head, digits, rank=4)),
         Column("waiting", lambda c: c.numbers.get("waiting"), "waiting", fixed, rank=5),
         *(_mean_of(key) for key in ("delay_cavs", "delay_hdvs")),
-        *(_sum_of(key) for key in ("collisions", "off_road", "vehicles")),
+        *(_sum_of(key) for key in SUMS),
         Column("cpu", lambda c: "" if c.cpu is None else milliseconds(c.cpu), CPU, csv=False, page=False, sparse=True),
     ]
     records = [record for cell in cells for record in cell.records]
@@ -140,6 +143,10 @@ def _collision_rate(cell: CellResults) -> tuple[Value, Value, Value]:
     return (rate, None, None) if limits is None else (rate, PER * limits[0], PER * limits[1])
 
 
+def _hits(cell: CellResults) -> str:
+    return "{:.0f} ({:.0f})".format(*(sum(_each(cell, key)) for key in SUMS[:2]))
+
+
 def _each(cell: CellResults, key: str) -> list[float]:
     """A number of each seed in which it is defined."""
     return [value for episode in cell.completed if (value := episode.numbers.get(key)) is not None]
@@ -155,7 +162,7 @@ def _sum_of(key: str) -> Column[CellResults]:
 
 def _others(cells: Sequence[CellResults]) -> list[Any]:
     """Numbers of a metric of the user's."""
-    own = {"demand", "delay_cavs", "delay_hdvs", "collisions", "off_road", "vehicles", "waiting", COLLISIONS}
+    own = {"demand", "delay_cavs", "delay_hdvs", "waiting", COLLISIONS, *SUMS}
     return [number for number in named_numbers(cells) if number.name not in own | {key for key, *_ in SHOWN}]
 
 

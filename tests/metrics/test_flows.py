@@ -95,8 +95,11 @@ def test_collisions_for_a_thousand_vehicles_that_leave_the_road(road: RoadMap, d
         for name, at in ends.items()
     )
     hits = (Collision(5.0, "C0", "C1", "CAV-CAV"), Collision(15.0, "C2", "H1", "CAV-HDV"))
+    humans = (Collision(15.0, "H1", "H2", "HDV-HDV"),)
     found = measured(road, tracks, {name: at - 4 for name, at in ends.items()}, hits, ("C4",))
     assert (found["collisions"], found["vehicles"], found["off_road"]) == (1, 4, 1)
+    assert found["collisions_cavs"] == 1
+    assert measured(road, tracks, {}, humans)["collisions_cavs"] == 0
     assert found["collisions_per_1000"] == 250
     assert measured(road, (), {})["collisions_per_1000"] is None
 

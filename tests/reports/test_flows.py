@@ -16,6 +16,7 @@ DEFINED = {
     "delay_cavs": 3.0,
     "delay_hdvs": 5.0,
     "collisions": 0.0,
+    "collisions_cavs": 0.0,
     "off_road": 0.0,
     "vehicles": 40.0,
     "collisions_per_1000": 0.0,
@@ -51,10 +52,11 @@ def test_means_over_seeds_with_intervals_from_ten_seeds_on() -> None:
 def test_collisions_are_those_of_all_seeds_together() -> None:
     """2 collisions of 20 and 180 vehicles are 10 of 1,000; the mean of the seeds' own rates would be 50."""
     two = [
-        flow(0, collisions=2.0, vehicles=20.0, collisions_per_1000=100.0),
+        flow(0, collisions=2.0, collisions_cavs=1.0, vehicles=20.0, collisions_per_1000=100.0),
         flow(1, vehicles=180.0),
     ]
     (row,) = flow_table([CellResults(two)]).rows
+    assert row["hits"] == "2 (1)"
     assert (row["collisions_per_1000"], row["collisions"], row["vehicles"]) == (10.0, 2.0, 200.0)
     (none,) = flow_table([CellResults([flow(k) for k in range(10)])]).rows
     assert none["collisions_per_1000_text"] == "0.0 (0.0 to 7.5)", "3 of 400"
