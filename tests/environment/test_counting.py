@@ -121,6 +121,11 @@ def test_one_that_meets_none_drives_as_it_does_alone(share: float) -> None:
     ]
     assert len(by_itself) >= 2
     assert [len(alone[track.id]) for track in by_itself] == [len(track.x) for track in by_itself]
+    straight = [t for t in by_itself if t.route in ("south-north", "north-south", "west-east", "east-west")]
+    assert straight
+    for track in straight:
+        steps = np.hypot(np.diff(track.x), np.diff(track.y))
+        assert np.diff(alone[track.id]) == pytest.approx(steps, abs=1e-6)
 
 
 @pytest.mark.parametrize(("scenario", "lanes"), [("intersection", 4), ("roundabout", 4), ("merge", 3), ("highway", 4)])
