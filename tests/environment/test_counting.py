@@ -128,6 +128,22 @@ def test_one_that_meets_none_drives_as_it_does_alone(share: float) -> None:
         assert np.diff(alone[track.id]) == pytest.approx(steps, abs=1e-6)
 
 
+def test_a_driver_does_not_depend_on_who_came_before() -> None:
+    """Its exponent of acceleration is drawn as it comes in; with a third street others come in between."""
+    seen: list[dict[str, float]] = []
+    for number in (2, 3):
+        env, drawn = environment(Streets(parallel(number)), replace(FLOW, share=0.0)), {}
+        env.reset(10_000)
+        while env.outcome is None:
+            drawn.update({vehicle.id: vehicle.DELTA for vehicle in env._traffic.vehicles})
+            env.step({})
+        seen.append(drawn)
+    two, three = seen
+    assert len(two) > 5
+    assert {name: three[name] for name in two} == two
+    assert len(set(two.values())) == len(two)
+
+
 @pytest.mark.parametrize(("scenario", "lanes"), [("intersection", 4), ("roundabout", 4), ("merge", 3), ("highway", 4)])
 def test_all_four_roads_take_flows_on_each_lane_that_leads_in(scenario: str, lanes: int) -> None:
     env = drive(configured(*LEGS, f"scenario={scenario}", "flow.share=0.0"))
