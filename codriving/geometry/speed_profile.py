@@ -36,6 +36,7 @@ class SpeedProfile:
     values: FloatArray  # Reference speed at each row (n,) [m/s]
     speeds: FloatArray  # Speed that a vehicle keeps which is told the reference (n,) [m/s]
     top: float  # Highest speed that CAVs drive [m/s]
+    curvature: FloatArray  # Largest curvature near each row (n,) [1/m]
     slopes: FloatArray = field(init=False, repr=False)  # Reference = base[k] + slopes[k] * x with x = s / spacing
     base: FloatArray = field(init=False, repr=False)
     elapsed: FloatArray = field(init=False, repr=False)  # Time from the first row at least (n,) [s]
@@ -77,6 +78,12 @@ class SpeedProfile:
         rows = self._padded[k : k + count + 1]
         return np.asarray(rows[:-1] + (x - k) * (rows[1:] - rows[:-1]))
 
+    def bend(self, places: FloatArray) -> FloatArray:
+        """Return the curvature at arc lengths [m], at least (n,) [1/m]; none before and past the route."""
+        rows = (places / self.spacing).astype(np.intp)
+        inside = (rows >= 0) & (rows < len(self.curvature))
+        return np.where(inside, self.curvature.take(rows, mode="clip"), 0.0)
+
     def duration(self, s: float, length: float) -> float:
         """Return how long it takes at least to go on from an arc length [m] by a length, which may be negative [m]."""
         end = s + length
@@ -112,7 +119,7 @@ def speed_profile(path: Path, curvature: FloatArray, model: DrivingModel, limits
     # A vehicle is told anew once a step; what holds at the end of the step is kept from its beginning on.
     for _ in range(ceil(model.top_speed * model.step / path.spacing)):
         told[:-1] = np.minimum(told[:-1], told[1:])
-    return SpeedProfile(path.spacing, model.speed_gain, np.maximum(told, 0.0), speeds, model.top_speed)
+    return SpeedProfile(path.spacing, model.speed_gain, np.maximum(told, 0.0), speeds, model.top_speed, curvature)
 
 
 def curvature_of(path: Path) -> FloatArray:

@@ -20,17 +20,20 @@ Build = Callable[..., Environment]
 
 @pytest.fixture(scope="module")
 def env(configured: Build, request: pytest.FixtureRequest) -> Environment:
-    return configured(f"scenario={request.param}", "limits=road")
+    return configured("limits=road", *request.param)
 
 
-on_each = pytest.mark.parametrize("env", tuple(choices("scenario")), indirect=True)
+def on_each(*drivers: str) -> pytest.MarkDecorator:
+    """Each scenario, with each of some mixes of human drivers."""
+    worlds = [(f"scenario={name}", f"drivers={mix}") for name in choices("scenario") for mix in drivers]
+    return pytest.mark.parametrize("env", worlds, ids=" ".join, indirect=True)
 
 
 def anything(world: WorldState, rng: np.random.Generator) -> dict[str, Action]:
     return {cav.id: world.available[cav.id][int(rng.integers(len(world.available[cav.id])))] for cav in world.cavs}
 
 
-@on_each
+@on_each("simulator")
 def test_speeds_are_those_of_the_forecast(env: Environment) -> None:
     model, rng, seen = env.driving_model, np.random.default_rng(0), set()
     forecast = Forecast(model, (), env.road_map)
@@ -56,7 +59,7 @@ def bounded(env: Environment, seed: int) -> list[tuple[str, int, str, float, Rea
     """Drive anyhow, and note of every vehicle what its bounds were at each decision."""
     rng, forecast = np.random.default_rng(seed), Forecast(env.driving_model, (), env.road_map)
     world, noted = env.reset(seed), []
-    while env.outcome is None and world.time < 16.0:
+    while env.outcome is None and world.time < 20.0:
         step = round(world.time / env.driving_model.step)
         forecast.begin_step(states(world, env.road_map, env.driving_model))
         for vehicle in env._traffic.vehicles:
@@ -75,10 +78,11 @@ def places(env: Environment, track: Track, step: int, route: str) -> np.ndarray:
     return np.array([s for s, _ in projected[:left]])
 
 
-@on_each
+@on_each("simulator", "rough")
 @settings(max_examples=3, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(seed=st.integers(10_000, 15_000))
 @example(seed=614)  # A CAV that changes lanes while it slows down almost to a stop
+@example(seed=10_008)  # A CAV that cuts the corner, and is therefore earlier where it may drive faster
 def test_no_vehicle_leaves_its_bounds(env: Environment, seed: int) -> None:
     noted = bounded(env, seed)
     tracks = {track.id: track for track in env.trajectory().tracks}

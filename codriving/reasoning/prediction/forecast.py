@@ -28,8 +28,12 @@ CLEARS = 1.6
 
 LANE = 4.0  # Width of a lane of a road that is not given [m]
 
-# By how much the arc length of a vehicle that cuts a corner or changes lanes may differ from what it has driven: a
-# share of that, what the first second brings [m/s], and at most [m]; up to 0.28 m were seen.
+# How far inside of the centre line a vehicle drives in a curve at most, by which it gets along faster [m]; 0.70 m
+# were seen, in turns with a radius of 9 m.
+CUTS = 0.75
+
+# By how much the arc length of a vehicle may otherwise fall behind what it has driven: a share of that, what the first
+# second brings [m/s], and at most [m]; the second number alone also for how far it may get ahead.
 STRAYS = (0.15, 0.3, 0.8)
 
 # Where lanes lie beside one another a vehicle may be steered across: of what it drives, at a speed v, it may lose
@@ -199,7 +203,18 @@ class Forecast:
         if self.model.limits is None:
             return Reach(least, steady, most)
         astray = self._strays(least) + (self._across(least) if self._may_change else 0.0)
-        return Reach(np.maximum(least - astray, 0.0), steady, most + self._strays(most))
+        ahead = self._cutting(most, where) + STRAYS[1] * np.minimum(self.times, 1.0)
+        return Reach(np.maximum(least - astray, 0.0), steady, ahead)
+
+    def _cutting(self, distance: Array, where: Where) -> Array:
+        """Distance of a vehicle that cuts all corners: where it drives inside, it takes less time for the same way."""
+        bends = CUTS * self._profiles[where[0]].bend(where[1] + distance)
+        if not bends.any():
+            return distance
+        shares = 1.0 - np.minimum(np.maximum(bends[1:], bends[:-1]), 0.5)
+        arrives = np.concatenate(([0.0], np.cumsum(self.sample * shares)))
+        beyond = np.maximum(self.times - arrives[-1], 0.0) * (distance[-1] - distance[-2]) / self.sample
+        return np.asarray(np.interp(self.times, arrives, distance) + beyond)
 
     def _strays(self, distance: Array) -> Array:
         share, each_second, at_most = STRAYS

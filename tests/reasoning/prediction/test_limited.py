@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from codriving.datatypes.limits import VehicleLimits
@@ -86,6 +86,20 @@ def test_no_driver_leaves_the_bounds(speed: float, place: float, pedals: list[fl
         free = min(pedals[n // 10 % len(pedals)], (16.0 - v) / 0.1 if v <= 16.0 else 0.0)
         wanted = min(free, PROFILE.acceleration(s, v))
         s, v = s + 0.1 * v, max(v + 0.1 * min(max(wanted, -6.0), 3.0), 0.0)
+
+
+@given(st.floats(0.0, 6.0), st.floats(130.0, 168.0), st.floats(0.0, 0.7), st.booleans())
+@example(6.0, 149.0, 0.7, True)
+def test_none_leaves_the_bounds_by_cutting_the_corner(speed: float, place: float, inside: float, is_cav: bool) -> None:
+    forecast = Forecast(MODEL, (), BEND)
+    forecast.begin_step([(speed, 15.0, "round", place)])
+    most = forecast.reach(speed, is_cav, ("round", place)).most
+    s, v, pedal = place, speed, 4.0 if is_cav else 3.0
+    for n in range(100):
+        assert n % 2 or s - place <= most[n // 2] + 1e-9
+        wanted = min(1.6 * (15.0 - v), PROFILE.acceleration(s, v), pedal)
+        # The arc of 12 m is driven along a circle that is smaller by so much.
+        s, v = s + 0.1 * v / (1 - inside / 12.0 * (150.0 <= s < 168.85)), v + 0.1 * max(wanted, -6.0)
 
 
 @given(st.sampled_from([0.0, 3.0, 7.0, 12.0]), PLACES, st.lists(st.sampled_from(list(Action)), min_size=1, max_size=6))
