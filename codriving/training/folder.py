@@ -14,6 +14,8 @@ from codriving.config import show
 from codriving.errors import RunFolderError
 from codriving.runs import locked, write_text
 
+_FIRST_WORLD = ("world", {"suite": "paper"})  # Configs that do not name a world yet are of this one
+
 
 @dataclass(frozen=True, slots=True)
 class TrainingFolder:
@@ -36,7 +38,8 @@ class TrainingFolder:
 
 def fingerprint(config: Mapping[str, Any]) -> str:
     """Reduce the names and values of a training to a short text; where its classes stand does not count."""
-    return hashlib.sha256(json.dumps(_values(config), sort_keys=True).encode()).hexdigest()[:16]
+    told = {key: value for key, value in config.items() if (key, value) != _FIRST_WORLD}
+    return hashlib.sha256(json.dumps(_values(told), sort_keys=True).encode()).hexdigest()[:16]
 
 
 def _values(node: Any) -> Any:  # noqa: ANN401 - any plain value
