@@ -104,7 +104,7 @@ def test_none_leaves_the_bounds_by_cutting_the_corner(speed: float, place: float
 
 @given(st.sampled_from([0.0, 3.0, 7.0, 12.0]), PLACES, st.lists(st.sampled_from(list(Action)), min_size=1, max_size=6))
 def test_no_plan_leaves_the_bounds(speed: float, place: float, plan: list[Action]) -> None:
-    forecast = Forecast(MODEL, (tuple(plan),), BEND)
+    forecast = Forecast(replace(MODEL, steady=True), (tuple(plan),), BEND)
     for target in (0.0, 5.0, 10.0, 15.0):
         forecast.begin_step([(speed, target, "round", place)])
         reach = forecast.reach(speed, True, ("round", place))
