@@ -9,7 +9,7 @@ from codriving.reports.columns import Column, Table, Value, mean, share, swept_c
 from codriving.reports.episodes import MEMORY, counter_columns, number_columns
 from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.results import LABELS, CellResults, ScoredEpisode, named_numbers
-from codriving.reports.summary import ASKED_COLUMNS, CPU, RunTables, labels, model_notes
+from codriving.reports.summary import ASKED_COLUMNS, CPU, RunTables, labels, model_notes, remarks
 from codriving.reports.wording import fixed, milliseconds, percent, stand_in_notes, title
 
 # What has an interval: key, its head, and decimals on the screen and in Markdown.
@@ -87,7 +87,8 @@ def print_flows(
     """Prepare the table of flows for people."""
     firsts = [cell.first for cell in cells]
     scenarios = [first.scenario for first in firsts]
-    said = (*NOTES, *stand_in_notes((f.method, f.reasoner) for f in firsts), *model_notes(cells), *notes)
+    models = stand_in_notes((first.method, first.reasoner) for first in firsts)
+    said = (*NOTES, *models, *remarks(cells), *model_notes(cells), *notes)
     heading = title("flow", scenarios, [first.reasoner for first in firsts], metrics)
     return printed(heading, flow_table(cells, swept), scenarios, said, screen=screen)
 

@@ -96,3 +96,8 @@ def test_computing_time_is_on_the_screen_alone() -> None:
 def test_a_number_of_the_users_own_metric_has_a_column() -> None:
     (row,) = flow_table([CellResults([flow(0, queue=3.0), flow(1, queue=5.0)])]).rows
     assert row["queue"] == pytest.approx(4.0)
+
+
+def test_what_has_to_be_known_of_a_method_stands_below() -> None:
+    cells = [CellResults([flow(0)], remark="trained in another world"), CellResults([flow(0, "mcts")])]
+    assert "trained in another world" in print_flows(cells, "standard").notes
