@@ -137,9 +137,17 @@ def test_each_command_drives_in_the_suite(
             assert values["environment.drivers.headway"] == "1.5"
 
 
+def test_hold_is_no_action_of_the_paper() -> None:
+    assert compose([])["environment"]["steady"] is True
+    assert compose(["suite=paper"])["environment"]["steady"] is False
+    assert compose(["suite=paper", "environment.steady=true"])["environment"]["steady"] is True
+
+
 def test_the_same_world_by_other_words_goes_on(typed: Typed) -> None:
     assert typed("run", *SHORT, "episodes=1")[0] == 0
-    code, out, _ = typed("run", *SHORT[1:], "limits=none", "drivers=simulator", "episodes=1")
+    code, out, _ = typed(
+        "run", *SHORT[1:], "limits=none", "drivers=simulator", "environment.steady=false", "episodes=1"
+    )
     assert code == 0
     assert "Nothing to do: all 1 episodes of this run are finished already." in out
     code, _, err = typed("run", *SHORT[1:], "episodes=1")

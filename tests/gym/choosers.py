@@ -10,7 +10,7 @@ from codriving.experiment.objects import make_objects
 from codriving.gym.actions import ACTIONS
 from codriving.gym.parallel import ParallelDriving
 
-SLOWER, IDLE, FASTER, LANE_LEFT, LANE_RIGHT = range(5)
+SLOWER, IDLE, FASTER, LANE_LEFT, LANE_RIGHT, HOLD = range(6)
 
 Chooser = Callable[[ParallelDriving, Mapping[str, Any]], dict[str, int]]
 

@@ -6,7 +6,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 import pytest
-from choosers import FASTER, IDLE, LANE_LEFT, SLOWER
+from choosers import FASTER, HOLD, IDLE, LANE_LEFT, SLOWER
 from gymnasium.utils.env_checker import check_env
 
 import codriving
@@ -38,7 +38,7 @@ def test_observation_and_action_are_those_of_all_cavs(joint: JointDriving) -> No
     parallel = codriving.parallel_env("intersection")
     observation, info = joint.reset(seed=4)
     assert joint.observation_space.shape == (4, 8, 6)
-    assert joint.action_space.nvec.tolist() == [5, 5, 5, 5]
+    assert joint.action_space.nvec.tolist() == [6, 6, 6, 6]
     observations, _ = parallel.reset(seed=4)
     np.testing.assert_array_equal(observation, np.stack(list(observations.values())))
     numbers = [FASTER, IDLE, SLOWER, LANE_LEFT]
@@ -48,7 +48,7 @@ def test_observation_and_action_are_those_of_all_cavs(joint: JointDriving) -> No
     assert reward == pytest.approx(sum(rewards.values()) / 4)
     assert (terminated, truncated) == (False, False)
     assert info["refused"] == 1
-    assert info["action_mask"].tolist() == [[1, 1, 1, 0, 0]] * 4
+    assert info["action_mask"].tolist() == [[1, 1, 1, 0, 0, 1]] * 4
     assert info["arrived"].tolist() == [False] * 4
     assert (info["outcome"], info["seed"]) == ("", 4)
     assert (info["crashed"].tolist(), info["involved"]) == ([False] * 4, ())
@@ -57,20 +57,22 @@ def test_observation_and_action_are_those_of_all_cavs(joint: JointDriving) -> No
 def test_masks_serve_to_sample(joint: JointDriving) -> None:
     _, info = joint.reset(seed=4)
     drawn = [joint.action_space.sample(mask=tuple(info["action_mask"])) for _ in range(50)]
-    assert np.max(drawn) == FASTER
-    np.testing.assert_array_equal(joint.action_masks().reshape(4, 5), info["action_mask"].astype(bool))
+    assert set(np.unique(drawn)) == {SLOWER, IDLE, FASTER, HOLD}
+    np.testing.assert_array_equal(joint.action_masks().reshape(4, 6), info["action_mask"].astype(bool))
     assert joint.action_masks().dtype == np.bool_
 
 
 def test_hold_is_the_last_action_where_it_is_one() -> None:
-    env = make(overrides=["environment.steady=true"])
-    info = env.reset(seed=4)[1]
-    assert env.action_space.nvec.tolist() == [6] * 4
-    assert info["action_mask"].tolist() == [[1, 1, 1, 0, 0, 1]] * 4
+    five = make(overrides=["environment.steady=false"])
+    info = five.reset(seed=4)[1]
+    assert five.action_space.nvec.tolist() == [5] * 4
+    assert info["action_mask"].tolist() == [[1, 1, 1, 0, 0]] * 4
+    env = make()
+    env.reset(seed=4)
     for _ in range(3):
         env.step([FASTER] * 4)
     before = {v.id: v.speed for v in env.parallel.world.cavs}
-    env.step([5] * 4)
+    env.step([HOLD] * 4)
     assert {v.id: v.speed for v in env.parallel.world.cavs} == pytest.approx(before)
 
 
@@ -90,7 +92,7 @@ def test_who_has_arrived_is_zeros_and_its_action_is_ignored() -> None:
             assert not observation[0].any()
             assert observation[1, 0].any()
             assert info["arrived"].tolist() == [True, False]
-            assert info["action_mask"].tolist() == [[0, 1, 0, 0, 0], [1, 1, 1, 0, 0]]
+            assert info["action_mask"].tolist() == [[0, 1, 0, 0, 0, 0], [1, 1, 1, 0, 0, 1]]
             assert info["refused"] == 0
             assert not terminated
         if terminated:

@@ -92,7 +92,7 @@ def test_who_arrives_is_terminated_and_gone(name: str, make: Make) -> None:
                 left.add(agent)
                 assert rewards[agent] > 9
                 assert not observations[agent].any()
-                assert infos[agent]["action_mask"].tolist() == [0, 1, 0, 0, 0]
+                assert infos[agent]["action_mask"].tolist() == [0, 1, 0, 0, 0, 0]
             else:
                 assert abs(rewards[agent]) < 1
                 assert observations[agent][0].any()

@@ -117,8 +117,8 @@ def test_seeds_are_drawn_apart_from_those_of_tables_and_repeatably(make: Make) -
     [
         ({"CAV1": 1}, "one action for each of CAV1, CAV2, CAV3, CAV4 is needed, got none for CAV2, CAV3, CAV4"),
         ({f"CAV{i}": 1 for i in range(1, 6)}, "got one for CAV5"),
-        ({f"CAV{i}": 5 for i in range(1, 5)}, "the action of CAV1 must be one of 0 SLOWER, .*; got 5"),
-        ({f"CAV{i}": -1 for i in range(1, 5)}, "4 LANE_RIGHT; got -1"),
+        ({f"CAV{i}": 6 for i in range(1, 5)}, "the action of CAV1 must be one of 0 SLOWER, .*; got 6"),
+        ({f"CAV{i}": -1 for i in range(1, 5)}, "4 LANE_RIGHT, 5 HOLD; got -1"),
         ({f"CAV{i}": 1.0 for i in range(1, 5)}, "got 1.0"),
         ({f"CAV{i}": "IDLE" for i in range(1, 5)}, "got 'IDLE'"),
     ],

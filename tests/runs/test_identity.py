@@ -46,9 +46,12 @@ def test_names_and_values_tell(override: str) -> None:
     assert told(override) != told()
 
 
+TODAY = ("limits=road", "drivers=attentive", "environment.steady=true")
+
+
 def test_a_suite_is_told_by_its_values_alone() -> None:
-    assert told("suite=paper") == told("limits=none", "drivers=simulator")
-    assert told("suite=default") == told() == told("suite=paper", "limits=road", "drivers=attentive")
+    assert told("suite=paper") == told("limits=none", "drivers=simulator", "environment.steady=false")
+    assert told("suite=default") == told() == told("suite=paper", *TODAY)
     assert told("suite=paper") != told()
 
 
