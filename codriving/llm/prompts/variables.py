@@ -129,7 +129,7 @@ def _actions(
     for a in assessments:
         times = a.arrivals
         arrivals = tuple(round(min((times[k] for k in ks if k < len(times)), default=inf), 1) for ks in groups)
-        progress = None if a.progress is None else round(a.progress)
+        progress = None if a.progress is None else max(round(a.progress), 0)
         key = (a.safe, a.reasons, progress, arrivals, a.target)
         before = views[key].names if key in views else ()
         reasons = tuple(names.sentence(reason) for reason in a.reasons)

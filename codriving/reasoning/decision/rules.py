@@ -73,7 +73,9 @@ def decide_one(situation: Situation) -> Decision:
         kept = f"the order cannot be kept with {waits_for or 'others'}"
         return Decision(ego, action, f"{kept}; {action} is the {how} action that is safe")
     best = max(ahead.values())
-    near = [action for action in allowed if ahead.get(action, -math.inf) >= best * (1 - TOLERANCE)]
+    # A plan that gets nowhere and reverses is worth less than nothing.
+    enough = min(best, best * (1 - TOLERANCE))
+    near = [action for action in allowed if ahead.get(action, -math.inf) >= enough]
     action = next((a for a in near if not _takes_back(situation, a)), near[0])
     return Decision(ego, action, _reason(action, allowed, waits_for))
 

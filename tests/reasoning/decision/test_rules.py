@@ -68,6 +68,11 @@ def test_what_was_begun_is_not_taken_back_if_holding_gets_as_far(
     assert decide_one(situation(junction, five, me=me)).action is Action.FASTER
 
 
+def test_the_best_may_be_worth_less_than_nothing(junction: Junction) -> None:
+    gains = {Action.SLOWER: (True, -0.7), Action.IDLE: (True, -0.5), Action.HOLD: (True, None)}
+    assert decide_one(situation(junction, gains)).action is Action.IDLE
+
+
 def test_accelerating_is_not_taken_back_either(junction: Junction) -> None:
     gains = {Action.SLOWER: (True, 80.0), Action.IDLE: (True, 10.0), Action.HOLD: (True, 79.0)}
     assert decide_one(situation(junction, gains, me=car("CAV1", "south-north", 60.0, 6.0, 9.0))).action is Action.HOLD
