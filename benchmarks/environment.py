@@ -19,10 +19,10 @@ CAVS, HDVS = 4, 3
 
 
 class Ours:
-    """Our environment with its default settings, everything corrected."""
+    """Our environment with highway-env's own human drivers and without limits, everything corrected."""
 
     def __init__(self) -> None:
-        config = compose([f"scenario.cavs={CAVS}", f"scenario.hdvs=[{HDVS},{HDVS}]"])
+        config = compose(["suite=paper", f"scenario.cavs={CAVS}", f"scenario.hdvs=[{HDVS},{HDVS}]"])
         made = build(config["environment"], object, "environment")
         assert isinstance(made, Environment)
         self.environment = made

@@ -247,7 +247,7 @@ class Forecast:
         return self._likely[key]
 
     def duration(self, where: Where, length: float) -> float:
-        """Return how long a vehicle that is as fast as it can takes from a place on for a length [m], at least [s]."""
+        """Return how long the fastest vehicle takes from a place on for a length of the centre line [m], in s."""
         if not self._limited:
             return length / self.model.top_speed
         return self._profiles[where[0]].duration(where[1], length)
