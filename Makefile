@@ -40,7 +40,7 @@ fuzz: $(READY) ## command lines, damaged files and odd processes drawn by a seed
 # What takes too long for .ci/run: all tests with PyTorch, the mutants, a real training.
 check-all: $(TORCH) ## lint, all tests, mutants and a small training; takes an hour
 	$(MAKE) lint
-	SAMENESS=all SEEDS=20 $(MAKE) coverage
+	DRAWN=1 SAMENESS=all SEEDS=20 $(MAKE) coverage
 	$(MAKE) mutants
 	$(MAKE) fuzz
 	$(BIN)/codriving train madqn --smoke output=$(VENV)/check
