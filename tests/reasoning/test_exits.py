@@ -130,10 +130,13 @@ def test_of_two_who_stand_the_one_that_goes_first_starts(junction: Junction, ste
     assert not passes(junction, 60.0, True, ("HDV1", *CORNER))
 
 
-def test_a_cav_gets_out_past_a_driver_who_stands(junction: Junction, steady: Junction) -> None:
+@pytest.mark.parametrize("method", [codriving, fcfs])
+def test_a_cav_gets_out_past_a_driver_who_stands(
+    method: Callable[[], Method], junction: Junction, steady: Junction
+) -> None:
     human = Start("HDV1", Kind.HDV, "north-east", 105.0, 0.0, stands=600.0)
     starts = (Start("CAV1", Kind.CAV, "south-north", 105.0, 0.0), human)
-    stuck, out = (drive(world.drive(*starts), codriving(), 0) for world in (junction, steady))
+    stuck, out = (drive(world.drive(*starts), method(), 0) for world in (junction, steady))
     assert stuck.outcome is not None
     assert out.outcome is not None
     assert (stuck.outcome.ending, out.outcome.ending) == (Ending.TIMEOUT, Ending.SUCCESS)

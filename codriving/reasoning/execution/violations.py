@@ -10,6 +10,7 @@ import numpy as np
 from codriving.datatypes import Conflict, TrackedVehicle
 from codriving.geometry import PLANNING, TRUE, ConflictZone, Footprint
 from codriving.reasoning.conflicts import has_joined, is_behind
+from codriving.reasoning.exits import gets_out
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Steps, first_true, halts_behind
 from codriving.reasoning.prediction.right_of_way import gives_way
@@ -100,7 +101,7 @@ def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, 
         for meeting in meetings_behind(moment, ego, other, lag, following, pad):
             found = np.minimum(found, meeting.steps(travels, low))
     for c in moment.conflicts[ego.id]:
-        if c.other in people:
+        if c.other in people and not gets_out(moment, ego, people[c.other], False):
             found = np.minimum(found, _in_zone(moment, c, people[c.other], travels, lag, pad))
     return found
 
