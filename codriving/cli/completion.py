@@ -149,7 +149,7 @@ def _keys(group: str, line: TypedLine) -> Iterator[tuple[str, str]]:
     chosen, files = line.chosen(group), line.choices(group)
     if chosen in files:
         for name, value in values(files[chosen]).items():
-            if name == PLUGINS:
+            if name in (PLUGINS, group):  # The group itself, where a choice is nothing
                 continue
             for option in ("true", "false") if value in ("true", "false") else (value.replace(" ", ""),):
                 yield f"{group}.{name}={option}", ""

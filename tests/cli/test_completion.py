@@ -118,3 +118,17 @@ def test_keys_are_those_of_what_has_been_chosen(own: Path, chosen: list[str]) ->
     assert words == ["scenario.curbs=2", "scenario.width=4.0"]
     assert in_line("scenario=merge", incomplete="scenario.r") == ["scenario.ramp_hdvs=0.3"]
     assert in_line("scenario=nonsense", incomplete="scenario.") == []
+
+
+def test_keys_are_those_of_the_suite(tmp_path: Path) -> None:
+    (tmp_path / "suite").mkdir()
+    (tmp_path / "suite" / "mine.yaml").write_text(
+        "# @package _global_\n# Mine.\ndefaults:\n  - override /limits: none\n"
+    )
+    headway, lateral = "drivers.headway=1.5", "limits.lateral=4.0"
+    assert (headway in in_line(incomplete="drivers."), lateral in in_line(incomplete="limits.")) == (False, True)
+    assert headway in in_line("suite=paper", incomplete="drivers.")
+    assert in_line("suite=paper", incomplete="limits.") == []
+    assert in_line("--config-dir", str(tmp_path), "suite=mine", incomplete="limits.") == []
+    assert lateral in in_line("suite=paper", "limits=road", incomplete="limits.")
+    assert in_line(incomplete="suite=p") == ["suite=paper"]
