@@ -8,9 +8,13 @@ import pytest
 
 from codriving.config.build import build
 from codriving.config.training import compose_training, trainings
+from codriving.environment.environment import Environment
 from codriving.errors import ConfigError
+from codriving.gym.parallel import ParallelDriving
+from codriving.gym.single import SingleDriving
+from codriving.training.advised_observer import AdvisedObserver
 from codriving.training.curriculum import shares, world_of
-from codriving.training.settings import MadqnSettings
+from codriving.training.settings import MadqnSettings, SingleSettings
 
 MADQN = [name for name in trainings() if name.startswith("madqn")]
 
@@ -30,6 +34,25 @@ def test_every_training_builds_and_shows_all_of_its_settings(name: str, smoke: b
     assert name == f"madqn_{settings.family}"
     assert len(settings.exams) * 1000 < 100_000
     assert all(exam.episodes <= 1000 for exam in settings.exams)
+
+
+@pytest.mark.parametrize(
+    ("world", "limits"), [((), False), (("world.suite=default",), True), (("world.limits=road",), True)]
+)
+def test_all_of_a_training_drives_in_its_world(world: tuple[str, ...], limits: bool) -> None:
+    together = made(*world)
+    alone = build(compose_training("ppo_junction", world, smoke=True), SingleSettings, "train")
+
+    def observer(environment: Environment) -> AdvisedObserver:
+        return AdvisedObserver(environment.road_map, environment.driving_model, "junction", None)
+
+    environments: list[ParallelDriving | SingleDriving] = [
+        *together.traffic[0].environments(together.weights),
+        *(exam.environment for exam in (*together.exams, *alone.exams)),
+        *(kind.environment(observer, "junction", alone.weights) for kind in alone.traffic),
+    ]
+    assert len(environments) > 5
+    assert {each.environment.limits is not None for each in environments} == {limits}
 
 
 def test_world_of_a_training_is_named_by_its_limits_and_drivers() -> None:
