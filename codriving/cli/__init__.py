@@ -1,4 +1,4 @@
-"""The command line: no logic, and the only door to Typer."""
+"""The command line, without logic. The only room that imports Typer."""
 
 from codriving.cli.app import main
 

@@ -1,4 +1,4 @@
-"""Overrides to config to objects: the only door to Hydra and OmegaConf."""
+"""Overrides -> one checked config -> objects. The only room that imports Hydra and OmegaConf."""
 
 from codriving.config.build import TARGET, asks_for, build, targets, validate
 from codriving.config.choices import (

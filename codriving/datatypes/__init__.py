@@ -1,4 +1,4 @@
-"""The nouns: frozen dataclasses that every room speaks in."""
+"""The data types of all rooms: frozen dataclasses, and the base classes of what a config can name."""
 
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Memory, Verdict
 from codriving.datatypes.flow import Flow

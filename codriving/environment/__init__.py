@@ -1,4 +1,4 @@
-"""Scenario to world state to step: the paper's environment module, and the only door to highway-env."""
+"""Seed -> scene -> world state -> step: the paper's environment module. The only room that imports highway-env."""
 
 from codriving.environment.highway_env_parts import import_parts
 

@@ -1,4 +1,4 @@
-"""Overrides to cells, cells to records, records to the tables that are printed and kept."""
+"""Config -> cells -> records -> the tables that are printed and kept; one file a command."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Our environment for learners: PettingZoo with one agent a CAV, Gymnasium with one agent for all CAVs.
+"""The environment for learners: PettingZoo with one agent a CAV, Gymnasium with one agent for all CAVs.
 
 Importing this room registers every scenario with Gymnasium.
 """

@@ -1,4 +1,4 @@
-"""The memory: what CAVs did, what came of it, and what of that is like the situation at hand (paper Section III-D)."""
+"""The memory: what CAVs did and what came of it, and recall of that in similar situations (paper Section III-D)."""
 
 from codriving.memory.describe import describe
 from codriving.memory.effect import LESSONS, DecisionHistory, HistoryStep, OwnCollision, effect_of, verdict_of

@@ -1,4 +1,4 @@
-"""Methods: every row of a table is a pipeline with other objects in its slots."""
+"""The methods, each a YAML and a row of the tables; and what several of them share."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING

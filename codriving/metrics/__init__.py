@@ -1,4 +1,4 @@
-"""From a driven trajectory to its score: success, post-encroachment time, travel velocity."""
+"""Trajectory -> score: success, near misses, velocity, comfort and delay; and what is counted of a flow."""
 
 from codriving.metrics.intervals import FEWEST, RESAMPLES, mcnemar, mean_interval, rate_interval, wilson_interval
 from codriving.metrics.scorer import Scorer, with_alone

@@ -1,4 +1,4 @@
-"""The paper's reasoning module: share states, share intents, negotiate, check, decide."""
+"""The paper's reasoning module: share states, share intents, negotiate, check, decide; and the executors of orders."""
 
 from codriving.reasoning.conflicts import OPEN, SLOWEST, find_conflicts, is_behind, is_open, ttcp
 from codriving.reasoning.decision.cases import favour

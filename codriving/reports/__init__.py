@@ -1,4 +1,4 @@
-"""Records to tables: everything a reader sees, redrawn from what is stored, without a simulator."""
+"""Records -> tables and figures, from what is stored alone, without the simulator."""
 
 from codriving.reports.built_memory import BuiltMemory, print_built
 from codriving.reports.columns import Table, table

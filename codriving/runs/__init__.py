@@ -1,4 +1,4 @@
-"""What a run leaves on disk: whole or not at all, strict when read again."""
+"""The run folder: files that are there whole or not at all, and are checked when they are read again."""
 
 from codriving.runs.atomic import whole_file, whole_folder, write_text
 from codriving.runs.continuation import changed_versions

@@ -1,4 +1,4 @@
-"""Training of learned drivers, on the environment for agents; PyTorch is imported only while it goes on."""
+"""Environment for learners -> trained weights. The only room that imports PyTorch, and only while it trains."""
 
 from codriving.training.command import run_training
 
