@@ -81,9 +81,10 @@ def read_film(folder: Path, road: Road, scale: float = 1.0) -> "EpisodeFilm":
     from codriving.animation import EpisodeFilm
 
     record = read_record(folder)
-    if (trajectory := read_trajectory(folder, record)) is None:
+    trajectory = read_trajectory(folder, record)
+    if trajectory is None or not trajectory.tracks:
         why = f"it ended in an error ({record.outcome.message})" if record.outcome.message else "nothing was driven"
-        raise RunFolderError(f"{folder} has no {TRAJECTORY}, so there is nothing to show: {why}")
+        raise RunFolderError(f"{folder} has no vehicle in {TRAJECTORY}, so there is nothing to show: {why}")
     return EpisodeFilm(road, trajectory, read_decisions(folder), record, scale)
 
 

@@ -14,8 +14,8 @@ def percent(value: Value) -> str:
 
 
 def fixed(value: Value, digits: int = 1) -> str:
-    """Write a number with so many decimals."""
-    return f"{value + 0.0:.{digits}f}" if isinstance(value, int | float) else ""
+    """Write a number with so many decimals; one that is rounded to zero has no sign."""
+    return f"{round(value, digits) + 0.0:.{digits}f}" if isinstance(value, int | float) else ""
 
 
 def two_digits(value: Value) -> str:

@@ -61,12 +61,13 @@ def read_trajectory(folder: Path, record: EpisodeRecord) -> Trajectory | None:
 
 def _trajectory(rows: Sequence[Mapping[str, str]], record: EpisodeRecord) -> Trajectory | None:
     times = sorted({float(row["time"]) for row in rows})
-    if not times:
-        return None
-    # Over the whole episode, since a single time is rounded.
-    step = (times[-1] - times[0]) / (len(times) - 1) if len(times) > 1 else 1.0
     if (flow := record.outcome.flow) is not None:
-        step = flow.step
+        step = flow.step  # Its road may be empty for a while, or all the time
+    elif not times:
+        return None
+    else:
+        # Over the whole episode, since a single time is rounded.
+        step = (times[-1] - times[0]) / (len(times) - 1) if len(times) > 1 else 1.0
     driven: dict[str, list[Mapping[str, str]]] = defaultdict(list)
     for row in rows:
         driven[row["id"]].append(row)

@@ -95,7 +95,7 @@ def test_an_episode_that_is_not_finished_says_how_to_go_on(single: Path) -> None
 @pytest.mark.parametrize(
     ("file", "content", "said"),
     [
-        (TRAJECTORY, None, r"has no trajectory\.csv, so there is nothing to show"),
+        (TRAJECTORY, None, r"has no vehicle in trajectory\.csv, so there is nothing to show"),
         (DECISIONS, None, r"decisions\.jsonl is damaged \(it is missing\); .*run again"),
         (DECISIONS, "{", r"decisions\.jsonl is damaged"),
         (RECORD, "{}", r"record\.json is damaged"),

@@ -47,6 +47,8 @@ def test_means_over_seeds_with_intervals_from_ten_seeds_on() -> None:
     (few,) = flow_table([CellResults(records[:9])]).rows
     assert few["delay_low"] is None
     assert few["delay_text"] == "2.9"
+    (none,) = flow_table([CellResults([flow(0, delay=-0.04)])]).rows
+    assert none["delay_text"] == "0.0"
 
 
 def test_collisions_are_those_of_all_seeds_together() -> None:

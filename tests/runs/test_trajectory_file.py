@@ -74,6 +74,14 @@ def test_in_a_flow_the_road_may_be_empty_for_a_while(record: EpisodeRecord, tmp_
     assert [(one.id, one.first_step, len(one.x)) for one in found.tracks] == [("CAV1", 0, 3), ("HDV1", 50, 2)]
 
 
+def test_a_flow_in_which_no_vehicle_came_in_is_read(record: EpisodeRecord, tmp_path: Path) -> None:
+    flow = replace(record, outcome=Outcome(Ending.COUNTED, 9.0, {}, flow=FlowLog(5.0, 0.1, (), ())))
+    found = stored(tmp_path, Trajectory(0.1, ()), flow)
+    assert found is not None
+    assert (found.step, found.tracks) == (0.1, ())
+    assert read_trajectory(tmp_path / "elsewhere", flow) is None
+
+
 def test_a_single_row_is_read(record: EpisodeRecord, tmp_path: Path) -> None:
     read = stored(tmp_path, Trajectory(0.1, (track("CAV1", Kind.CAV, 0, [3.0], ""),)), record)
     assert read is not None
