@@ -69,7 +69,7 @@ def compose_training(
     if isinstance(world := config.get("world"), Mapping):
         if strange := [key for key in world if key not in WORLD]:
             raise unknown(f"world.{strange[0]}", WORLD, "world")
-        compose([f"{key}={value}" for key, value in world.items()], config_dir)
+        compose([f"{key}={value}" for key, value in world.items()])  # Environments of a training know ours alone
     check_secrets(config)
     return config
 

@@ -34,6 +34,8 @@ def configured(
         _check_read(token)
     tokens = [f"scenario.{key}={_written(f'scenario.{key}', value)}" for key, value in settings.items()]
     config = compose([f"scenario={name}", f"cda={cda}", *overrides, *tokens], folder)
+    if config["flow"] is not None:
+        raise ConfigError("an environment drives episodes and no flows; take a suite that leaves flow alone")
     plugins = config["plugins"]
     build(config["scenario"], Scenario, "scenario", plugins)
     environment = build(config["environment"], Environment, "environment", plugins)

@@ -89,6 +89,15 @@ def test_scenarios_of_the_user_are_environments_too(own_configs: Path) -> None:
     assert env.observation_space("CAV1").high[0, 0] == pytest.approx(171)
 
 
+def test_a_suite_of_flows_is_refused(own_configs: Path) -> None:
+    (own_configs / "suite").mkdir()
+    (own_configs / "suite" / "busy.yaml").write_text(
+        "# @package _global_\n# A busy road.\ndefaults:\n  - override /flow: steady\n"
+    )
+    with pytest.raises(ConfigError, match="an environment drives episodes and no flows"):
+        codriving.parallel_env("intersection", "suite=busy", config_dir=own_configs)
+
+
 def test_agents_that_change_with_the_seed_are_refused(make_varying: Callable[[], ParallelDriving]) -> None:
     env = make_varying()
     env.reset(seed=2)

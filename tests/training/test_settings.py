@@ -60,6 +60,13 @@ def test_world_of_a_training_is_named_by_its_limits_and_drivers() -> None:
     assert world_of({"drivers": "rough"}) == {"limits": "road", "drivers": "rough"}
 
 
+def test_a_suite_of_the_user_is_refused_before_anything_is_built(tmp_path: Path) -> None:
+    (tmp_path / "suite").mkdir()
+    (tmp_path / "suite" / "mine.yaml").write_text("# @package _global_\n# Mine.\n")
+    with pytest.raises(ConfigError, match="unknown suite 'mine'; choices: default, paper"):
+        compose_training("ppo_junction", ["world.suite=mine"], False, tmp_path)
+
+
 def test_smoke_changes_what_it_says_and_nothing_else() -> None:
     assert made(smoke=True).decisions == 20_000
     assert made(smoke=True).exploration.over == 8_000
