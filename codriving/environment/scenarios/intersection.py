@@ -75,7 +75,7 @@ class Intersection(JunctionScenario):
     name = "intersection"
 
     leg_length: float
-    blind: float | None
+    blind: float | None = None
 
     def check(self) -> None:
         require_range("leg_length", self.leg_length, 40, 500, " m")

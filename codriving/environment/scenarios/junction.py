@@ -22,11 +22,12 @@ class JunctionScenario(PlacedScenario):
     """Vehicles come by one of four legs and leave by another one."""
 
     exit_distance: float
-    pattern: Literal["random", "standoff"]
-    row_gap: float
-    turns: tuple[Turn, ...]
-    blocked_exit: float
-    blocked_room: float
+    # YAMLs of release 0.1 have none of these.
+    pattern: Literal["random", "standoff"] = "random"
+    row_gap: float = 14.0
+    turns: tuple[Turn, ...] = tuple(Turn)
+    blocked_exit: float = 0.0
+    blocked_room: float = 7.0
 
     def check_scene(self) -> None:
         """Refuse settings of the scene that are out of range, and more vehicles than there is room for."""

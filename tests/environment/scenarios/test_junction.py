@@ -9,6 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from starting import can_brake, check_room, scenario
 
+from codriving.config.build import build
+from codriving.config.compose import compose
 from codriving.datatypes.world import Kind, Scene, Start
 from codriving.environment.scenarios.junction import JunctionScenario
 from codriving.errors import ConfigError
@@ -33,6 +35,19 @@ def out(start: Start) -> str:
 
 def cavs(scene: Scene) -> list[Start]:
     return [start for start in scene.starts if start.kind is Kind.CAV]
+
+
+@pytest.mark.parametrize("name", BOTH)
+def test_a_yaml_of_release_0_1_makes_the_scenes_of_today(name: str) -> None:
+    node = compose([f"scenario={name}"])["scenario"]
+    later = [key for key in ("pattern", "row_gap", "turns", "blocked_exit", "blocked_room", "blind") if key in node]
+    old, today = (
+        build({key: value for key, value in node.items() if key not in left_out}, JunctionScenario, "scenario")
+        for left_out in (later, ())
+    )
+    assert len(later) >= 5
+    assert [getattr(old, key) for key in later] == [getattr(today, key) for key in later]
+    assert [old.scene(seed) for seed in range(5)] == [today.scene(seed) for seed in range(5)]
 
 
 @pytest.mark.parametrize("name", BOTH)
