@@ -1,7 +1,7 @@
 """Every number of a training; the YAMLs in conf/train are calls of these classes."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from codriving.errors import ConfigError
 from codriving.gym import RewardWeights, reward_weights
@@ -26,7 +26,8 @@ class Settings:
     clip: float
     rate: Linear
     reward: Mapping[str, float]
-    world: Mapping[str, str]  # Choices of ``suite``, ``limits`` and ``drivers`` in which it trains and is validated
+    # Choices of ``suite``, ``limits`` and ``drivers`` in which it trains and is validated; release 0.1 knew one world.
+    world: Mapping[str, str] = field(default_factory=lambda: {"suite": "paper"}, kw_only=True)
     exams: tuple[Exam, ...]
     exam_every: int
     exam_seed: int  # First seed of the validations; ``LEAST_SEED`` or more

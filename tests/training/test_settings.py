@@ -60,6 +60,12 @@ def test_world_of_a_training_is_named_by_its_limits_and_drivers() -> None:
     assert world_of({"drivers": "rough"}) == {"limits": "road", "drivers": "rough"}
 
 
+def test_a_config_of_release_0_1_trains_in_the_world_of_then() -> None:
+    config = compose_training("ppo_junction", (), smoke=True)
+    del config["world"]
+    assert build(config, SingleSettings, "train").world == {"suite": "paper"}
+
+
 def test_a_suite_of_the_user_is_refused_before_anything_is_built(tmp_path: Path) -> None:
     (tmp_path / "suite").mkdir()
     (tmp_path / "suite" / "mine.yaml").write_text("# @package _global_\n# Mine.\n")
