@@ -127,7 +127,10 @@ def test_list_without_a_group_shows_all_groups() -> None:
         (("compare", "load", "--cfg", "scenario=merge", "scenario.cavs=4,99"), "in the cell scenario.cavs=99 method="),
         (("compare", "baselines", "--cfg", "scenario=nowhere"), "unknown scenario 'nowhere'; choices: intersection"),
         (("run", "scenario=nowhere"), "unknown scenario 'nowhere'; choices: intersection"),
-        (("run", "scenario.cvas=4"), "unknown key scenario.cvas; did you mean scenario.cavs? keys of scenario: blind, "),
+        (
+            ("run", "scenario.cvas=4"),
+            "unknown key scenario.cvas; did you mean scenario.cavs? keys of scenario: blind",
+        ),
         (("run", "+scenario.typo=3"), "unknown key scenario.typo; "),
         (("run", "episdes=3"), "unknown key episdes; did you mean episodes?"),
         (("run", "episodes=0"), "episodes must be a whole number, 1 to 100000, got 0"),

@@ -53,7 +53,11 @@ def test_reach_grows_with_time_and_its_bounds_are_ordered(speed: float, is_cav: 
     assert (reach.steady <= reach.most + 1e-9).all()
 
 
-@given(st.sampled_from([0.0, 3.0, 6.0, 9.0]), st.lists(st.sampled_from(list(Action)), min_size=1, max_size=5))
+FIVE = [action for action in Action if action is not Action.HOLD]
+"""Those of a model that is not steady, as in these tests."""
+
+
+@given(st.sampled_from([0.0, 3.0, 6.0, 9.0]), st.lists(st.sampled_from(FIVE), min_size=1, max_size=5))
 def test_no_plan_from_an_allowed_speed_leaves_the_reach(speed: float, plan: list[Action]) -> None:
     forecast = Forecast(MODEL, (tuple(plan),))
     reach = forecast.reach(speed, True)

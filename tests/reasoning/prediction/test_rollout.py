@@ -38,6 +38,8 @@ def step_by_step(model: DrivingModel, v: float, goal: float, plan: Plan) -> tupl
             action = plan[min(k // model.substeps, len(plan) - 1)]
             share = (v - allowed[0]) / (allowed[-1] - allowed[0])
             index = int(np.clip(np.round(share * (len(allowed) - 1)), 0, len(allowed) - 1))
+            if action is Action.HOLD:
+                goal = v
             if action is Action.FASTER:
                 goal = allowed[min(index + 1, len(allowed) - 1)]
             if action is Action.SLOWER:
