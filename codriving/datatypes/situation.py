@@ -94,6 +94,16 @@ class SceneDescription:
         """Its route, and its arc length along it [m]."""
         return self.intent.route, self.place
 
+    def speed_rank(self, action: Action) -> float | None:
+        """Rank an action along the lane by how fast it makes the CAV; None for a lane change.
+
+        HOLD is slower than IDLE while the CAV accelerates towards its target speed, and faster while it slows down.
+        """
+        if action is Action.HOLD:
+            speed, target = self.ego.speed, self.intent.target_speed
+            return 1.0 + 0.5 * ((speed > target) - (speed < target))
+        return {Action.SLOWER: 0.0, Action.IDLE: 1.0, Action.FASTER: 2.0}.get(action)
+
     def neighbour(self, name: str) -> TrackedVehicle | None:
         """Return a neighbour by id, or None if the ego vehicle does not know of it."""
         return next((n for n in self.neighbours if n.id == name), None)

@@ -68,13 +68,13 @@ def _ask(resolved: Mapping[str, Any], model: Model) -> tuple[str, Deliberation]:
     by_rules, asked = make_objects(resolved, RuleModel()), make_objects(resolved, model)
     environment, driver = by_rules.environment, by_rules.method
     world = environment.reset(SEED)
-    driver.reset(environment.road_map, environment.driving_model, SEED)
+    driver.reset(environment.road_map, environment.driving_model, 0)
     while environment.outcome is None:
         deliberation = driver.act(world)
         if world.step >= STEP and _is_open(deliberation.as_dict()):
             break
         world = environment.step(deliberation.actions)
-    asked.method.reset(environment.road_map, environment.driving_model, SEED)
+    asked.method.reset(environment.road_map, environment.driving_model, 0)
     scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
     return f"{scenario.name}, seed {SEED}, after {world.time:g} s", asked.method.ask_once(world)
 

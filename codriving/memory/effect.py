@@ -205,7 +205,7 @@ def _is_behind(after: HistoryStep | None, name: str) -> bool:
 def _needless(history: DecisionHistory, k: int) -> bool:
     """Whether the CAV waited although it could have gone and no vehicle then used the way."""
     now, steps = history.steps[k], round(HORIZON / history.interval)
-    waits = now.action is Action.SLOWER or (now.action is Action.IDLE and now.ego.speed < SLOW)
+    waits = now.action is Action.SLOWER or (now.action in (Action.IDLE, Action.HOLD) and now.ego.speed < SLOW)
     if not waits or not now.could_go or _time_to_collision(history, k) is not None:
         return False
     if now.lead_gap is not None and now.lead_gap < max(10.0, FREE * now.ego.speed):

@@ -21,12 +21,6 @@ from codriving.geometry import RoadMap
 from codriving.memory import LESSONS, DecisionHistory, HistoryStep, OwnCollision, describe, effect_of, verdict_of
 from codriving.reasoning import SharedStates, Tracking, describe_scenes, find_conflicts
 
-# What would have been faster than an action.
-FASTER_THAN: Mapping[Action | None, tuple[Action, ...]] = {
-    Action.SLOWER: (Action.IDLE, Action.FASTER),
-    Action.IDLE: (Action.FASTER,),
-}
-
 
 @dataclass(frozen=True, slots=True)
 class LoggedDecision:
@@ -101,7 +95,7 @@ class ConflictLog(ExperienceLog):
             others = {vehicle.id: vehicle for vehicle in world.vehicles if vehicle.id != name}
             conflicts = find_conflicts(scene, self._road_map)
             gap = next((n.gap for n in scene.neighbours if n.role is Role.LEADING), None)
-            could_go = situation is not None and any(a in situation.allowed for a in FASTER_THAN.get(action, ()))
+            could_go = situation is not None and action is not None and _could_go(situation, action)
             self._steps.setdefault(name, []).append(HistoryStep(scene.ego, others, conflicts, gap, action, could_go))
 
     def _own_collision(self, name: str, collision: Collision | None) -> OwnCollision | None:
@@ -109,6 +103,13 @@ class ConflictLog(ExperienceLog):
             return None
         strikes = name == collision.striker
         return OwnCollision(collision.time - self._begun, collision.struck if strikes else collision.striker, strikes)
+
+
+def _could_go(situation: Situation, action: Action) -> bool:
+    """Whether an action along the lane was allowed that is faster than the one taken."""
+    taken = situation.scene.speed_rank(action)
+    ranks = (situation.scene.speed_rank(a) for a in situation.allowed)
+    return taken is not None and any(rank is not None and rank > taken for rank in ranks)
 
 
 def recall(memory: CaseMemory | None, situations: Sequence[Situation], most: int | None = None) -> list[Situation]:

@@ -157,6 +157,14 @@ def test_waiting_for_a_vehicle_that_does_not_come_is_too_cautious() -> None:
     assert verdict_of(effect_of(waiting(0.0), 0), Action.IDLE) is Verdict.TOO_CAUTIOUS
 
 
+def test_holding_a_low_speed_is_waiting_too() -> None:
+    way = waiting(0.0)
+    held = replace(way, steps=tuple(replace(step, action=Action.HOLD) for step in way.steps))
+    assert verdict_of(effect_of(held, 0), Action.HOLD) is Verdict.TOO_CAUTIOUS
+    fast = replace(held, steps=tuple(replace(s, ego=replace(s.ego, speed=4.0)) for s in held.steps))
+    assert not effect_of(fast, 0).needless
+
+
 @pytest.mark.parametrize("way", [waiting(4.0), waiting(0.0, could_go=False), waiting(0.0, lead_gap=4.0)])
 def test_waiting_for_a_vehicle_that_comes_or_because_nothing_else_is_safe_is_not(way: DecisionHistory) -> None:
     assert not effect_of(way, 0).needless

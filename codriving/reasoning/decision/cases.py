@@ -10,10 +10,6 @@ from math import log2
 
 from codriving.datatypes import Action, ActionAssessment, Decision, Memory, Situation, Verdict
 
-# Actions along the lane from the slowest to the fastest.
-BY_SPEED = (Action.SLOWER, Action.IDLE, Action.HOLD, Action.FASTER)
-
-
 # How an effect speaks for or against an action.
 SIGNS = {Verdict.EASED: 1.0, Verdict.INTENSIFIED: -1.0, Verdict.TOO_CAUTIOUS: -1.0}
 
@@ -32,13 +28,16 @@ def reconsider(situation: Situation, decision: Decision) -> Decision:
     if against >= 0:
         return decision
     verdict = _main_objection(situation.memories, decision.action)
-    safe = [a for a in situation.assessments if a.safe and a.action in BY_SPEED]
-    others = [a for a in safe if favour(situation.memories, a.action) > against]
+    ranks = {a.action: situation.scene.speed_rank(a.action) for a in situation.assessments}
+    safe = [(a, rank) for a in situation.assessments if a.safe and (rank := ranks[a.action]) is not None]
+    others = [(a, rank) for a, rank in safe if favour(situation.memories, a.action) > against]
     if verdict is Verdict.TOO_CAUTIOUS:
-        others = [a for a in others if BY_SPEED.index(a.action) > _speed(decision.action)]
+        taken = situation.scene.speed_rank(decision.action)
+        others = [(a, rank) for a, rank in others if taken is not None and rank > taken]
     if not others:
         return decision
-    return _changed(situation, decision, max(others, key=lambda a: _preference(situation.memories, a)).action, verdict)
+    best, _ = max(others, key=lambda pair: _preference(situation.memories, *pair))
+    return _changed(situation, decision, best.action, verdict)
 
 
 def favour(memories: Iterable[Memory], action: Action) -> float:
@@ -61,13 +60,9 @@ def _main_objection(memories: Iterable[Memory], action: Action) -> Verdict:
     )
 
 
-def _speed(action: Action) -> int:
-    return BY_SPEED.index(action) if action in BY_SPEED else len(BY_SPEED)
-
-
-def _preference(memories: Sequence[Memory], a: ActionAssessment) -> tuple[float, bool, float, int]:
+def _preference(memories: Sequence[Memory], a: ActionAssessment, rank: float) -> tuple[float, bool, float, float]:
     """What the memories say counts first, then whether the order is kept, how far the CAV gets, and braking less."""
-    return favour(memories, a.action), a.progress is not None, a.progress or 0.0, _speed(a.action)
+    return favour(memories, a.action), a.progress is not None, a.progress or 0.0, rank
 
 
 def _changed(situation: Situation, decision: Decision, other: Action, verdict: Verdict) -> Decision:

@@ -15,7 +15,7 @@ from codriving.datatypes.world import Action
 from codriving.reasoning.decision.cases import favour, reconsider
 from codriving.reasoning.decision.rules import RuleDecider, decide_one
 
-S, I, F = Action.SLOWER, Action.IDLE, Action.FASTER  # noqa: E741
+S, I, F, H = Action.SLOWER, Action.IDLE, Action.FASTER, Action.HOLD  # noqa: E741
 BAD, GOOD, SLOW = Verdict.INTENSIFIED, Verdict.EASED, Verdict.TOO_CAUTIOUS
 
 
@@ -47,6 +47,20 @@ def test_a_mistake_is_not_repeated_if_something_else_is_safe(alone: Situation) -
 def test_nothing_unsafe_is_done_to_avoid_a_mistake(alone: Situation) -> None:
     only = replace(alone, assessments=tuple(replace(a, safe=a.action is F) for a in alone.assessments))
     assert decided(only, memory(F, BAD)).action is F
+
+
+@pytest.mark.parametrize(("target", "instead"), [(9.0, I), (6.0, F), (3.0, H)])
+def test_what_is_faster_than_idle_follows_from_the_target_speed(
+    alone: Situation, target: float, instead: Action
+) -> None:
+    """At 6 m/s HOLD is slower than IDLE towards 9 m/s, as fast towards 6 m/s, and faster towards 3 m/s."""
+    scene = replace(alone.scene, intent=replace(alone.scene.intent, target_speed=target))
+    some = {9.0: (H, I), 6.0: (I, H, F), 3.0: (I, H)}[target]
+    assessed = tuple(ActionAssessment(a, True, (), (), {F: 80.0, I: 60.0, H: 50.0}[a]) for a in some)
+    situation = replace(alone, scene=scene, assessments=assessed)
+    taken = H if target == 9.0 else I
+    too_cautious = replace(situation, memories=(memory(taken, SLOW),))
+    assert reconsider(too_cautious, Decision("CAV1", taken, "")).action is instead
 
 
 def test_what_eased_the_conflict_is_preferred_to_what_gets_farther(alone: Situation) -> None:
