@@ -3,13 +3,13 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from codriving.version import __version__
+
 if TYPE_CHECKING:
     from codriving.experiment import Comparison, Results
     from codriving.gym import ParallelDriving
 
 __all__ = ["__version__", "compare", "parallel_env", "run"]
-
-__version__ = "0.2.0.dev0"
 
 
 def run(*overrides: str, config_dir: str | Path | None = None) -> "Results":

@@ -13,11 +13,11 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from codriving import __version__
 from codriving.cli.commands import ablate, check, compare, learn, list_choices, replay, run, train
 from codriving.cli.memory import memory
 from codriving.cli.streams import OutputError, give_up_output, mend_streams
 from codriving.errors import UserError
+from codriving.version import __version__
 
 _HOME = re.compile(r"\A(|--?[a-z-]+=)~(?=/|\Z)")
 

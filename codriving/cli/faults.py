@@ -11,8 +11,8 @@ from pathlib import Path
 
 from typer.exceptions import TyperException
 
-from codriving import __version__
 from codriving.config import GROUPS, ROOT
+from codriving.version import __version__
 
 _OURS = Path(__file__).resolve().parent.parent
 _INSTALLED = [Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib", "purelib", "platlib")]

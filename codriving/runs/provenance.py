@@ -8,9 +8,10 @@ from functools import cache, partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-# Packages that can change a result.
+from codriving.version import __version__
+
+# Packages that can change a result, besides this one.
 PACKAGES = (
-    "codriving",
     "faiss-cpu",
     "gymnasium",
     "highway-env",
@@ -26,7 +27,8 @@ PACKAGES = (
 
 def versions() -> dict[str, str]:
     """Return the version of Python and of each package that can change a result, if it is installed."""
-    found = {"python": platform.python_version()}
+    # Ours is asked itself: what is installed in editable form keeps the version at which it was installed.
+    found = {"python": platform.python_version(), "codriving": __version__}
     for name in PACKAGES:
         with suppress(PackageNotFoundError):
             found[name] = version(name)

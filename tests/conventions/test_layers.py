@@ -5,10 +5,11 @@ from graphlib import TopologicalSorter
 
 from source import PACKAGE, REPOSITORY, files, modules, targets
 
-EVERYWHERE = {"datatypes", "errors"}
+EVERYWHERE = {"datatypes", "errors", "version"}
 
 MAY_IMPORT = {
     "errors": set[str](),
+    "version": set(),
     "datatypes": set(),
     "geometry": set(),
     "environment": {"geometry"},
@@ -24,13 +25,13 @@ MAY_IMPORT = {
     "reports": {"metrics", "runs", "memory"},
     "config": set(),
     "experiment": {"config", "runs", "reports", "metrics", "memory", "animation"},
-    "cli": {"config", "experiment", "training", "__init__"},
+    "cli": {"config", "experiment", "training"},
     "scenarios": {"environment", "geometry"},
     "ordering": {"reasoning"},
     "__main__": {"cli"},
     "__init__": {"experiment", "gym"},
 }
-"""What each room may import besides itself, ``datatypes`` and ``errors``, for types and by names in texts included."""
+"""What each room may import besides itself and ``EVERYWHERE``, for types and by names in texts included."""
 
 DOORS = {
     "highway_env": "environment",
