@@ -62,7 +62,8 @@ Points = NDArray[np.float64]
 
 def look() -> tuple[RoadMap, WorldState, ReasonedDeliberation]:
     """Drive the episode up to the moment, and return what there was and what was decided."""
-    environment, method, _ = BuildObjects({"picture": compose([])})("picture")
+    objects = BuildObjects({"picture": compose([])})("picture")
+    environment, method = objects.environment, objects.method
     world = environment.reset(SEED)
     method.reset(environment.road_map, environment.driving_model, SEED)
     while True:

@@ -82,17 +82,31 @@ def test_every_scenario_has_its_picture() -> None:
             assert (DOCS / picture).is_file(), f"{page.name}: {picture}"
 
 
-def test_pictures_are_of_the_roads_as_they_are() -> None:
-    spec = importlib.util.spec_from_file_location("roads", DOCS / "images" / "roads.py")
+def drawing(name: str) -> Any:
+    """A program of docs/images."""
+    spec = importlib.util.spec_from_file_location(name, DOCS / "images" / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
-    roads = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(roads)
+    made = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(made)
+    return made
+
+
+def compare(drawn: str, file: str, program: str) -> None:
+    """The picture that is stored is the one that is drawn."""
+    stored = (DOCS / "images" / file).read_text(encoding="utf-8")
+    cure = f"draw {file} again: python docs/images/{program}"
+    assert NUMBER.sub("#", drawn) == NUMBER.sub("#", stored), cure
+    # Another processor may round the last digit otherwise.
+    one, other = ([float(number) for number in NUMBER.findall(text)] for text in (drawn, stored))
+    assert one == pytest.approx(other, abs=0.11), cure
+
+
+def test_pictures_are_of_the_roads_as_they_are() -> None:
+    roads = drawing("roads")
     for scenario in choices("scenario"):
-        stored = (DOCS / "images" / f"road-{scenario}.svg").read_text(encoding="utf-8")
-        drawn = roads.draw(scenario)
-        cure = f"draw road-{scenario}.svg again: python docs/images/roads.py"
-        assert NUMBER.sub("#", drawn) == NUMBER.sub("#", stored), cure
-        # Another processor may round the last digit otherwise.
-        one, other = ([float(number) for number in NUMBER.findall(text)] for text in (drawn, stored))
-        assert one == pytest.approx(other, abs=0.11), cure
+        compare(roads.draw(scenario), f"road-{scenario}.svg", "roads.py")
+
+
+def test_picture_of_the_readme_is_of_what_is_driven() -> None:
+    compare(drawing("intersection").draw(), "intersection.svg", "intersection.py")
