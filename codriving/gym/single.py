@@ -65,7 +65,8 @@ class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
         **settings: Any,  # noqa: ANN401 - whatever the scenario's keys take
     ) -> None:
         full, _ = configured(name, overrides, "full", None, settings)
-        self.environment = Environment(OneCav(full.scenario), full.control, full.drivers, full.corrections, full.limits)
+        world = full.control, full.drivers, full.corrections, full.limits
+        self.environment = Environment(OneCav(full.scenario), *world, steady=full.driving_model.steady)
         observing = observer(self.environment)
         self._drive = AgentEpisode(self.environment, observing, reward_weights(reward))
         (self._cav,) = self._drive.cavs

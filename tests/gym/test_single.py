@@ -7,6 +7,7 @@ from gymnasium.utils.env_checker import check_env
 from codriving.config.choices import choices
 from codriving.datatypes.world import Kind, WorldState
 from codriving.environment.environment import Environment
+from codriving.errors import EpisodeError
 from codriving.gym.actions import ACTIONS, FIRST_DRAWN
 from codriving.gym.configured import configured
 from codriving.gym.observation import FloatArray
@@ -38,7 +39,21 @@ def make(name: str = "intersection", **settings: object) -> SingleDriving:
 
 @pytest.mark.parametrize("name", choices("scenario"))
 def test_passes_the_check_of_gymnasium(name: str) -> None:
-    check_env(make(name), skip_render_check=True)
+    env = make(name)
+    env.action_space.seed(0)
+    check_env(env, skip_render_check=True)
+
+
+@pytest.mark.parametrize("steady", [False, True])
+def test_hold_is_an_action_where_it_is_one_in_a_run(steady: bool) -> None:
+    env = SingleDriving("intersection", Speedometer, ACTIONS, [f"environment.steady={str(steady).lower()}"])
+    assert env.environment.driving_model.steady is steady
+    env.reset(seed=10_000)
+    if steady:
+        env.step(np.int64(5))
+    else:
+        with pytest.raises(EpisodeError, match=r"must be one of 0 SLOWER, .*4 LANE_RIGHT; got 5"):
+            env.step(np.int64(5))
 
 
 @pytest.mark.parametrize("name", choices("scenario"))
