@@ -165,6 +165,31 @@ def test_two_worlds_in_one_table(typed: Typed) -> None:
     assert {"suite=default", "suite=paper"} == {
         path.name.rpartition("-")[2] for path in Path("outputs/run/x/episodes").iterdir()
     }
+    assert "choose one with --cell" in typed("replay", "x", "--frame", "1")[2]
+    for suite in ("default", "paper"):
+        code, out, err = typed("replay", "x", f"suite={suite}", "--frame", "1")
+        assert code == 0, err
+        assert f"suite={suite}/0/frame-1s.png" in out
+
+
+@pytest.mark.parametrize(
+    ("tokens", "said"),
+    [
+        (("suite=default",), "nothing in outputs/run/x was driven in the world of suite=default; leave it out"),
+        (("suite=papr",), "unknown suite 'papr'; choices: default, paper"),
+        (
+            ("scenario.cavs=3",),
+            "replay takes no setting but one suite=NAME, which chooses a row, got scenario.cavs=3",
+        ),
+        (("suite=paper", "suite=default"), "replay takes no setting but one suite=NAME"),
+        (("suite=",), "replay takes no setting but one suite=NAME"),
+    ],
+)
+def test_replay_takes_the_row_of_a_world_and_no_other_setting(typed: Typed, tokens: tuple[str, ...], said: str) -> None:
+    assert typed("run", *SHORT, "episodes=1")[0] == 0
+    code, _, err = typed("replay", "x", *tokens, "--frame", "1")
+    assert (code, err.count("\n")) == (2, 1)
+    assert said in err
 
 
 def test_the_first_run_beside_those_of_0_1_says_that_the_world_has_changed(typed: Typed) -> None:

@@ -74,6 +74,10 @@ def check(overrides: Overrides = None, config_dir: ConfigDir = None) -> None:
 
 def replay(
     run: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder, or the name of one under outputs/.")],
+    overrides: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[suite=NAME]", help="The row that was driven in this world, if there are several."),
+    ] = None,
     episode: Annotated[int | None, typer.Option(metavar="N", help="Its seed; the first one if not given.")] = None,
     cell: Annotated[
         str | None, typer.Option(metavar="NAME", help="Which row of the table, or a part of its name; for a sweep.")
@@ -93,7 +97,8 @@ def replay(
     """Show a stored episode: road, vehicles, conflicts, what every CAV decides and why."""
     from codriving.experiment import ReplayOptions, run_replay
 
-    print(run_replay(run, ReplayOptions(cell, episode, format, out, speed, fps, scale, frame, config_dir)))
+    options = ReplayOptions(cell, episode, format, out, speed, fps, scale, frame, config_dir, tuple(overrides or ()))
+    print(run_replay(run, options))
 
 
 def train(

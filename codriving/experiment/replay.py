@@ -7,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from codriving.config import SUITE
 from codriving.errors import ConfigError, RunFolderError
 from codriving.experiment.stored import find_episode, read_film, road_of
 from codriving.runs import whole_file
@@ -36,6 +37,7 @@ class ReplayOptions:
     scale: float = 1.0
     frame: float | None = None  # Simulated time of a single picture [s]; None makes a film
     config_dir: Path | None = None
+    overrides: tuple[str, ...] = ()  # ``suite=NAME`` or nothing
 
 
 def run_replay(run: Path, options: ReplayOptions) -> str:
@@ -46,7 +48,7 @@ def run_replay(run: Path, options: ReplayOptions) -> str:
     """
     kind = _kind(options)
     rate, speed = _pace(options, kind)
-    episode = find_episode(run, options.cell, options.episode)
+    episode = find_episode(run, options.cell, options.episode, _suite(options), options.config_dir)
     name = f"replay.{kind}" if options.frame is None else f"frame-{options.frame:g}s.png"
     path = _target(options, episode.folder / name)
     show = read_film(episode.folder, road_of(episode.cell, options.config_dir), options.scale)
@@ -65,6 +67,17 @@ def run_replay(run: Path, options: ReplayOptions) -> str:
     except OSError as error:
         raise RunFolderError(f"cannot write {path}: {error.strerror or error}; choose another --out") from error
     return f"Wrote {path}: {show.duration:.1f} s of seed {episode.seed}, {count} frames, {size:.1f} MB."
+
+
+def _suite(options: ReplayOptions) -> str | None:
+    """The suite in whose world the row to show was driven; None if none is named."""
+    names = [token.partition("=") for token in options.overrides]
+    if len(names) > 1 or any(key != SUITE or not name for key, _, name in names):
+        raise ConfigError(
+            f"replay takes no setting but one {SUITE}=NAME, which chooses a row, got {' '.join(options.overrides)}; "
+            "the run folder says with which settings it was driven"
+        )
+    return names[0][2] if names else None
 
 
 def _kind(options: ReplayOptions) -> str:

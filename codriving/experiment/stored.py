@@ -1,12 +1,12 @@
 """Stored episodes: found in a run folder by cell and seed, and read back without the simulator."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from codriving.config import TARGET, build, choices, compose
+from codriving.config import SUITE, TARGET, build, check_choice, choices, compose
 from codriving.datatypes import Road, Scenario
 from codriving.errors import RunFolderError
 from codriving.runs import (
@@ -20,6 +20,7 @@ from codriving.runs import (
     read_manifest,
     read_record,
     read_trajectory,
+    settings_of,
     within,
 )
 
@@ -56,10 +57,13 @@ def find_run(run: Path) -> tuple[Path, Manifest]:
     return places[0], manifest
 
 
-def find_episode(run: Path, cell: str | None, seed: int | None) -> StoredEpisode:
-    """Find an episode."""
+def find_episode(
+    run: Path, cell: str | None, seed: int | None, suite: str | None = None, config_dir: Path | None = None
+) -> StoredEpisode:
+    """Find an episode, of the cell that is named or of the one that was driven in the world of a suite."""
     run, manifest = find_run(run)
-    entry = _cell(run, manifest, cell)
+    cells = manifest.cells if suite is None else _driven_in(run, manifest.cells, suite, config_dir)
+    entry = _cell(run, cells, cell)
     episodes = within(run, run / EPISODES / entry.folder)
     seeds = sorted(
         int(path.name) for path in episodes.glob("*") if path.is_dir() and path.name.isascii() and path.name.isdigit()
@@ -123,14 +127,28 @@ def _filled(node: object, values: object) -> Any:  # noqa: ANN401 - any plain va
     return values
 
 
-def _cell(run: Path, manifest: Manifest, name: str | None) -> CellEntry:
-    folders = [cell.folder for cell in manifest.cells]
+def _driven_in(run: Path, cells: Sequence[CellEntry], suite: str, config_dir: Path | None) -> list[CellEntry]:
+    """Keep the cells whose environment is that of a suite."""
+    check_choice(SUITE, suite, config_dir)
+    settings = settings_of(compose([f"{SUITE}={suite}"], config_dir))
+    found = [cell for cell in cells if _environment(cell.settings) == _environment(settings)]
+    if not found:
+        raise RunFolderError(f"nothing in {run} was driven in the world of {SUITE}={suite}; leave it out")
+    return found
+
+
+def _environment(settings: Mapping[str, str]) -> dict[str, str]:
+    return {key: value for key, value in settings.items() if key.startswith("environment.")}
+
+
+def _cell(run: Path, cells: Sequence[CellEntry], name: str | None) -> CellEntry:
+    folders = [cell.folder for cell in cells]
     if name is None:
         if len(folders) > 1:
             raise RunFolderError(f"{run} holds {len(folders)} cells; choose one with --cell: {', '.join(folders)}")
-        return manifest.cells[0]
-    matches = [cell for cell in manifest.cells if cell.folder == name]
-    matches = matches or [cell for cell in manifest.cells if name in cell.folder]
+        return cells[0]
+    matches = [cell for cell in cells if cell.folder == name]
+    matches = matches or [cell for cell in cells if name in cell.folder]
     if len(matches) == 1:
         return matches[0]
     if matches:
