@@ -92,7 +92,7 @@ class Outcome:
 
     ending: Ending
     time: float  # Simulated time at the end [s]
-    arrivals: dict[str, float]  # FlowArrival time of each CAV that arrived, and of each vehicle of a flow [s], by id
+    arrivals: dict[str, float]  # Time of each CAV that arrived, and of each vehicle of a flow [s], by id
     collision: Collision | None = None
     bystander_collisions: tuple[Collision, ...] = ()
     off_road: tuple[str, ...] = ()

@@ -5,12 +5,12 @@ from typing import Any
 
 from codriving.datatypes import Ending
 from codriving.metrics import FEWEST, mean_interval, rate_interval
-from codriving.reports.columns import Column, Table, Value, mean, share, swept_columns, table
+from codriving.reports.columns import Column, Table, Value, mean, swept_columns, table
 from codriving.reports.episodes import MEMORY, counter_columns, number_columns
 from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.results import LABELS, CellResults, ScoredEpisode, named_numbers
-from codriving.reports.summary import ASKED_COLUMNS, CPU, RunTables, labels, model_notes, remarks
-from codriving.reports.wording import fixed, milliseconds, percent, stand_in_notes, title
+from codriving.reports.summary import ASKED_COLUMNS, BY_KEY, CPU, RunTables, labels, model_notes, remarks
+from codriving.reports.wording import fixed, milliseconds, stand_in_notes, title
 
 # What has an interval: key, its head, and decimals on the screen and in Markdown.
 SHOWN = (
@@ -34,15 +34,6 @@ NOTES = (
 
 SEEDS: Column[CellResults] = Column("count", lambda c: _count(c), "seeds", csv=False, rank=6)
 
-ERRORS: Column[CellResults] = Column(
-    "error_rate",
-    lambda c: share(len(c.records) - len(c.completed), len(c.records)),
-    "error",
-    percent,
-    sparse=True,
-    rank=1,
-)
-
 
 def flow_tables(cells: Sequence[CellResults], metrics: str, notes: Iterable[str] = ()) -> RunTables:
     """Make all tables of a run of flows."""
@@ -60,7 +51,7 @@ def flow_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Table
         Column("episodes", lambda c: len(c.records)),
         Column("completed", lambda c: len(c.completed)),
         SEEDS,
-        ERRORS,
+        BY_KEY["error_rate"],
         Column("demand", lambda c: c.numbers.get("demand"), "demand [1/h]", lambda value: fixed(value, 0), rank=5),
         *(column for key, head, digits in SHOWN[:2] for column in _measured(key, head, digits)),
         *_columns(COLLISIONS, "collisions per 1,000", 1, _collision_rate, rank=1),

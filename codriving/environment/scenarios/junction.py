@@ -112,7 +112,7 @@ class JunctionScenario(PlacedScenario):
             return self.placed(seed)
         scene = self.placed(seed, lambda starts: bool(self._blockable(starts)))
         exits = self._blockable(scene.starts)
-        # Drawn apart, so that a blocked exit changes nothing else.
+        # Drawn apart, so that which exit is blocked changes no start.
         rng = np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(3,)))
         lane = exits[int(rng.integers(len(exits)))]
         route = next(r for r in self.road.routes if r.lanes[-1] == lane and r.turn is Turn.STRAIGHT)

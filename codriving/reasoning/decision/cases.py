@@ -28,11 +28,11 @@ def reconsider(situation: Situation, decision: Decision) -> Decision:
     if against >= 0:
         return decision
     verdict = _main_objection(situation.memories, decision.action)
-    ranks = {a.action: situation.scene.speed_rank(a.action) for a in situation.assessments}
-    safe = [(a, rank) for a in situation.assessments if a.safe and (rank := ranks[a.action]) is not None]
+    rank_of = situation.scene.speed_rank
+    safe = [(a, rank) for a in situation.assessments if a.safe and (rank := rank_of(a.action)) is not None]
     others = [(a, rank) for a, rank in safe if favour(situation.memories, a.action) > against]
     if verdict is Verdict.TOO_CAUTIOUS:
-        taken = situation.scene.speed_rank(decision.action)
+        taken = rank_of(decision.action)
         others = [(a, rank) for a, rank in others if taken is not None and rank > taken]
     if not others:
         return decision

@@ -8,10 +8,8 @@ from codriving.datatypes import Action, Decision, Role, SceneDescription, Situat
 from codriving.reasoning.decision.cases import reconsider
 from codriving.reasoning.prediction.reversals import reverses
 
-# Actions along the lane from the most to the least progress; IDLE and HOLD in the other order while a CAV slows down.
+# Actions along the lane from the most to the least progress; where IDLE and HOLD are as fast, IDLE is taken.
 EAGERNESS = (Action.FASTER, Action.IDLE, Action.HOLD, Action.SLOWER)
-
-SLOWING = (Action.FASTER, Action.HOLD, Action.IDLE, Action.SLOWER)
 
 SIDES = {Action.LANE_LEFT: -1, Action.LANE_RIGHT: 1}  # By how much a lane change changes the index of the lane
 
@@ -53,8 +51,7 @@ def decide_one(situation: Situation) -> Decision:
     """
     scene, ego = situation.scene, situation.scene.ego.id
     allowed = [action for action in EAGERNESS if action in situation.allowed]
-    if scene.intent.target_speed < scene.ego.speed:
-        allowed.sort(key=SLOWING.index)
+    allowed.sort(key=lambda action: scene.speed_rank(action) or 0.0, reverse=True)
     if any(a.safe and a.reasons for a in situation.assessments):
         least = situation.allowed[0]
         return Decision(ego, least, f"no action is safe, and {least} is the least dangerous")
