@@ -7,13 +7,14 @@ command and the versions that made it, and the pages are written from these file
 
 import argparse
 import csv
+import io
 import json
 import re
 import shlex
 import string
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,9 +22,13 @@ from typing import Any
 
 import yaml
 
+from codriving.runs import BEHAVIOUR
+from codriving.version import __version__
+
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 PAGES = ("README.md", "docs/results.md")
+BENCH = "bench "  # How a command begins that is a benchmark
 KEYS = ("scenario", "method", "variant")  # What tells the rows of a run apart; rows of several runs are joined by them
 BEGIN, END = "<!-- table {}: made by make tables -->", "<!-- end of table {} -->"
 TABLE = re.compile(r"<!-- table (?P<name>[\w-]+): made by make tables -->\n.*?<!-- end of table (?P=name) -->", re.S)
@@ -44,6 +49,13 @@ class Numbers:
     version: str
     behaviour: int
     rows: tuple[Mapping[str, Value], ...]
+
+    @property
+    def shown(self) -> str:
+        """The command as it is typed."""
+        if not self.command.startswith(BENCH):
+            return f"codriving {self.command}"
+        return f'make bench ARGS="{self.command.removeprefix(BENCH)}"'
 
     @classmethod
     def read(cls, file: Path) -> "Numbers":
@@ -111,7 +123,7 @@ def markdown(name: str, spec: Mapping[str, Any]) -> str:
     lines = [f"| {' | '.join(line)} |" for line in (list(columns), *found)]
     lines.insert(1, f"|{'|'.join(align)}|")
     used = [run for runs in worlds.values() for run in runs]
-    made = [f"`codriving {run.command}` (version {run.version}, behaviour {run.behaviour})" for run in used]
+    made = [f"`{run.shown}` (version {run.version}, behaviour {run.behaviour})" for run in used]
     text = "\n".join((BEGIN.format(name), *lines, "", *_sentences(made), END.format(name)))
     return re.sub(" +[|]", " |", text)
 
@@ -121,7 +133,15 @@ def _sentences(made: Sequence[str]) -> list[str]:
 
 
 def drive(run: str, command: str) -> None:
-    """Run a command in the root, resuming its folder, and keep its summary."""
+    """Run a command in the root, resuming its folder, and keep its summary; or a benchmark, and keep its rows."""
+    if command.startswith(BENCH):
+        words = [sys.executable, "-m", "benchmarks", *shlex.split(command.removeprefix(BENCH)), "--json"]
+        bench = subprocess.run(words, cwd=ROOT, check=False, stdout=subprocess.PIPE, text=True)
+        if bench.returncode:
+            raise TableError(f"{command} ended with {bench.returncode}")
+        made = {"command": command, "version": __version__, "behaviour": BEHAVIOUR}
+        keep(HERE / f"{run}.csv", made, wide([json.loads(line) for line in bench.stdout.splitlines()]))
+        return
     words = [*shlex.split(command), f"run=tables-{run}"]
     done = subprocess.run([sys.executable, "-m", "codriving", *words], cwd=ROOT, check=False)
     if done.returncode:
@@ -131,8 +151,25 @@ def drive(run: str, command: str) -> None:
         raise TableError(f"expected one folder outputs/*/tables-{run}, found {len(folders)}")
     manifest = json.loads((folders[0] / "manifest.json").read_text(encoding="utf-8"))
     made = {"command": command, "version": manifest["versions"]["codriving"], "behaviour": manifest["behaviour"]}
-    text = (folders[0] / "summary.csv").read_text(encoding="utf-8")
-    (HERE / f"{run}.csv").write_text(f"# {json.dumps(made)}\n{text}", encoding="utf-8", newline="\n")
+    keep(HERE / f"{run}.csv", made, (folders[0] / "summary.csv").read_text(encoding="utf-8"))
+
+
+def wide(rows: Iterable[Mapping[str, Value]]) -> str:
+    """Write the rows of a benchmark, one a scenario and world, as CSV with one row a scenario."""
+    found: dict[Value, dict[str, Value]] = {}
+    for row in rows:
+        of = found.setdefault(row["scenario"], {"scenario": row["scenario"], "method": "codriving", "variant": ""})
+        of |= {f"{row['world']}_{key}": value for key, value in row.items() if key not in ("scenario", "world")}
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(next(iter(found.values()))), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(found.values())
+    return text.getvalue()
+
+
+def keep(file: Path, made: Mapping[str, str | int], text: str) -> None:
+    """Keep a summary, below the line that says what made it."""
+    file.write_text(f"# {json.dumps(made)}\n{text}", encoding="utf-8", newline="\n")
 
 
 def rewritten(page: str, tables: Mapping[str, Mapping[str, Any]]) -> str:

@@ -61,6 +61,25 @@ def test_rows_of_several_runs_stand_side_by_side_with_what_made_them(made: Path)
     assert PROGRAM["markdown"]("one", SPEC) == TABLE
 
 
+def test_rows_of_a_benchmark_are_one_a_scenario_below_the_command_as_it_is_typed(made: Path) -> None:
+    rows = [{"scenario": s, "world": w, "braking": b} for s, w, b in (("merge", "x", 8.0), ("merge", "y", 7.5))]
+    text = PROGRAM["wide"](rows)
+    assert text == "scenario,method,variant,x_braking,y_braking\nmerge,codriving,,8.0,7.5\n"
+    about = {"command": "bench --only worlds", "version": "0.2.0", "behaviour": 3}
+    PROGRAM["keep"](made / "limits.csv", about, text)
+    spec = {"runs": {"found": ["limits"]}, "columns": {"at": "{scenario}", "y": "{found.y_braking:.1f}"}}
+    lines = PROGRAM["markdown"]("one", spec).splitlines()
+    assert lines[3:6] == ["| merge | 7.5 |", "", 'From `make bench ARGS="--only worlds"` (version 0.2.0, behaviour 3).']
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/results.md"])
+def test_what_is_measured_stands_in_tables_that_are_made(page: str) -> None:
+    by_hand = PROGRAM["TABLE"].sub("", (ROOT / page).read_text(encoding="utf-8"))
+    heads = [line for line in by_hand.splitlines() if line.startswith("|---")]
+    # Tables of words, whose columns are not aligned as numbers are, may be written by hand.
+    assert not [head for head in heads if "--:" in head]
+
+
 def write(folder: Path, page: str, spec: Mapping[str, Any]) -> None:
     (folder / "page.md").write_text(page, encoding="utf-8")
     (folder / "tables.yaml").write_text(json.dumps({"runs": {}, "tables": spec}), encoding="utf-8")
