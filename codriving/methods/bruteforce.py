@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 from codriving.datatypes import Instance
 from codriving.errors import EpisodeError
-from codriving.methods.order_search import Coded, Found, Prefix, SearchedOrder
-from codriving.reasoning import JointPlanner, Ordering
+from codriving.reasoning import Coded, Found, JointPlanner, Ordering, Prefix, SearchedOrder
 
 MOST = 10  # Vehicles that are ordered at most
 

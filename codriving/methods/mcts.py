@@ -5,7 +5,7 @@ from math import inf, log, sqrt
 from random import Random
 
 from codriving.errors import require_range
-from codriving.methods.order_search import Coded, Found, Prefix, SearchedOrder
+from codriving.reasoning import Coded, Found, Prefix, SearchedOrder
 
 STRIDE = 1_000_003  # Seeds of two episodes lie so far apart that their steps never share a seed
 

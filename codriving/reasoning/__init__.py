@@ -7,6 +7,7 @@ from codriving.reasoning.execution.lane_requests import LaneRequests
 from codriving.reasoning.execution.planned import Drive, Executor, humans_expected
 from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator, agreement
 from codriving.reasoning.ordering.negotiation import AgreedOrder, Negotiation, OwnOrders
+from codriving.reasoning.ordering.order_search import Coded, Found, Prefix, SearchedOrder
 from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
 from codriving.reasoning.ordering.problem import Problem, pose
 from codriving.reasoning.ordering.protocol import (
@@ -25,7 +26,6 @@ from codriving.reasoning.ordering.schedule import (
     carried_over,
     evacuation_time,
     inserted,
-    left,
     repaired,
     schedule,
     sequence,
@@ -55,15 +55,15 @@ from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, 
 from codriving.reasoning.sharing.tracking import STANDING, Places, Tracking
 
 __all__ = [
-    "ALIGNED", "CONTINUATIONS", "CONTROL_RADIUS", "HIDDEN_INTENTS", "HORIZON", "LANE_END_GAP",
-    "LONGEST_WAIT", "LONGITUDINAL", "OPEN", "SAME_LANE", "SHARED_INTENTS", "SIDES", "SLOWEST", "STANDING",
-    "AgreedOrder", "CdaLevel", "Coordinator", "Decider", "Drive", "Executor", "Expected", "Forecast",
-    "IntelligentDriver", "JointPlan", "JointPlanner", "LaneRequests", "Moment", "Negotiation", "NoCheck", "Objective",
-    "OrderRule", "Ordering", "OwnOrders", "Perception", "Places", "Plan", "Premise", "Problem", "Request",
-    "RuleCoordinator", "RuleDecider", "SafetyCheck", "SafetyInput", "SensedStates", "SharedStates", "ThreeLayers",
-    "TicketBook", "Tracking", "after_windows", "agreement", "best_subset", "by_slot", "by_ticket", "carried_over",
-    "clear_time", "decide_one", "describe_scenes", "evacuation_time", "expect_all", "favour", "find_circle",
-    "find_conflicts", "humans_expected", "in_order", "inserted", "is_behind", "is_open", "is_plain", "left",
+    "ALIGNED", "CONTINUATIONS", "CONTROL_RADIUS", "HIDDEN_INTENTS", "HORIZON", "LANE_END_GAP", "LONGEST_WAIT",
+    "LONGITUDINAL", "OPEN", "SAME_LANE", "SHARED_INTENTS", "SIDES", "SLOWEST", "STANDING", "AgreedOrder", "CdaLevel",
+    "Coded", "Coordinator", "Decider", "Drive", "Executor", "Expected", "Forecast", "Found", "IntelligentDriver",
+    "JointPlan", "JointPlanner", "LaneRequests", "Moment", "Negotiation", "NoCheck", "Objective", "OrderRule",
+    "Ordering", "OwnOrders", "Perception", "Places", "Plan", "Prefix", "Premise", "Problem", "Request",
+    "RuleCoordinator", "RuleDecider", "SafetyCheck", "SafetyInput", "SearchedOrder", "SensedStates", "SharedStates",
+    "ThreeLayers", "TicketBook", "Tracking", "after_windows", "agreement", "best_subset", "by_slot", "by_ticket",
+    "carried_over", "clear_time", "decide_one", "describe_scenes", "evacuation_time", "expect_all", "favour",
+    "find_circle", "find_conflicts", "humans_expected", "in_order", "inserted", "is_behind", "is_open", "is_plain",
     "open_pairs", "plan_library", "pose", "premise", "reasons", "repaired", "rollout", "safety_input", "schedule",
     "sequence", "single_vehicle_perception", "stays_behind", "then_stop", "timed", "total_delay", "ttcp", "with_roles",
 ]  # fmt: skip

@@ -15,7 +15,7 @@ from codriving.methods.bruteforce import BruteForce
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.idfst import SpanningTree
 from codriving.methods.mcts import MonteCarloTreeSearch, TreeSearch
-from codriving.methods.order_search import Coded
+from codriving.reasoning.ordering.order_search import Coded
 from codriving.reasoning.ordering.protocol import Request
 from codriving.reasoning.ordering.schedule import Objective, schedule, timed, total_delay
 

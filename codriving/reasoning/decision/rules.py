@@ -31,6 +31,10 @@ HEADWAY = 2.0  # The vehicle ahead is not to be considered if the CAV stays this
 class Decider(ABC):
     """Decides for all vehicles in one call; rules and language models alike."""
 
+    def reset(self, seed: int) -> None:
+        """Begin an episode: the seed is for what is drawn at random."""
+        return None
+
     @abstractmethod
     def decide(self, situations: Sequence[Situation]) -> list[Decision]:
         """Return one decision a situation, in the same order."""
@@ -66,9 +70,10 @@ def decide_one(situation: Situation) -> Decision:
     ahead = {action: gain for action, gain in reached.items() if action in allowed}
     if not ahead:
         # Standing does not help a vehicle that has to go first; something safe has to be done.
-        action, how = (allowed[0], "fastest") if situation.scene.ego.speed < STANDS else (allowed[-1], "slowest")
+        slow = situation.scene.ego.speed < STANDS
+        action, how = (allowed[0], "the fastest") if slow else (allowed[-1], "the slowest")
         kept = f"the order cannot be kept with {waits_for or 'others'}"
-        return Decision(ego, action, f"{kept}; {action} is the {how} action that is safe")
+        return Decision(ego, action, f"{kept}; {action} is {how} action that is safe")
     best = max(ahead.values())
     # A plan that gets nowhere and reverses is worth less than nothing.
     enough = min(best, best * (1 - TOLERANCE))

@@ -14,7 +14,7 @@ from codriving.methods.bruteforce import BruteForce
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.idfst import SpanningTree
 from codriving.methods.mcts import MonteCarloTreeSearch
-from codriving.methods.order_search import Coded, joined
+from codriving.reasoning.ordering.order_search import Coded, joined
 from codriving.reasoning.ordering.protocol import OrderRule
 from codriving.reasoning.ordering.schedule import (
     Objective,

@@ -7,22 +7,19 @@ from math import inf, isfinite
 
 from codriving.datatypes import Instance
 from codriving.errors import require_range
-from codriving.reasoning import (
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule
+from codriving.reasoning.ordering.schedule import (
     LONGEST_WAIT,
-    JointPlanner,
     Objective,
-    Ordering,
-    OrderRule,
-    TicketBook,
     after_windows,
     carried_over,
     inserted,
     left,
-    reasons,
     repaired,
     sequence,
     timed,
 )
+from codriving.reasoning.ordering.tickets import TicketBook, reasons
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,40 @@
+"""Controls are codriving but for one part, and each table says that they are controls."""
+
+import pytest
+from worlds import Junction, car
+
+from codriving.config.build import build
+from codriving.config.compose import compose
+from codriving.datatypes.parts import CaseMemory, Model, RuleModel
+from codriving.methods.codriving import CoDriving
+from codriving.methods.control import Control
+
+
+def built(*overrides: str) -> CoDriving:
+    """Return a method as it is configured."""
+    node = compose(overrides)["method"]
+    return build(node, CoDriving, "method", given={Model: RuleModel(), CaseMemory: None})
+
+
+@pytest.mark.parametrize("name", ["fastest", "random_action"])
+def test_a_control_says_in_each_table_that_it_is_one(name: str, junction: Junction) -> None:
+    control = built(f"method={name}")
+    assert isinstance(control, Control)
+    assert (control.name, control.variant, control.reasoner) == (name, "control", "rules")
+    assert built(f"method={name}", "cda.safety_check=false").variant == "control/no_safety_check"
+    assert control.remark(junction.road_map.road, {}).startswith(f"{name}: a control and no method: codriving in which")
+
+
+@pytest.mark.parametrize("name", ["fastest", "random_action"])
+def test_a_control_knows_what_codriving_knows(name: str, junction: Junction) -> None:
+    world = junction.world(
+        car("CAV1", "south-north", 60.0, 6.0, 9.0), car("CAV2", "west-east", 40.0, 8.0), car("HDV1", "east-west", 20, 7)
+    )
+    lines = []
+    for method in (built(f"method={name}"), built()):
+        method.reset(junction.road_map, junction.model, 3)
+        lines.append(method.act(world).as_dict()["cavs"])
+    for mine, theirs in zip(*lines, strict=True):
+        differs = {key for key in mine if mine[key] != theirs[key]}
+        assert differs <= {"action", "reason"}
+        assert mine["action"] in mine["allowed"]
