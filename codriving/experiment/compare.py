@@ -8,11 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from codriving.config import (
+    SUITE,
     TABLES,
     Point,
     check_choice,
     choices,
     config_folder,
+    describe,
     expand,
     experiments_dir,
     parse,
@@ -30,6 +32,8 @@ from codriving.experiment.run import Command
 from codriving.reports import (
     METHOD_CHOICE,
     CellResults,
+    Compared,
+    Condition,
     comparison_rows,
     comparison_table,
     cpu_per_decision,
@@ -43,7 +47,9 @@ from codriving.reports import (
     print_flows,
     print_loads,
     print_pairs,
+    profile_figure,
     read_paper,
+    with_corrected,
 )
 
 if TYPE_CHECKING:
@@ -143,14 +149,37 @@ def make_comparison(table: str, driven: Driven) -> Outputs:
     blocks: dict[str, list[CellResults]] = {}
     for cell, results in _results(driven):
         blocks.setdefault(setting(cell.resolved), []).append(results)
-    rows = [row for block in blocks.values() for row in comparison_rows(block, taking_part(table), paper)]
+    rows = with_corrected(
+        [row for block in blocks.values() for row in comparison_rows(block, taking_part(table), paper)]
+    )
     swept = tuple(dict.fromkeys(key for block in blocks.values() for results in block for key in results.swept))
     whole = comparison_table(rows, swept)
-    kept, printed = (print_comparison(rows, metrics, swept, screen) for screen in (False, True))
-    against = print_pairs(rows, metrics, swept)
-    page = markdown_text(kept) + (f"\n{markdown_text(against, level=2)}" if against else "")
-    files = {"comparison.csv": whole.csv().encode(), "comparison.md": page.encode()}
-    return Outputs(files, (printed, against) if against else (printed,), (whole,))
+    pages, printed = [], []
+    conditions = _conditions(rows)
+    for condition, members in conditions:
+        # One table a suite, which its title names.
+        keys = tuple(key for key in swept if not condition.name or key != SUITE)
+        kept, screen = (print_comparison(members, metrics, keys, screen, condition) for screen in (False, True))
+        against = print_pairs(members, metrics, keys, condition)
+        pages += [markdown_text(kept), *([markdown_text(against, level=2)] if against else [])]
+        printed += [screen, *([against] if against else [])]
+    files = {"comparison.csv": whole.csv().encode(), "comparison.md": "\n".join(pages).encode()}
+    if len(conditions) > 1:
+        figures = profile_figure([(c.name, members) for c, members in conditions], metrics)
+        files |= {f"figures/{name}": content for name, content in figures.items()}
+    return Outputs(files, tuple(printed), (whole,))
+
+
+def _conditions(rows: Sequence[Compared]) -> list[tuple[Condition, list[Compared]]]:
+    """Part the rows of a comparison by suite, if several were driven."""
+    groups: dict[str, list[Compared]] = {}
+    for row in rows:
+        groups.setdefault(row.swept.get(SUITE, ""), []).append(row)
+    last, files = next(reversed(groups), ""), choices(SUITE)
+    return [
+        (Condition(name, describe(files[name]) if name in files else "", name == last), members)
+        for name, members in groups.items()
+    ]
 
 
 def _compared_flows(driven: Driven) -> Outputs:

@@ -1,8 +1,17 @@
 """Trajectory -> score: success, near misses, velocity, comfort and delay; and what is counted of a flow."""
 
-from codriving.metrics.intervals import FEWEST, RESAMPLES, mcnemar, mean_interval, rate_interval, wilson_interval
+from codriving.metrics.intervals import (
+    FEWEST,
+    RESAMPLES,
+    holm,
+    mcnemar,
+    mean_interval,
+    rate_interval,
+    wilson_interval,
+)
 from codriving.metrics.scorer import Scorer, with_alone
 
 __all__ = [
-    "FEWEST", "RESAMPLES", "Scorer", "mcnemar", "mean_interval", "rate_interval", "wilson_interval", "with_alone",
+    "FEWEST", "RESAMPLES", "Scorer", "holm", "mcnemar", "mean_interval", "rate_interval", "wilson_interval",
+    "with_alone",
 ]  # fmt: skip

@@ -57,6 +57,19 @@ def mcnemar(only_first: int, only_second: int) -> float:
     return float(binomtest(only_first, trials).pvalue)
 
 
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Correct the p-values of several tests for their number (S. Holm, 1979).
+
+    Returns:
+        In the same order; below 0.05 are those that may be called different together, with 5 % risk of a single error.
+    """
+    corrected, least = [0.0] * len(p_values), 0.0
+    for rank, index in enumerate(sorted(range(len(p_values)), key=lambda k: p_values[k])):
+        least = max(least, min(1.0, (len(p_values) - rank) * p_values[index]))
+        corrected[index] = least
+    return corrected
+
+
 def mean_interval(
     differences: Sequence[float], confidence: float = 0.95, resamples: int = RESAMPLES
 ) -> tuple[float, float] | None:

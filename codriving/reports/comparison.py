@@ -2,14 +2,13 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from itertools import chain
 from typing import Any
 
 from codriving.metrics import FEWEST, RESAMPLES
 from codriving.reports.columns import Column, Table, Value, swept_columns, table
 from codriving.reports.episodes import number_columns
-from codriving.reports.pairs import PAIRED, PairedCells
+from codriving.reports.pairs import PAIRED, PairedCells, corrected, p_text, points
 from codriving.reports.paper import Paper, PaperRow
 from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.results import CellResults, named_numbers
@@ -55,7 +54,9 @@ PAIRED_NOTES = (
     "two-sided.",
     "Velocity and PET: means of an episode, over seeds on which both succeed; 95 % bootstrap intervals of "
     f"{RESAMPLES} resamples, where there are {FEWEST} pairs or more.",
-    "Better or worse: p below 0.05, or an interval without 0; each by itself, not corrected for their number.",
+    "Better or worse: p (Holm) below 0.05, or an interval without 0. Holm: corrected for the number of rows of the "
+    "whole comparison, success and clean success each by itself; intervals are not corrected.",
+    "Level: at most 3 points below the other, and not shown to be worse.",
 )
 
 
@@ -67,19 +68,14 @@ class Compared:
     method: str
     status: str = DRIVEN
     cell: CellResults | None = None  # What was driven; None for a method that was not
-    reference: CellResults | None = None  # The cell of codriving that it is compared with, if it is another one
     quoted: PaperRow | None = None  # The paper's row, if it has one
     swept: Mapping[str, str] = field(default_factory=dict)
+    pairs: PairedCells | None = None  # The comparison with the reference on the same seeds
 
     @property
     def name(self) -> str:
         """The method, with its variant."""
         return self.cell.name if self.cell else self.method
-
-    @cached_property
-    def pairs(self) -> PairedCells | None:
-        """The comparison with codriving on the same seeds."""
-        return PairedCells(self.cell, self.reference) if self.cell and self.reference else None
 
     @property
     def block(self) -> tuple[object, ...]:
@@ -156,8 +152,8 @@ def comparison_rows(block: Sequence[CellResults], methods: Sequence[str], paper:
 
     def driven(cell: CellResults) -> Compared:
         quoted = paper.row(cell.first.scenario, cell.first.method, cell.first.variant)
-        against = None if cell is reference else reference
-        return Compared(cell.first.scenario, cell.first.method, DRIVEN, cell, against, quoted, cell.swept)
+        pairs = None if cell is reference or reference is None else PairedCells(cell, reference)
+        return Compared(cell.first.scenario, cell.first.method, DRIVEN, cell, quoted, cell.swept, pairs)
 
     rows: list[Compared] = []
     for method in methods:
@@ -169,6 +165,12 @@ def comparison_rows(block: Sequence[CellResults], methods: Sequence[str], paper:
         if found and guided and not any(row.quoted for row in found):
             rows.append(Compared(scenario, method, QUOTED_ALONE, quoted=quoted, swept=setting))
     return _ranked(rows + [driven(cell) for cell in block if takes_place_of(cell) not in methods])
+
+
+def with_corrected(rows: Sequence[Compared]) -> list[Compared]:
+    """Correct the tests of all rows of a comparison for their number."""
+    found = iter(corrected([row.pairs for row in rows if row.pairs]))
+    return [replace(row, pairs=next(found)) if row.pairs else row for row in rows]
 
 
 def _ranked(rows: Sequence[Compared]) -> list[Compared]:
@@ -184,8 +186,24 @@ def takes_place_of(cell: CellResults | None, name: str = "") -> str:
     return place_of(cell.first.method, cell.first.reasoner) if cell else name
 
 
+@dataclass(frozen=True)
+class Condition:
+    """A suite of which a comparison has a table of its own."""
+
+    name: str
+    sentence: str  # What its YAML says of it
+    last: bool = True  # Whether notes that hold for every condition stand below its tables
+
+
+WHOLE = Condition("", "")  # A comparison in one table
+
+
 def print_comparison(
-    rows: Sequence[Compared], metrics: str, swept: Sequence[str] = (), screen: bool = False
+    rows: Sequence[Compared],
+    metrics: str,
+    swept: Sequence[str] = (),
+    screen: bool = False,
+    condition: Condition = WHOLE,
 ) -> PrintedTable:
     """Prepare the table of what was measured, the paper's row below each of ours.
 
@@ -194,13 +212,15 @@ def print_comparison(
     """
     theirs = {index: paper_row(row.quoted) for index, row in enumerate(rows) if row.quoted}
     reasoners = [row.cell.first.reasoner for row in rows if row.cell]
-    heading = title("comparison of methods", [row.scenario for row in rows], reasoners, metrics)
-    notes = (
+    what = f"{condition.name}: comparison of methods" if condition.name else "comparison of methods"
+    heading = title(what, [row.scenario for row in rows], reasoners, metrics)
+    general = (
         NOTE,
         *clean_notes(_cells(rows)),
         *number_notes(_cells(rows)),
         *notes_of([(row.method, row.status, row.cell) for row in rows], screen),
     )
+    notes = (*([condition.sentence] if condition.sentence else []), *(general if condition.last else ()))
     return printed(heading, comparison_table(rows, swept), [row.block for row in rows], notes, theirs, screen)
 
 
@@ -223,7 +243,9 @@ def notes_of(rows: Iterable[tuple[str, str, CellResults | None]], screen: bool) 
     ]
 
 
-def print_pairs(rows: Sequence[Compared], metrics: str, swept: Sequence[str] = ()) -> PrintedTable | None:
+def print_pairs(
+    rows: Sequence[Compared], metrics: str, swept: Sequence[str] = (), condition: Condition = WHOLE
+) -> PrintedTable | None:
     """Prepare the table of differences to codriving on the same seeds.
 
     Returns:
@@ -238,12 +260,44 @@ def print_pairs(rows: Sequence[Compared], metrics: str, swept: Sequence[str] = (
         *swept_columns(swept),
         *(column.of(lambda r: r.pairs) for column in PAIRED),
     ]
-    notes = [_better_note(row, row.pairs, swept) for row in found if row.pairs and row.pairs.better] or [
+    beaten = [_better_note(row, row.pairs, swept) for row in found if row.pairs and row.pairs.better] or [
         "No method is shown to be better than codriving in clean success, success, velocity or PET on these seeds."
     ]
     scenarios = ", ".join(dict.fromkeys(row.scenario for row in rows))
-    heading = f"against {REFERENCE} on the same seeds - {scenarios}{metrics_text(metrics)}"
-    return printed(heading, table(columns, found), [row.block for row in found], (*notes, *PAIRED_NOTES))
+    named = f"{condition.name}: " if condition.name else ""
+    heading = f"{named}against {REFERENCE} on the same seeds - {scenarios}{metrics_text(metrics)}"
+    notes = (*_level_notes(found, swept), *beaten, *(PAIRED_NOTES if condition.last else ()))
+    return printed(heading, table(columns, found), [row.block for row in found], notes)
+
+
+def _level_notes(rows: Sequence[Compared], swept: Sequence[str]) -> list[str]:
+    """Say of each block whether codriving is level with the best row in success and in clean success."""
+    blocks: dict[tuple[object, ...], list[tuple[Compared, PairedCells]]] = {}
+    for row in rows:
+        if row.pairs:
+            blocks.setdefault(row.block, []).append((row, row.pairs))
+    notes = []
+    for found in blocks.values():
+        rates = {
+            "Success": [(row, pairs.success) for row, pairs in found],
+            "Clean success": [(row, pairs.clean) for row, pairs in found],
+        }
+        for measure, known in rates.items():
+            row, best = max(known, key=lambda pair: pair[1].difference or 0.0)
+            where = _where(row, swept) if len(blocks) > 1 else ""
+            if not any(rate.pairs for _, rate in known):
+                continue
+            if not best.difference or best.difference < 0:
+                notes.append(f"{measure}{where}: no row is above {REFERENCE}.")
+                continue
+            is_level = "level" if best.level else "not level"
+            by = f"{points(best.difference)} points, p (Holm) = {p_text(best.corrected)}"
+            notes.append(f"{measure}{where}: {REFERENCE} is {is_level} with the best row, {row.name} ({by}).")
+    return notes
+
+
+def _where(row: Compared, swept: Sequence[str]) -> str:
+    return " at " + ", ".join([row.scenario, *(f"{key}={row.swept[key]}" for key in swept if row.swept.get(key))])
 
 
 def _better_note(row: Compared, pairs: PairedCells, swept: Sequence[str]) -> str:
@@ -254,7 +308,7 @@ def _better_note(row: Compared, pairs: PairedCells, swept: Sequence[str]) -> str
         "velocity": f"velocity by {texts['velocity']} m/s",
         "PET": f"PET by {texts['pet']} s",
     }
-    where = ", ".join([row.scenario, *(f"{key}={row.swept[key]}" for key in swept if row.swept.get(key))])
+    where = _where(row, swept).removeprefix(" at ")
     return f"Better than codriving: {row.name} in {' and in '.join(shown[what] for what in pairs.better)} - {where}."
 
 

@@ -52,7 +52,7 @@ _SPREAD = 0.06
 
 
 @contextmanager
-def _plain_settings() -> Iterator[None]:
+def plain_settings() -> Iterator[None]:
     """Matplotlib as it is shipped but for the look of our figures, whatever its user has set."""
     import matplotlib
 
@@ -62,7 +62,7 @@ def _plain_settings() -> Iterator[None]:
         yield
 
 
-@_plain_settings()
+@plain_settings()
 def load_figure(
     rows: Sequence[LoadRow], loads: Sequence[int], metrics: str, methods: Mapping[str, Style]
 ) -> Mapping[str, bytes]:
@@ -103,10 +103,10 @@ def load_figure(
     axes[0][0].set_ylabel("success [%], 95 % interval")
     axes[1][0].set_ylabel("mean velocity [m/s]")
     handles = {line.get_label(): line for axis in axes[0] for line in axis.get_lines() if line.get_label() in names}
-    return _saved(figure, {name: handles[name] for name in names if name in handles}, heading, "load")
+    return saved(figure, {name: handles[name] for name in names if name in handles}, heading, "load")
 
 
-@_plain_settings()
+@plain_settings()
 def learning_figure(
     rows: Sequence[LearningRow], paper: Sequence[LearningStatement], metrics: str
 ) -> Mapping[str, bytes]:
@@ -144,10 +144,11 @@ def learning_figure(
         axis.set(title=scenario, xlabel="past interactions", ylim=(-3, 105))
     axes[0].set_ylabel("success [%], 95 % interval")
     handles = {str(h.get_label()): h for axis in axes for h in axis.get_legend_handles_labels()[0]}
-    return _saved(figure, handles, title("learning", (), [first.reasoner for first in firsts], metrics), "learn")
+    return saved(figure, handles, title("learning", (), [first.reasoner for first in firsts], metrics), "learn")
 
 
-def _saved(figure: "Figure", handles: Mapping[str, "Artist"], heading: str, name: str) -> Mapping[str, bytes]:
+def saved(figure: "Figure", handles: Mapping[str, "Artist"], heading: str, name: str) -> Mapping[str, bytes]:
+    """Give a figure with its legend and heading as PNG and SVG, by file name."""
     figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=min(4, len(handles) or 1))
     figure.suptitle(heading, fontsize=11)
     kinds: dict[str, dict[str, str | None]] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}

@@ -1,16 +1,18 @@
-"""One method against codriving on the same seeds: where which succeeds, and how far apart they are where both do."""
+"""One method against another on the same seeds: where which succeeds, and how far apart they are where both do."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from codriving.datatypes import Ending
-from codriving.metrics import FEWEST, mcnemar, mean_interval
+from codriving.metrics import FEWEST, holm, mcnemar, mean_interval
 from codriving.reports.columns import Column, Value, mean
 from codriving.reports.results import CellResults, ScoredEpisode
 from codriving.reports.wording import signed
 
 SIGNIFICANT = 0.05  # A p-value below this counts as a difference
+
+LEVEL = 0.03  # By how much the lower of two level rates is lower at most
 
 AGAINST = "against codriving"
 
@@ -39,7 +41,8 @@ class PairedRate:
 
     pairs: int
     gained: int  # The method alone
-    lost: int  # codriving alone
+    lost: int  # What it is compared with alone
+    corrected: float | None = None  # p-value corrected for the number of rows; None for one that stands by itself
 
     @classmethod
     def of(cls, pairs: Sequence[tuple[object, object]]) -> "PairedRate":
@@ -58,7 +61,13 @@ class PairedRate:
 
     def shown(self, sign: int) -> bool:
         """Tell whether the method is shown to be better (1) or worse (-1)."""
-        return self.p is not None and self.p < SIGNIFICANT and (self.gained - self.lost) * sign > 0
+        p = self.p if self.corrected is None else self.corrected
+        return p is not None and p < SIGNIFICANT and (self.gained - self.lost) * sign > 0
+
+    @property
+    def level(self) -> bool:
+        """Whether the reference is level with the method: at most 3 points lower, and not shown to be worse."""
+        return self.pairs > 0 and self.gained - self.lost <= LEVEL * self.pairs + 1e-9 and not self.shown(1)
 
 
 @dataclass(frozen=True)
@@ -67,6 +76,8 @@ class PairedCells:
 
     cell: CellResults
     reference: CellResults
+    success_p: float | None = None  # Corrected for the number of rows
+    clean_p: float | None = None
 
     @cached_property
     def driven(self) -> list[tuple[ScoredEpisode, ScoredEpisode]]:
@@ -78,12 +89,13 @@ class PairedCells:
     @cached_property
     def success(self) -> "PairedRate":
         """Which of them succeeds."""
-        return PairedRate.of([(a.success, b.success) for a, b in self.driven])
+        return replace(PairedRate.of([(a.success, b.success) for a, b in self.driven]), corrected=self.success_p)
 
     @cached_property
     def clean(self) -> "PairedRate":
         """Which of them succeeds without a near miss, where that is known of both."""
-        return PairedRate.of([(a.clean, b.clean) for a, b in self.driven if None not in (a.clean, b.clean)])
+        known = [(a.clean, b.clean) for a, b in self.driven if None not in (a.clean, b.clean)]
+        return replace(PairedRate.of(known), corrected=self.clean_p)
 
     @cached_property
     def pet(self) -> Difference:
@@ -111,6 +123,11 @@ class PairedCells:
         """Of clean success, success, velocity and PET those in which it is shown to be worse."""
         return self._shown(-1)
 
+    @property
+    def level(self) -> tuple[str, ...]:
+        """Of clean success and success those in which the reference is level with the method, or above it."""
+        return tuple(name for name, rate in (("clean", self.clean), ("success", self.success)) if rate.level)
+
     def _shown(self, sign: int) -> tuple[str, ...]:
         found = {
             "clean": self.clean.shown(sign),
@@ -126,6 +143,18 @@ class PairedCells:
         return "; ".join(said) or none
 
 
+def corrected(pairs: Sequence[PairedCells]) -> list[PairedCells]:
+    """Correct the tests of several rows for their number (Holm): those of success, and those of clean success."""
+
+    def values(rates: Sequence[PairedRate]) -> list[float | None]:
+        known = [k for k, rate in enumerate(rates) if rate.p is not None]
+        found = dict(zip(known, holm([p for rate in rates if (p := rate.p) is not None]), strict=True))
+        return [found.get(k) for k in range(len(rates))]
+
+    success, clean = values([p.success for p in pairs]), values([p.clean for p in pairs])
+    return [PairedCells(p.cell, p.reference, s, c) for p, s, c in zip(pairs, success, clean, strict=True)]
+
+
 def points(value: Value) -> str:
     """Write a difference of rates in percentage points."""
     return signed(100 * value, 1) if isinstance(value, float) else "-"
@@ -136,47 +165,70 @@ def p_text(value: Value) -> str:
     return f"{value:.2g}" if isinstance(value, float) else "-"
 
 
-# Columns of the paired comparison; every difference is the method minus codriving.
-PAIRED: tuple[Column[PairedCells], ...] = (
-    Column("pairs", lambda p: len(p.driven), "pairs", rank=5),
-    Column(
-        "clean_text",
-        lambda p: points(p.clean.difference) if p.clean.pairs else "",
-        "clean [points]",
-        csv=False,
-        sparse=True,
-    ),
-    Column(
-        "clean_p_text", lambda p: p_text(p.clean.p) if p.clean.pairs else "", "clean p", csv=False, sparse=True, rank=4
-    ),
-    Column("success_difference", lambda p: p.success.difference, "success [points]", points),
-    Column("only_method_succeeds", lambda p: p.success.gained),
-    Column("only_codriving_succeeds", lambda p: p.success.lost),
-    Column("alone", lambda p: f"{p.success.gained} / {p.success.lost}", "alone: it / codriving", csv=False, rank=6),
-    Column("mcnemar_p", lambda p: p.success.p, "McNemar p", p_text, rank=4),
-    Column(
-        "velocity",
-        lambda p: str(p.velocity),
-        "velocity [m/s] (95 %)",
-        csv=False,
-        rank=2,
-        brief=("velocity [m/s]", " ("),
-    ),
-    Column("pet_pairs", lambda p: p.pet.pairs),
-    Column("pet_difference", lambda p: p.pet.mean),
-    Column("pet_difference_low", lambda p: p.pet.low),
-    Column("pet_difference_high", lambda p: p.pet.high),
-    Column("pet", lambda p: str(p.pet), "PET [s] (95 %)", csv=False, rank=3, brief=("PET [s]", " (")),
-    Column("velocity_pairs", lambda p: p.velocity.pairs),
-    Column("velocity_difference", lambda p: p.velocity.mean),
-    Column("velocity_difference_low", lambda p: p.velocity.low),
-    Column("velocity_difference_high", lambda p: p.velocity.high),
-    Column("clean_pairs", lambda p: p.clean.pairs),
-    Column("clean_difference", lambda p: p.clean.difference),
-    Column("only_method_clean", lambda p: p.clean.gained if p.clean.pairs else None),
-    Column("only_codriving_clean", lambda p: p.clean.lost if p.clean.pairs else None),
-    Column("clean_mcnemar_p", lambda p: p.clean.p),
-    Column("better_in", lambda p: " ".join(p.better), words=True),
-    Column("worse_in", lambda p: " ".join(p.worse), words=True),
-    Column("against", str, AGAINST, words=True, csv=False, rank=1),
-)
+def paired_columns(reference: str, against: str) -> tuple[Column[PairedCells], ...]:
+    """Give the columns of a paired comparison; every difference is the method minus the reference."""
+    return (
+        Column("pairs", lambda p: len(p.driven), "pairs", rank=5),
+        Column(
+            "clean_text",
+            lambda p: points(p.clean.difference) if p.clean.pairs else "",
+            "clean [points]",
+            csv=False,
+            sparse=True,
+        ),
+        Column(
+            "clean_p_text",
+            lambda p: p_text(p.clean.p) if p.clean.pairs else "",
+            "clean p",
+            csv=False,
+            sparse=True,
+            rank=4,
+        ),
+        Column(
+            "clean_holm",
+            lambda p: p_text(p.clean.corrected) if p.clean.pairs else "",
+            "clean p (Holm)",
+            csv=False,
+            sparse=True,
+            rank=2,
+        ),
+        Column("success_difference", lambda p: p.success.difference, "success [points]", points),
+        Column("only_method_succeeds", lambda p: p.success.gained),
+        Column(f"only_{reference}_succeeds", lambda p: p.success.lost),
+        Column(
+            "alone", lambda p: f"{p.success.gained} / {p.success.lost}", f"alone: it / {reference}", csv=False, rank=6
+        ),
+        Column("mcnemar_p", lambda p: p.success.p, "McNemar p", p_text, rank=4),
+        Column("success_holm", lambda p: p_text(p.success.corrected), "p (Holm)", csv=False, rank=2),
+        Column(
+            "velocity",
+            lambda p: str(p.velocity),
+            "velocity [m/s] (95 %)",
+            csv=False,
+            rank=2,
+            brief=("velocity [m/s]", " ("),
+        ),
+        Column("pet_pairs", lambda p: p.pet.pairs),
+        Column("pet_difference", lambda p: p.pet.mean),
+        Column("pet_difference_low", lambda p: p.pet.low),
+        Column("pet_difference_high", lambda p: p.pet.high),
+        Column("pet", lambda p: str(p.pet), "PET [s] (95 %)", csv=False, rank=3, brief=("PET [s]", " (")),
+        Column("velocity_pairs", lambda p: p.velocity.pairs),
+        Column("velocity_difference", lambda p: p.velocity.mean),
+        Column("velocity_difference_low", lambda p: p.velocity.low),
+        Column("velocity_difference_high", lambda p: p.velocity.high),
+        Column("clean_pairs", lambda p: p.clean.pairs),
+        Column("clean_difference", lambda p: p.clean.difference),
+        Column("only_method_clean", lambda p: p.clean.gained if p.clean.pairs else None),
+        Column(f"only_{reference}_clean", lambda p: p.clean.lost if p.clean.pairs else None),
+        Column("clean_mcnemar_p", lambda p: p.clean.p),
+        Column("better_in", lambda p: " ".join(p.better), words=True),
+        Column("worse_in", lambda p: " ".join(p.worse), words=True),
+        Column("mcnemar_p_holm", lambda p: p.success.corrected),
+        Column("clean_mcnemar_p_holm", lambda p: p.clean.corrected),
+        Column("level_in", lambda p: " ".join(p.level), words=True),
+        Column("against", str, against, words=True, csv=False, rank=1),
+    )
+
+
+PAIRED = paired_columns("codriving", AGAINST)

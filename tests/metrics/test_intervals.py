@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from codriving.metrics import intervals as paired
-from codriving.metrics.intervals import mcnemar, mean_interval, rate_interval, wilson_interval
+from codriving.metrics.intervals import holm, mcnemar, mean_interval, rate_interval, wilson_interval
 
 FEWEST = 10
 
@@ -119,3 +119,19 @@ def test_a_rate_is_that_of_the_sums_and_its_interval_holds_it() -> None:
     low, high = rate_interval(events, units) or (0.0, 0.0)
     assert 0.035 < low < 0.05 < high < 0.06, "3 of 60, and never above 3 of 50"
     assert (low, high) == rate_interval(events, units)
+
+
+def test_holm_by_hand() -> None:
+    """In order of size: 4 x 0.005, 3 x 0.01, 2 x 0.03, and for 0.04 no less than the one before."""
+    assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert holm([0.6, 0.7]) == [1.0, 1.0]
+    assert holm([]) == []
+
+
+@given(st.lists(st.floats(0, 1), min_size=1, max_size=20))
+def test_holm_lies_between_the_p_value_and_bonferronis(p_values: list[float]) -> None:
+    corrected = holm(p_values)
+    assert all(p <= c <= min(1.0, len(p_values) * p) + 1e-12 for p, c in zip(p_values, corrected, strict=True))
+    assert sorted(range(len(p_values)), key=lambda k: (corrected[k], p_values[k], k)) == sorted(
+        range(len(p_values)), key=lambda k: (p_values[k], k)
+    )

@@ -6,7 +6,7 @@ import pytest
 
 from codriving.config.locate import experiments_dir
 from codriving.datatypes.record import Ending, EpisodeRecord
-from codriving.reports.comparison import comparison_rows, comparison_table, print_comparison, print_pairs
+from codriving.reports.comparison import PAIRED_NOTES, comparison_rows, comparison_table, print_comparison, print_pairs
 from codriving.reports.paper import Paper, read_paper
 from codriving.reports.printed import markdown_text
 from codriving.reports.results import CellResults
@@ -102,7 +102,11 @@ def test_who_beats_codriving_is_said_in_the_row_and_below_the_table(block: list[
     assert column_of(table, "velocity [m/s] (95 %)") == ["-1.00 (-1.00 to -1.00)", "0.00 (0.00 to 0.00)"]
     assert column_of(table, "success [points]") == ["0.0", "-8.3"]
     assert column_of(table, "alone: it / codriving") == ["0 / 0", "0 / 1"]
-    assert table.notes[0] == "Better than codriving: fcfs in PET by +2.00 (+2.00 to +2.00) s - intersection."
+    assert table.notes[:3] == (
+        "Success: no row is above codriving.",
+        "Better than codriving: fcfs in PET by +2.00 (+2.00 to +2.00) s - intersection.",
+        PAIRED_NOTES[0],
+    )
     assert not any(note.startswith("Better than codriving: mine") for note in table.notes)
     assert "better in PET; worse in velocity" in printed_text(table)
 
@@ -115,7 +119,7 @@ def test_few_pairs_show_nothing(make: Make, paper: Paper) -> None:
     table = print_pairs(comparison_rows(block, (), paper), "standard")
     assert table is not None
     assert column_of(table, "against codriving") == ["fewer than 10 pairs"]
-    assert table.notes[0].startswith("No method is shown to be better")
+    assert table.notes[1].startswith("No method is shown to be better")
 
 
 def test_alone_codriving_has_nothing_to_be_compared_with(make: Make, paper: Paper) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.columns import Row, table
-from codriving.reports.pairs import PAIRED, Difference, PairedCells, PairedRate
+from codriving.reports.pairs import PAIRED, Difference, PairedCells, PairedRate, corrected, paired_columns
 from codriving.reports.results import CellResults
 
 Make = Callable[..., EpisodeRecord]
@@ -87,3 +87,35 @@ def test_better_and_worse_need_a_p_below_005_or_an_interval_without_0() -> None:
     assert shown(velocity=(-0.1, 0.2)) == ((), ())
     assert shown(pet=(-0.2, -0.1)) == ((), ("PET",))
     assert shown(pet=(0.0, 0.0)) == ((), ())
+
+
+def _lost(make: Make, *seeds: int) -> CellResults:
+    return CellResults([make(seed, LOST if seed in seeds else Ending.SUCCESS) for seed in range(20)])
+
+
+def test_a_row_of_several_has_to_differ_by_more(make: Make) -> None:
+    """Of three rows the least p, 2 / 2^9 = 0.0039, counts three times, the second, 2 / 2^6 = 0.031, twice."""
+    rows = [_lost(make, *range(6)), _lost(make, *range(9)), _lost(make)]
+    alone = [PairedCells(row, _lost(make)) for row in rows]
+    together = corrected(alone)
+    assert [pairs.worse for pairs in alone] == [("success",), ("success",), ()]
+    assert [pairs.worse for pairs in together] == [(), ("success",), ()]
+    assert [round(pairs.success.corrected or 0, 4) for pairs in together] == [0.0625, 0.0117, 1.0]
+    assert [round(pairs.success.p or 0, 4) for pairs in together] == [0.0312, 0.0039, 1.0]
+
+
+def test_level_is_at_most_three_points_lower_and_not_shown_to_be_worse() -> None:
+    def level(pairs: int, gained: int, lost: int, p: float | None = None) -> bool:
+        return PairedRate(pairs, gained, lost, p).level
+
+    assert level(100, 3, 0)
+    assert not level(100, 4, 0)
+    assert level(100, 5, 2)
+    assert level(1000, 9, 0, 0.05)
+    assert not level(1000, 9, 0, 0.049)
+    assert level(100, 0, 50, 0.001)
+    assert not level(0, 0, 0)
+
+
+def test_columns_name_the_reference() -> None:
+    assert "only_full_succeeds" in [column.key for column in paired_columns("full", "against full")]

@@ -1,0 +1,59 @@
+"""``figures/profile.*``: success and clean success of every method in every suite of a comparison."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from codriving.reports.comparison import Compared
+from codriving.reports.figures import plain_settings, saved
+from codriving.reports.results import CellResults
+from codriving.reports.wording import title
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_APART = 0.16  # By how much the marks of success and clean success stand apart, as a share of a row
+
+# What is drawn: its name, colour and marker, whether the marker is filled, and on which side of the row it stands.
+_MARKS = (("success", "#000000", "o", True, -1), ("clean success", "#d55e00", "D", False, 1))
+
+
+@plain_settings()
+def profile_figure(suites: Sequence[tuple[str, Sequence[Compared]]], metrics: str) -> Mapping[str, bytes]:
+    """Draw a panel a suite, in it a row a method, with success and clean success and their Wilson 95 % intervals.
+
+    Args:
+        suites: Name of each suite, and the rows of its comparison.
+
+    Returns:
+        The content of ``profile.png`` and ``profile.svg``.
+    """
+    from matplotlib.figure import Figure
+
+    driven = [(name, [row for row in rows if row.cell]) for name, rows in suites]
+    methods = list(dict.fromkeys(row.name for _, rows in driven for row in rows))
+    figure = Figure(figsize=(1.9 + 1.5 * len(driven), 1.5 + 0.3 * len(methods)), layout="constrained")
+    axes = figure.subplots(1, len(driven), sharey=True, squeeze=False)[0]
+    for axis, (name, rows) in zip(axes, driven, strict=True):
+        for row in rows:
+            if row.cell:
+                _draw(axis, methods.index(row.name), row.cell)
+        axis.set(title=name, xlim=(-4, 104), xticks=(0, 50, 100))
+        axis.title.set_fontsize(9)
+    axes[0].set_yticks(range(len(methods)), methods)
+    axes[0].set_ylim(len(methods) - 0.5, -0.5)
+    figure.supxlabel("share of episodes [%], 95 % interval", fontsize=9)
+    handles = {str(h.get_label()): h for axis in axes for h in axis.get_legend_handles_labels()[0]}
+    reasoners = [row.cell.first.reasoner for _, rows in driven for row in rows if row.cell]
+    return saved(figure, handles, title("profile", (), reasoners, metrics), "profile")
+
+
+def _draw(axis: "Axes", place: int, cell: CellResults) -> None:
+    rates = ((len(cell.successes) / len(cell.completed), *cell.interval) if cell.completed else None, cell.clean)
+    for (label, colour, marker, filled, side), rate in zip(_MARKS, rates, strict=True):
+        if rate is None or None in rate:
+            continue
+        share, low, high = (100 * (number or 0.0) for number in rate)
+        y = place + side * _APART
+        axis.plot([low, high], [y, y], color=colour, linewidth=1.1, alpha=0.75)
+        inside = colour if filled else "white"
+        axis.plot([share], [y], marker, color=colour, markerfacecolor=inside, markersize=4.5, label=label)
