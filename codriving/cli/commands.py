@@ -131,7 +131,7 @@ def list_choices(
     config_dir: ConfigDir = None,
 ) -> None:
     """List what a group offers, or all groups."""
-    from codriving.config import ALL, SWEPT, check_config_dir, choices, describe
+    from codriving.config import ALL, SUITE, SWEPT, check_config_dir, choices, describe, members, suite_sets
 
     if config_dir is not None:
         check_config_dir(config_dir)
@@ -140,13 +140,18 @@ def list_choices(
     for plural, singular in PLURALS.items():
         found = choices(singular, config_dir)
         several = singular in SWEPT and len(found) > 1
+        sets = suite_sets(config_dir) if singular == SUITE else {}
         if group in (plural, singular):
             for name, file in found.items():
                 print(_entry(name, describe(file)))
+            for name in sets:
+                row = members(name, config_dir)
+                named, days = ", ".join(m.suite for m in row), ", ".join(sorted({m.fixed for m in row}))
+                print(_entry(name, f"A set, one row of the table each, fixed on {days}: {named}."))
             if several:
                 print(_entry(ALL, "Every one of these, in this order: one row of the table each."))
         elif group is None:
-            print(_entry(plural, ", ".join([*found, *([f"or {ALL}"] if several else [])]) or "-"))
+            print(_entry(plural, ", ".join([*found, *sets, *([f"or {ALL}"] if several else [])]) or "-"))
 
 
 def _entry(name: str, text: str) -> str:

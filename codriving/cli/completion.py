@@ -22,6 +22,7 @@ from codriving.config import (
     conf_dir,
     default_choice,
     describe,
+    suite_sets,
     values,
 )
 from codriving.errors import ConfigError
@@ -78,6 +79,10 @@ class TypedLine:
         """Return what a group offers."""
         return choices(group, self.config_dir.expanduser() if self.config_dir else None)
 
+    def suite_sets(self) -> list[str]:
+        """Return the names of the sets of suites."""
+        return list(suite_sets(self.config_dir.expanduser() if self.config_dir else None))
+
     def chosen(self, group: str) -> str | None:
         """Return what a group is set to; of several values the first."""
         typed = [token.partition("=")[2] for token in self.overrides if token.partition("=")[0] == group]
@@ -124,6 +129,10 @@ def _offers(typed: str, line: TypedLine) -> Iterator[tuple[str, str]]:
     for group in LISTED:
         for name, file in line.choices(group).items():
             yield f"{group}={name}", describe(file)
+        if group == SUITE:
+            yield from (
+                (f"{group}={name}", "A set of suites: one row of the table each.") for name in line.suite_sets()
+            )
         if group in SWEPT and len(line.choices(group)) > 1:
             yield f"{group}={ALL}", "Every one of these: one row of the table each."
     defaults = values(conf_dir() / "config.yaml")

@@ -23,6 +23,7 @@ from codriving.config.locate import conf_dir, experiments_dir
 from codriving.config.overrides import check_choice, parse, written
 from codriving.config.plugins import PLUGINS
 from codriving.config.schema import GROUPS, LARGEST_SEED, ROOT
+from codriving.config.suites import changed_worlds, members, sets_scenario, suite_sets
 from codriving.config.sweep import Point, expand
 from codriving.config.training import compose_training, trainings
 
@@ -42,6 +43,7 @@ __all__ = [
     "Point",
     "asks_for",
     "build",
+    "changed_worlds",
     "check_choice",
     "check_config_dir",
     "choices",
@@ -54,9 +56,12 @@ __all__ = [
     "describe",
     "expand",
     "experiments_dir",
+    "members",
     "parse",
+    "sets_scenario",
     "show",
     "styles",
+    "suite_sets",
     "taking_part",
     "targets",
     "trainings",

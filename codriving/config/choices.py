@@ -39,7 +39,7 @@ FIRST = {
     "limits": ("none", "road"),
     "drivers": ("simulator", "attentive", "mixed", "rough"),
     "flow": ("none", "steady"),
-    SUITE: ("default", "paper"),
+    SUITE: ("default", "paper", "honest", "standoff", "crowd", "blind", "blocked_exit"),
     "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),
 }
@@ -116,6 +116,11 @@ def values(file: Path) -> dict[str, str]:
     own = {name: value.strip() for name, value in found if not name.startswith("_")}
     parent = _PARENT.match(own.pop("defaults", ""))
     return {**(values(conf_dir() / file.parent.name / f"{parent[1]}.yaml") if parent else {}), **own}
+
+
+def chosen_in(file: Path, group: str) -> str | None:
+    """Return what a YAML sets a group to."""
+    return dict(_DEFAULT.findall(read_yaml(file))).get(group)
 
 
 def default_choice(group: str, suite: Path | None = None) -> str | None:

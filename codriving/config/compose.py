@@ -11,6 +11,7 @@ from codriving.config.overrides import at_home, prepare
 from codriving.config.plugins import find_beside, gathered
 from codriving.config.references import check_references, no_resolvers
 from codriving.config.schema import GROUPS, LARGEST_SEED, SHOWN, check_root, texts
+from codriving.config.suites import check_scenario
 from codriving.errors import ConfigError
 
 _VARIABLE = re.compile(r"[A-Z_][A-Z0-9_]*")
@@ -63,6 +64,7 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
         with hydra.initialize_config_dir(str(conf_dir()), version_base="1.3"), no_resolvers():
             config = hydra.compose("config", overrides=tokens, return_hydra_config=True)
         chosen = config.hydra.runtime.choices
+        check_scenario(chosen, config_dir)
         choices = {group: str(chosen[group]) for group in GROUPS if chosen.get(group) is not None}
         with open_dict(config):
             del config["hydra"]

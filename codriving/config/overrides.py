@@ -10,6 +10,7 @@ from unicodedata import digit
 
 from codriving.config.choices import LISTED, SUITE, choices
 from codriving.config.schema import GROUPS, ROOT, SHOWN, looks_secret, value_shown
+from codriving.config.suites import members, suite_sets
 from codriving.errors import ConfigError
 
 KEY_VALUE = "write key=value, for instance scenario=intersection or episodes=20"
@@ -186,5 +187,11 @@ def check_choice(group: str, value: object, config_dir: Path | None = None) -> N
         raise ConfigError(
             f"{group} takes names without brackets, got {value_shown(value)}; choices: {', '.join(known) or 'none'}"
         )
+    if group == SUITE and str(value) in (sets := suite_sets(config_dir)):
+        raise ConfigError(
+            f"{SUITE}={value} is a set of suites, {sets[str(value)].name}, and one is asked for here; name one of it: "
+            f"{', '.join(member.suite for member in members(str(value), config_dir))}"
+        )
     if str(value) not in known:
-        raise ConfigError(f"unknown {group} {value_shown(str(value))}; choices: {', '.join(known) or 'none'}")
+        several = [*known, *(suite_sets(config_dir) if group == SUITE else ())]
+        raise ConfigError(f"unknown {group} {value_shown(str(value))}; choices: {', '.join(several) or 'none'}")

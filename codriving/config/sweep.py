@@ -7,9 +7,10 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
-from codriving.config.choices import ALL, LISTED, check_config_dir, choices
+from codriving.config.choices import ALL, LISTED, SUITE, check_config_dir, choices
 from codriving.config.overrides import TEXT_WITH_COMMAS, check_choice, may_be_secret, parse, shown, written
 from codriving.config.schema import ROOT
+from codriving.config.suites import members, suite_sets
 from codriving.errors import ConfigError
 
 MOST = 1000  # Configs of one command; more than these are a slip of the keyboard
@@ -49,8 +50,8 @@ class _Axis:
 def expand(tokens: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:
     """Take keys with several values apart: the first such key varies slowest.
 
-    Several values are ``a,b``, ``choice(a,b)``, ``range(4,10,2)``, for a group also ``all`` and ``glob(m*)``. A quoted
-    text and a list in brackets are one value.
+    Several values are ``a,b``, ``choice(a,b)``, ``range(4,10,2)``, for a group also ``all`` and ``glob(m*)``, and for
+    suites the name of a set. A quoted text and a list in brackets are one value.
 
     Args:
         tokens: ``key=value`` as typed.
@@ -80,7 +81,8 @@ def expand(tokens: Sequence[str], config_dir: Path | None = None) -> tuple[Point
 def _axis(token: str, config_dir: Path | None) -> _Axis:
     override = parse(token)
     key = override.key_or_group
-    everything = key in LISTED and override.value() == ALL
+    several = [ALL, *(suite_sets(config_dir) if key == SUITE else ())]
+    everything = key in LISTED and override.value() in several
     # What Hydra could do beyond setting keys is refused when composing, with or without several values.
     other = override.is_delete() or override.package is not None or override.is_hydra_override()
     if other or not (everything or override.is_sweep_override()):
@@ -103,8 +105,11 @@ def _values(override: Any, token: str, config_dir: Path | None) -> Iterator[str]
 
     key, value = override.key_or_group, override.value()
     known = list(choices(key, config_dir)) if key in LISTED else []
+    sets = suite_sets(config_dir) if key == SUITE else ()
     if value == ALL:
         yield from known
+    elif isinstance(value, str) and value in sets:
+        yield from (member.suite for member in members(value, config_dir))
     elif isinstance(value, Glob):
         if not known:
             raise ConfigError(f"{shown(token)}: glob(...) chooses among the files of a group, and {key} is none")
@@ -118,6 +123,8 @@ def _values(override: Any, token: str, config_dir: Path | None) -> Iterator[str]
                     yield _text(item, Transformer.str)
                 elif (name := getattr(item, "text", item)) == ALL:
                     yield from known
+                elif name in sets:
+                    yield from (member.suite for member in members(name, config_dir))
                 else:
                     check_choice(key, name, config_dir)
                     yield str(name)

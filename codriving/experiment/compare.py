@@ -18,6 +18,7 @@ from codriving.config import (
     expand,
     experiments_dir,
     parse,
+    sets_scenario,
     styles,
     taking_part,
     written,
@@ -115,7 +116,8 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
     added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
     others = [token for token, key in zip(overrides, keys, strict=True) if key != "method"]
     if table == LOAD:
-        others = [*(token for token in LOADED if token.partition("=")[0] not in keys), *others]
+        named = [*keys, *(["scenario"] if sets_scenario(overrides, config_dir) else [])]
+        others = [*(token for token in LOADED if token.partition("=")[0] not in named), *others]
     # Asked for once more on the command line, it is the user's.
     base = () if "experiment" in keys else (f"experiment={EXPERIMENT[table]}",)
     methods = _methods(table, added, config_dir)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
-from codriving.config import Point, expand, experiments_dir, parse, written
+from codriving.config import Point, expand, experiments_dir, parse, sets_scenario, written
 from codriving.errors import ConfigError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.drive import Driven, HaltedError, Interrupted, Outputs, drive
@@ -76,6 +76,8 @@ def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tup
     if "memory" in keys:
         raise ConfigError("codriving learn sets memory itself; memory.shots and memory.least_similarity can be given")
     named = {key.partition(".")[0] for key in keys}
+    if sets_scenario(overrides, config_dir):
+        named.add("scenario")
     base = [token for token in ("scenario=all", LEVELS, "seed=0") if token.partition("=")[0] not in named]
     return expand([*base, *overrides], config_dir)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from codriving.config import ROOT, Point, build, compose_named, validate
+from codriving.config import ROOT, SUITE, Point, build, changed_worlds, compose_named, validate
 from codriving.errors import ConfigError
 from codriving.experiment.cells import Cell, distinct, make_cell, repeated
 from codriving.experiment.flows import refuse_mixed
@@ -74,7 +74,7 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
         output=Path(first["output"]),
         experiment=first["experiment"],
         run=first["run"],
-        notes=repeated(cells),
+        notes=(*repeated(cells), *changed_worlds([suite_of(point) for point in points], configs, config_dir)),
         render=first["render"],
     )
 
@@ -90,6 +90,12 @@ def _is_complete(config: Mapping[str, Any], cells: int) -> bool:
     except (OSError, ValueError, csv.Error):
         return False
     return rows >= int(config["episodes"]) * cells
+
+
+def suite_of(point: Point) -> str | None:
+    """Return the suite that the overrides of a config name."""
+    named = [token.partition("=")[2] for token in point.overrides if token.lstrip("+").partition("=")[0] == SUITE]
+    return named[-1] if named else None
 
 
 def composed(

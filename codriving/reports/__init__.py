@@ -8,11 +8,7 @@ from codriving.reports.comparison import (
     Condition,
     comparison_rows,
     comparison_table,
-    load_rows,
-    load_table,
     print_comparison,
-    print_each_load,
-    print_loads,
     print_pairs,
     with_corrected,
 )
@@ -20,6 +16,7 @@ from codriving.reports.episodes import TimedEpisode, cpu_per_decision, timing_co
 from codriving.reports.figures import learning_figure, load_figure
 from codriving.reports.flows import flow_table, flow_tables, print_flows
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
+from codriving.reports.load import load_rows, load_table, print_each_load, print_loads
 from codriving.reports.paper import read_learning, read_paper
 from codriving.reports.printed import PrintedTable, markdown_text, print_table
 from codriving.reports.profile import profile_figure

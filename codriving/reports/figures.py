@@ -7,8 +7,9 @@ from itertools import cycle, pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 from codriving.reports.columns import mean
-from codriving.reports.comparison import METHOD_CHOICE, LoadRow, load_title, setting_of
+from codriving.reports.comparison import METHOD_CHOICE, setting_of
 from codriving.reports.learning import LearningRow
+from codriving.reports.load import LoadRow, load_title
 from codriving.reports.paper import LearningStatement
 from codriving.reports.results import CellResults
 from codriving.reports.wording import short_names, title

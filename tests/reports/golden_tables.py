@@ -14,16 +14,13 @@ from codriving.reports.comparison import (
     Condition,
     comparison_rows,
     comparison_table,
-    load_rows,
-    load_table,
     print_comparison,
-    print_each_load,
-    print_loads,
     print_pairs,
     with_corrected,
 )
 from codriving.reports.episodes import TimedEpisode, timing_columns
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
+from codriving.reports.load import load_rows, load_table, print_each_load, print_loads
 from codriving.reports.paper import Paper, read_learning, read_paper
 from codriving.reports.printed import PrintedTable, markdown_text, print_table
 from codriving.reports.results import CellResults

@@ -6,14 +6,8 @@ import pytest
 
 from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.columns import table
-from codriving.reports.comparison import (
-    Compared,
-    comparison_rows,
-    load_rows,
-    print_comparison,
-    print_each_load,
-    print_pairs,
-)
+from codriving.reports.comparison import Compared, comparison_rows, print_comparison, print_pairs
+from codriving.reports.load import load_rows, print_each_load
 from codriving.reports.pairs import PAIRED, PairedCells
 from codriving.reports.paper import Paper
 from codriving.reports.results import CellResults

@@ -6,14 +6,8 @@ from dataclasses import replace
 import pytest
 
 from codriving.datatypes.record import Ending, EpisodeRecord, NamedNumber
-from codriving.reports.comparison import (
-    comparison_rows,
-    comparison_table,
-    load_rows,
-    load_table,
-    print_comparison,
-    print_loads,
-)
+from codriving.reports.comparison import comparison_rows, comparison_table, print_comparison
+from codriving.reports.load import load_rows, load_table, print_loads
 from codriving.reports.paper import Paper
 from codriving.reports.printed import markdown_text
 from codriving.reports.results import CellResults

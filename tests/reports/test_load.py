@@ -6,8 +6,8 @@ import pytest
 
 from codriving.config.choices import styles
 from codriving.datatypes.record import Ending, EpisodeRecord
-from codriving.reports.comparison import LoadRow, load_rows, load_table, print_each_load, print_loads
 from codriving.reports.figures import load_figure
+from codriving.reports.load import LoadRow, load_rows, load_table, print_each_load, print_loads
 from codriving.reports.results import CellResults
 from tests.reports.making import column_of
 
