@@ -32,6 +32,7 @@ PLURALS = {
     "scenarios": "scenario",
     "methods": "method",
     "executors": "executor",
+    "orders": "order",
     "cdas": "cda",
     "llms": "llm",
     "memories": "memory",

@@ -22,6 +22,7 @@ from codriving.datatypes import (
     Metric,
     Model,
     OrderExecutor,
+    OrderOfCavs,
     Scenario,
     Simulator,
     VehicleLimits,
@@ -246,6 +247,7 @@ def _part(value: object, wanted: object, phrase: str) -> object:
 
 EXPECTED: dict[str, type] = {"scenario": Scenario, "executor": OrderExecutor, "cda": Cooperation, "llm": Model}
 EXPECTED |= {
+    "order": OrderOfCavs,
     "memory": CaseMemory,
     "metrics": Metric,
     "launcher": EpisodeLauncher,

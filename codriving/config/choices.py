@@ -31,9 +31,10 @@ TABLES = {
 }
 
 # Choices that come before the others: in the paper's order, or from the least to the most; the rest goes by name.
-# Methods say their place themselves.
+# Methods say their place themselves, and their rules come in the same order.
 FIRST = {
     "scenario": ("intersection", "roundabout", "highway", "merge"),
+    "order": ("negotiated",),
     "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
     "llm": ("offline",),
     "limits": ("none", "road"),
@@ -66,7 +67,7 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
         raise ConfigError(f"unknown group {group}; groups: {', '.join(known)}")
     roots = [experiments_root() if group == EXPERIMENTS else conf_dir(), *([config_dir] if config_dir else [])]
     found = {file.stem: file for root in roots for file in sorted((root / group).glob("[!_]*.yaml"))}
-    first = taking_part("all") if group == "method" else FIRST.get(group, ())
+    first = (*FIRST.get(group, ()), *(taking_part("all") if group in ("method", "order") else ()))
     return {name: found[name] for name in (*first, *sorted(found)) if name in found}
 
 

@@ -238,6 +238,10 @@ class OrderExecutor:
     """What turns orders into actions: base of what a choice of ``executor`` may be; reasoning adds its hooks."""
 
 
+class OrderOfCavs:
+    """What says who passes first: base of what a choice of ``order`` may be; reasoning adds its hooks."""
+
+
 class EpisodeLauncher:
     """Where episodes are driven: base of what a choice of ``launcher`` may be; a batch adds its hooks."""
 

@@ -14,13 +14,15 @@ LESS = 1e-9  # An order is better only if it saves more than this [s]
 class BruteForce(SearchedOrder):
     """Goes through all orders that what is physically fixed allows, except those that cannot be better."""
 
-    name, most_cavs = "bruteforce", MOST
+    name, chosen_as, most_cavs = "bruteforce", "optimal", MOST
 
     def order(self, instance: Instance, planner: JointPlanner) -> Ordering:
         """Return the best order."""
         if len(instance.vehicles) > MOST:
-            many = f"at most {MOST} vehicles, got {len(instance.vehicles)}"
-            raise EpisodeError(f"bruteforce orders {many}; take method=mcts or fewer vehicles")
+            raise EpisodeError(
+                f"bruteforce orders at most {MOST} vehicles, got {len(instance.vehicles)}; take method=mcts "
+                "(order=mcts in the place of order=optimal) or fewer vehicles"
+            )
         return super().order(instance, planner)
 
     def search(self, problem: Coded, seeds: Sequence[Sequence[str]]) -> Found:

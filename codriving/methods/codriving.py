@@ -13,8 +13,9 @@ from codriving.datatypes import (
     Situation,
     WorldState,
 )
-from codriving.errors import require_range
+from codriving.errors import require, require_range
 from codriving.geometry import RoadMap
+from codriving.methods.chosen_order import ChosenOrder, order_variant
 from codriving.methods.experience_log import ConflictLog, learn
 from codriving.methods.language_model.prompted_model import ModelMethod, PromptedModel
 from codriving.methods.pipeline import Pipeline
@@ -28,6 +29,7 @@ from codriving.reasoning import (
     Decider,
     Forecast,
     NoCheck,
+    OrderRule,
     OwnOrders,
     Perception,
     RuleCoordinator,
@@ -44,17 +46,29 @@ from codriving.reasoning import (
 class CoDriving(ModelMethod):
     """The framework of the paper."""
 
-    name, asked, reflects = "codriving", ("negotiate", "decide"), "reflect"
+    name, reflects = "codriving", "reflect"
 
-    def __init__(self, cda: CdaLevel, llm: Model, memory: CaseMemory | None, margin: float) -> None:
+    def __init__(
+        self, cda: CdaLevel, llm: Model, memory: CaseMemory | None, margin: float, order: OrderRule | None = None
+    ) -> None:
         require_range("margin", margin, 0, 5, " s")
+        require(
+            order is None or cda.negotiation,
+            "with cda.negotiation=false each CAV goes by an order of its own, so that there is no place for order=; "
+            "leave order= out, or choose a cda= with negotiation",
+        )
         super().__init__(llm, memory)
-        self.cda, self.margin, self.variant = cda, margin, cda.variant
+        self.cda, self.margin, self.variant = cda, margin, order_variant(cda.variant, order)
+        self.order, self.most_cavs = order, order.most_cavs if order is not None else None
+        self.asked = ("negotiate", "decide") if order is None else ("decide",)
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Fill the slots for a new episode."""
         super().reset(road_map, model, seed)
         coordinator, decider = ports(self._model, self.llm.ask_plain, self.cda.binding, self.cda.intent_sharing)
+        if self.order is not None:
+            self.order.reset(seed)
+            coordinator = ChosenOrder(self.order, self.cda.binding, self.margin)
         forecast = Forecast(model, (*CONTINUATIONS, *plan_library(model)), road_map)
         states = SharedStates() if self.cda.state_sharing else SensedStates()
         intents = SHARED_INTENTS if self.cda.intent_sharing else HIDDEN_INTENTS

@@ -56,11 +56,7 @@ class Ordered(Method):
         moment = self._perception.perceive(world)
         problem = pose(moment, self.executor.gap)
         ordering = self.rule.order(problem.instance, self.executor.planner(moment))
-
-        def reason(first: str, second: str) -> str:
-            return ordering.reasons.get((first, second), f"{first} comes before {second} in the order")
-
-        agreed = agreement(moment, problem, ordering.times, reason, True)
+        agreed = agreement(moment, problem, ordering.times, ordering.reason, True)
         drive = self.executor.drive(moment, ordering)
         changes = self._lane_changes(moment, agreed, drive)
         situations = tuple(_situation(moment, name, agreed, drive, changes.get(name)) for name in moment.scenes)

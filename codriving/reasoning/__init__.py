@@ -3,6 +3,7 @@
 from codriving.reasoning.conflicts import OPEN, SLOWEST, find_conflicts, is_behind, is_open, ttcp
 from codriving.reasoning.decision.cases import favour
 from codriving.reasoning.decision.rules import Decider, RuleDecider, decide_one, is_plain
+from codriving.reasoning.execution.joint_planner import JointPlans
 from codriving.reasoning.execution.lane_requests import LaneRequests
 from codriving.reasoning.execution.planned import Drive, Executor, humans_expected
 from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator, agreement
@@ -35,11 +36,12 @@ from codriving.reasoning.ordering.schedule import (
 from codriving.reasoning.ordering.tickets import CONTROL_RADIUS, TicketBook, by_slot, by_ticket, reasons
 from codriving.reasoning.perception import Moment, Perception, single_vehicle_perception
 from codriving.reasoning.prediction.clearance import stays_behind
-from codriving.reasoning.prediction.expectation import Expected, expect_all
+from codriving.reasoning.prediction.expectation import HEADWAY, Expected, expect_all
 from codriving.reasoning.prediction.forecast import HORIZON, Forecast
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.prediction.rollout import Plan, plan_library, rollout
 from codriving.reasoning.safety.assessment import NoCheck, SafetyCheck, ThreeLayers
+from codriving.reasoning.safety.conflict_lane import PAD
 from codriving.reasoning.safety.safety_input import (
     CONTINUATIONS,
     LONGITUDINAL,
@@ -55,15 +57,16 @@ from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, 
 from codriving.reasoning.sharing.tracking import STANDING, Places, Tracking
 
 __all__ = [
-    "ALIGNED", "CONTINUATIONS", "CONTROL_RADIUS", "HIDDEN_INTENTS", "HORIZON", "LANE_END_GAP", "LONGEST_WAIT",
-    "LONGITUDINAL", "OPEN", "SAME_LANE", "SHARED_INTENTS", "SIDES", "SLOWEST", "STANDING", "AgreedOrder", "CdaLevel",
-    "Coded", "Coordinator", "Decider", "Drive", "Executor", "Expected", "Forecast", "Found", "IntelligentDriver",
-    "JointPlan", "JointPlanner", "LaneRequests", "Moment", "Negotiation", "NoCheck", "Objective", "OrderRule",
-    "Ordering", "OwnOrders", "Perception", "Places", "Plan", "Prefix", "Premise", "Problem", "Request",
-    "RuleCoordinator", "RuleDecider", "SafetyCheck", "SafetyInput", "SearchedOrder", "SensedStates", "SharedStates",
-    "ThreeLayers", "TicketBook", "Tracking", "after_windows", "agreement", "best_subset", "by_slot", "by_ticket",
-    "carried_over", "clear_time", "decide_one", "describe_scenes", "evacuation_time", "expect_all", "favour",
-    "find_circle", "find_conflicts", "humans_expected", "in_order", "inserted", "is_behind", "is_open", "is_plain",
-    "open_pairs", "plan_library", "pose", "premise", "reasons", "repaired", "rollout", "safety_input", "schedule",
-    "sequence", "single_vehicle_perception", "stays_behind", "then_stop", "timed", "total_delay", "ttcp", "with_roles",
+    "ALIGNED", "CONTINUATIONS", "CONTROL_RADIUS", "HEADWAY", "HIDDEN_INTENTS", "HORIZON", "LANE_END_GAP",
+    "LONGEST_WAIT", "LONGITUDINAL", "OPEN", "PAD", "SAME_LANE", "SHARED_INTENTS", "SIDES", "SLOWEST", "STANDING",
+    "AgreedOrder", "CdaLevel", "Coded", "Coordinator", "Decider", "Drive", "Executor", "Expected", "Forecast", "Found",
+    "IntelligentDriver", "JointPlan", "JointPlanner", "JointPlans", "LaneRequests", "Moment", "Negotiation", "NoCheck",
+    "Objective", "OrderRule", "Ordering", "OwnOrders", "Perception", "Places", "Plan", "Prefix", "Premise", "Problem",
+    "Request", "RuleCoordinator", "RuleDecider", "SafetyCheck", "SafetyInput", "SearchedOrder", "SensedStates",
+    "SharedStates", "ThreeLayers", "TicketBook", "Tracking", "after_windows", "agreement", "best_subset", "by_slot",
+    "by_ticket", "carried_over", "clear_time", "decide_one", "describe_scenes", "evacuation_time", "expect_all",
+    "favour", "find_circle", "find_conflicts", "humans_expected", "in_order", "inserted", "is_behind", "is_open",
+    "is_plain", "open_pairs", "plan_library", "pose", "premise", "reasons", "repaired", "rollout", "safety_input",
+    "schedule", "sequence", "single_vehicle_perception", "stays_behind", "then_stop", "timed", "total_delay", "ttcp",
+    "with_roles",
 ]  # fmt: skip

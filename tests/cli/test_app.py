@@ -99,6 +99,7 @@ def test_list_without_a_group_shows_all_groups() -> None:
         "scenarios",
         "methods",
         "executors",
+        "orders",
         "cdas",
         "llms",
         "memories",

@@ -46,6 +46,14 @@ def test_it_drives_an_episode(config: dict[str, Any]) -> None:
     assert environment.outcome.ending is Ending.SUCCESS
 
 
+def test_it_orders_for_codriving(config: dict[str, Any]) -> None:
+    resolved = compose(["order=nearest_first", "order.step=2.0"], FOLDER / "conf")
+    assert resolved["plugins"] == ["nearest_first"]
+    assert resolved["order"]["step"] == 2.0
+    assert config["method"]["rule"] == {**resolved["order"], "step": 5.0}
+    assert make_objects(resolved).method.variant == "order=nearest_first"
+
+
 def test_the_page_quotes_the_rule() -> None:
     source = (FOLDER / "nearest_first.py").read_text(encoding="utf-8")
     quoted = PAGE.read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]

@@ -83,6 +83,16 @@ def test_a_config_that_does_not_know_flows_is_one_of_episodes() -> None:
     assert told("flow=steady") != told() != told("flow=steady", "flow.arrivals=200") != told("flow=steady")
 
 
+def test_a_config_that_does_not_know_orders_is_one_whose_order_is_negotiated() -> None:
+    resolved = compose([])
+    before = {key: value for key, value in resolved.items() if key != "order"}
+    before["method"] = {key: value for key, value in before["method"].items() if key != "order"}
+    assert fingerprint(NAMES, {}, resolved, ()) == fingerprint(NAMES, {}, before, ())
+    assert settings_of(before) == settings_of(resolved)
+    assert settings_of(compose(["order=fcfs"])).items() >= {"order.mode": '"conflict"'}.items()
+    assert told() == told("order=negotiated") != told("order=fcfs") != told("order=fcfs", "order.control_radius=50")
+
+
 def test_a_config_that_does_not_know_the_group_of_drivers_is_one_with_those_of_the_simulator() -> None:
     resolved = compose(["drivers=simulator"])
     before = {key: value for key, value in resolved.items() if key != "drivers"}

@@ -52,7 +52,7 @@ def check_model(llm: Model, memory: CaseMemory | None) -> None:
 class ModelMethod(Method):
     """A method that reasons by a language model or by rules in its place, and may remember."""
 
-    asked: ClassVar[tuple[str, ...]]  # Purposes of the questions of every episode
+    asked: tuple[str, ...]  # Purposes of the questions of every episode
     reflects: ClassVar[str]  # Purpose of the questions on mistakes, if the memory asks any
 
     def __init__(self, llm: Model, memory: CaseMemory | None) -> None:

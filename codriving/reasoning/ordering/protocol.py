@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes import Action, Instance, Pair
+from codriving.datatypes import Action, Instance, OrderOfCavs, Pair
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +58,10 @@ class Ordering:
     # rule holds back for longer than their conflicts do.
     not_before: Mapping[str, float] = field(default_factory=dict)
 
+    def reason(self, first: str, second: str) -> str:
+        """Say why one of two CAVs goes before the other one."""
+        return self.reasons.get((first, second), f"{first} comes before {second} in the order")
+
 
 @dataclass(frozen=True, slots=True)
 class JointPlan:
@@ -89,11 +93,12 @@ class JointPlanner(ABC):
         """
 
 
-class OrderRule(ABC):
+class OrderRule(OrderOfCavs, ABC):
     """Chooses the order of an instance, step after step of one episode."""
 
     name: str = ""
     variant: str = ""
+    chosen_as: str = ""  # What ``order=`` of codriving calls it in tables; empty for its name
     most_cavs: int | None = None  # CAVs that it orders at most; None for any number
 
     def reset(self, seed: int) -> None:
