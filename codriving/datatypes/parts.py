@@ -79,6 +79,10 @@ class Simulator(ABC):
     def reset(self, seed: int) -> WorldState:
         """Begin the episode of a seed."""
 
+    def hand_over(self) -> WorldState:
+        """Let all CAVs of the episode that has just begun drive as human drivers do; they then take no actions."""
+        raise NotImplementedError(f"{type(self).__name__} has no drivers to whom CAVs could be handed over")
+
     @abstractmethod
     def step(self, actions: Mapping[str, Action]) -> WorldState:
         """Drive until the next decision."""
@@ -170,6 +174,7 @@ class Method(ABC):
     reasoner: str = "none"  # What reasons: ``rules``, the name of a language model, or ``none``
     remembers: str = ""  # Its memory in tables; empty without one
     most_cavs: int | None = None  # CAVs on the road that it can decide for at most; None for any number
+    hands_over: bool = False  # Whether its CAVs drive as human drivers do, so that it gives no actions
 
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
         """Refuse a road that the method was not made for, before anything is driven.

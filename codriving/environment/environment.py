@@ -31,6 +31,7 @@ from codriving.environment.termination import Termination
 from codriving.environment.traffic.human_driver import HumanDriver
 from codriving.environment.traffic.route_following import RoutePath, route_path
 from codriving.environment.traffic.traffic import Traffic
+from codriving.environment.traffic.unguided import take_over
 from codriving.errors import EpisodeError, ScenarioError
 from codriving.geometry import FloatArray, RoadMap, road_map
 
@@ -99,6 +100,7 @@ class Environment(Simulator):
         lanes = {lane: self._network.get_lane(lane) for lane in entries(self.scenario)}
         self._outside = Outside(newcomers, lanes)
         self._steps = self._decisions = 0
+        self._handed_over = False
         self._recorder = Recorder()
         self._recorder.record(0, self._traffic.vehicles, {})
         self._let_in()
@@ -133,6 +135,7 @@ class Environment(Simulator):
         there = len(self._traffic.vehicles)
         for start in self._outside.come_in(self._traffic, self._time):
             self._put(self._traffic, self._seed, (start,))
+        self._take_over()
         self._recorder.record(self._steps, self._traffic.vehicles[there:], {})
 
     def alone(self, seed: int) -> Mapping[str, FloatArray]:
@@ -181,6 +184,24 @@ class Environment(Simulator):
             if isinstance(vehicle, ConnectedVehicle):
                 vehicle.may_hold = self.driving_model.steady
 
+    def hand_over(self) -> WorldState:
+        """Let all CAVs drive as attentive human drivers do; scene and human drivers stay as they are.
+
+        Raises:
+            EpisodeError: If no episode has just begun.
+        """
+        if self._world is None or self._decisions:
+            raise EpisodeError("CAVs are handed over when an episode begins; call reset(seed) before hand_over()")
+        self._handed_over = True
+        self._take_over()
+        return self._look()
+
+    def _take_over(self) -> None:
+        """Put a driver into each CAV that waits for decisions."""
+        if self._handed_over:
+            take_over(self._traffic, self.drivers, self.driving_model.top_speed)
+            limit(self._traffic, self.limits)
+
     @property
     def outcome(self) -> Outcome | None:
         """How the episode ended; None while it goes on."""
@@ -210,7 +231,7 @@ class Environment(Simulator):
             raise EpisodeError("no episode has begun; call reset(seed) before step(actions)")
         if self._outcome is not None:
             raise EpisodeError("the episode is over; call reset(seed) before step(actions)")
-        available = self._world.available
+        available = {name: known for name, known in self._world.available.items() if known}
         if set(actions) != set(available):
             raise EpisodeError(f"one action for each of {sorted(available)} is needed, got {sorted(actions)}")
         for name, action in actions.items():

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from codriving.datatypes import Intent, Kind, Track, Trajectory, VehicleState, WorldState
-from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.traffic.route_following import RouteFollower, plain
 from codriving.environment.traffic.traffic import Traffic
 
@@ -63,7 +62,7 @@ def state_of(vehicle: RouteFollower) -> VehicleState:
 def snapshot(traffic: Traffic, time: float, step: int) -> WorldState:
     """Copy what a method may know of the world; nothing of the simulator leaves with it."""
     vehicles = sorted(traffic.vehicles, key=lambda v: v.id)
-    cavs = [v for v in vehicles if isinstance(v, ConnectedVehicle)]
+    cavs = [v for v in vehicles if v.kind is Kind.CAV]
     intents = {v.id: Intent(v.route_path.route.id, float(v.target_speed), plain(v.target_lane_index)) for v in cavs}
     states, available = tuple(state_of(v) for v in vehicles), {v.id: v.available() for v in cavs}
     signals = {v.id: v.signal for v in vehicles if v.signal} if traffic.past is not None else {}

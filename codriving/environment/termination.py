@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable
 
-from codriving.datatypes import Collision, Ending, Outcome
-from codriving.environment.cav import ConnectedVehicle
+from codriving.datatypes import Collision, Ending, Kind, Outcome
 from codriving.environment.collisions import find_block_collisions, find_collisions
 from codriving.environment.traffic.route_following import RouteFollower
 from codriving.environment.traffic.traffic import Traffic
@@ -56,7 +55,7 @@ class Termination:
     def _tow(self, traffic: Traffic, found: list[tuple[tuple[RouteFollower, ...], Collision]]) -> Collision | None:
         first = None
         for vehicles, collision in found:
-            if any(isinstance(v, ConnectedVehicle) for v in vehicles):
+            if any(v.kind is Kind.CAV for v in vehicles):
                 first = first or collision
             else:
                 self._bystanders.append(collision)

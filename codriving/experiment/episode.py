@@ -89,6 +89,8 @@ def run_episode(
     try:
         world = environment.reset(seed)
         log.begun = True
+        if method.hands_over:
+            world = environment.hand_over()
         if memory is not None:
             memory.begin(Interaction(labels.scenario, seed, labels.method, labels.variant, labels.reasoner))
         method.reset(environment.road_map, environment.driving_model, seed_of_method(seed))

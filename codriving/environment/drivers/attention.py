@@ -8,7 +8,6 @@ import numpy as np
 from highway_env.vehicle.objects import RoadObject
 from numpy.typing import NDArray
 
-from codriving.datatypes import Kind
 from codriving.environment.drivers.style import DriverTraits
 from codriving.environment.traffic.hidden import Hidden
 from codriving.environment.traffic.right_of_way import (
@@ -175,7 +174,7 @@ def look_round(road_map: RoadMap, vehicles: Sequence[RouteFollower], every: floa
         spot = believed(road_map, vehicle)
         around.append((vehicle, spot, motions(vehicle, TIMES) - vehicle.s + spot[1]))
     for vehicle in vehicles:
-        judgement: Judgement | None = vehicle.judgement if vehicle.kind is Kind.HDV else None
+        judgement: Judgement | None = getattr(vehicle, "judgement", None)
         if judgement is None:
             continue
         waited = vehicle.waits_at is not None

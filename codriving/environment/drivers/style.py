@@ -1,6 +1,6 @@
 """Styles of human drivers, and a mix of them from which each driver is drawn."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -11,6 +11,8 @@ from codriving.environment.settings import DriverProfile
 from codriving.errors import ConfigError, require_interval, require_range
 
 Interval = tuple[float, float]
+
+TYPICAL = "attentive"  # The style of which a driver who stands for all others is
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,14 +101,21 @@ class DriverMix(Drivers):
         key = np.random.SeedSequence(entropy=seed, spawn_key=(2, *name.encode()))
         # All at once and in a fixed order: another share of a style leaves the drivers of the other styles as they are.
         chance = np.random.default_rng(key).random(9).tolist()
-        kind = self._kind(chance[0])
+        return self._traits(self._kind(chance[0]), chance[1:8], chance[8] < self.signals)
+
+    def typical(self) -> DriverTraits:
+        """Return the driver in the middle of the attentive ones, of the first style where none is called so."""
+        return self._traits(TYPICAL if TYPICAL in self.styles else next(iter(self.styles)), [0.5] * 7, True)
+
+    def _traits(self, kind: str, chance: Sequence[float], signals: bool) -> DriverTraits:
+        """Return the driver of a style whose values lie so far between the ends of their intervals, 0 to 1."""
         style = self.styles[kind]
 
         def within(interval: Interval, place: float) -> float:
             return interval[0] + (interval[1] - interval[0]) * place
 
         of = (style.acceleration, style.deceleration, style.headway, (3.5, 4.5), style.speed, style.reaction)
-        acceleration, deceleration, headway, exponent, speed, reaction = map(within, of, chance[1:7])
+        acceleration, deceleration, headway, exponent, speed, reaction = map(within, of, chance)
         return DriverTraits(
             kind,
             # Who kept less distance than it drives until it reacts could not brake in time.
@@ -118,8 +127,8 @@ class DriverMix(Drivers):
             style.horizon,
             style.gives_way,
             style.hesitation,
-            within(style.patience, chance[7]),
-            chance[8] < self.signals,
+            within(style.patience, chance[6]),
+            signals,
         )
 
     def _kind(self, chance: float) -> str:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Self
 
 import numpy as np
 from highway_env.road.road import Road
@@ -42,7 +43,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
         profile: DriverProfile | DriverMix,
         corrections: Corrections,
         traits: DriverTraits | None = None,
-    ) -> "HumanDriver":
+    ) -> Self:
         """Put a human driver on the road; the start speed is the speed that the driver wants."""
         driver = cls.place(road, start, route_paths, corrections)
         driver.stands = start.stands

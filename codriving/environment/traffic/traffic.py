@@ -49,6 +49,11 @@ class Traffic(RegulatedRoad):
             self._hidden = hidden_vehicles(self.road_map, self.vehicles)
         return self._hidden
 
+    def exchange(self, vehicles: list[RouteFollower]) -> None:
+        """Put other vehicles in the place of all that are there."""
+        self.vehicles[:] = vehicles
+        self._hidden = None
+
     def seen_by(self, driver: RouteFollower, reaction: float | None) -> list[RoadObject]:
         """Return the vehicles that a driver sees, as they are or as they were a reaction time [s] ago."""
         if reaction is not None and self.past is not None:
