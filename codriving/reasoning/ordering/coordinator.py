@@ -64,7 +64,7 @@ class RuleCoordinator(Coordinator):
             options = []
             for vehicle in [s for s in waiting.values() if s.id not in held] or list(waiting.values()):
                 time = start_time(vehicle, times, instance.separation)
-                rivals = [k for k in waiting if (k, vehicle.id) in instance.separation and k != vehicle.id]
+                rivals = [k for k in waiting if (k, vehicle.id) in instance.separation]
                 handicap = TURN_YIELDS if vehicle.turning else 0.0
                 if self.previous is not None and any(self.previous.first_of(k, vehicle.id) == k for k in rivals):
                     handicap += KEEPS_TURN

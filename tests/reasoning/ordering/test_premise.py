@@ -75,3 +75,28 @@ def test_the_later_one_of_a_pair_may_become_the_earlier_one_by_a_second(etas: tu
     # Of the pair (A, B) B was the earlier one, by half a second.
     then = premise(instance(A=3.0, B=2.5), [("A", "B")])
     assert then.still_holds(premise(instance(A=etas[0], B=etas[1]), [("A", "B")])) is holds
+
+
+STUCK_A, STUCK_B, STUCK_C = ("A", "B"), ("B", "A"), ("C", "B")
+"""A can no longer stop before the zone that it shares with B, and so on."""
+
+
+@pytest.mark.parametrize(
+    ("then", "now", "holds"),
+    [
+        ({STUCK_A}, {STUCK_A}, True),
+        # It counts of either vehicle of a pair, however the pair is named.
+        ({STUCK_B}, {STUCK_B}, True),
+        ({STUCK_B}, set(), False),
+        (set(), {STUCK_B}, False),
+        ({STUCK_A}, {STUCK_B}, False),
+        # C is through: what it could no longer do does not matter.
+        ({STUCK_A, STUCK_C}, {STUCK_A}, True),
+        ({STUCK_C}, set(), True),
+    ],
+)
+def test_who_can_no_longer_stop_counts_while_the_pair_is_open(
+    then: set[tuple[str, str]], now: set[tuple[str, str]], holds: bool
+) -> None:
+    before = Premise({("A", "B"): 0.5, ("B", "C"): 5.5}, frozenset(), frozenset(then))
+    assert before.still_holds(Premise({("A", "B"): 0.5}, frozenset(), frozenset(now))) is holds

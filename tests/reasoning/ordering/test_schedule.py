@@ -132,6 +132,22 @@ def test_objective_weighs_delay_and_evacuation() -> None:
     assert Objective().value(problem, {"a": 1.0, "b": inf}) == LONGEST_WAIT
 
 
+@pytest.mark.parametrize(
+    ("weight", "fairness", "variant"),
+    [
+        (0.0, {}, ""),
+        (0.5, {}, "evacuation_weight=0.5"),
+        (0.0, {"b": 2.0, "a": 0.25}, "fairness.a=0.25,fairness.b=2"),
+        (0.5, {"a": 1.0, "b": 2.0}, "evacuation_weight=0.5,fairness.b=2"),
+        (0.0, {"a": 1.0}, ""),
+    ],
+)
+def test_variant_names_the_weights_that_change_something(
+    weight: float, fairness: dict[str, float], variant: str
+) -> None:
+    assert Objective(weight, fairness).variant == variant
+
+
 @pytest.mark.parametrize(("weight", "fairness"), [(-0.1, {}), (11.0, {}), (0.0, {"a": -1.0}), (0.0, {"a": 101.0})])
 def test_weights_out_of_range_are_refused(weight: float, fairness: dict[str, float]) -> None:
     with pytest.raises(ConfigError, match=r"must be 0 to 1"):

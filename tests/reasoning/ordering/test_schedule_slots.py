@@ -73,6 +73,13 @@ def test_the_separations_tell_who_is_in_the_zone_first(
     assert "".join(sequence(instance(times, separation, fixed), times)) == order
 
 
+def test_one_that_waits_for_a_fixed_pair_comes_after_both() -> None:
+    # A cannot stop for B, and B is in the zone that it shares with C first: C, though earlier than A, is the last.
+    times = {"B": 4.0, "C": 6.0, "A": 7.0}
+    problem = instance(times, {BEFORE: 1.0, AFTER: 1.0, ("B", "C"): 1.0, ("C", "B"): 1.0}, [BEFORE])
+    assert sequence(problem, times) == ["A", "B", "C"]
+
+
 @pytest.mark.parametrize(
     ("previous", "etas", "fixed", "order"),
     [

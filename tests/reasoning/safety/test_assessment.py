@@ -59,6 +59,25 @@ def test_going_on_may_be_the_least_dangerous(junction: Junction) -> None:
     assert least_dangerous(given) is Action.FASTER
 
 
+@pytest.mark.parametrize("reverse", [False, True])
+@pytest.mark.parametrize(
+    ("offered", "least"),
+    [
+        ("SLOWER IDLE FASTER", "SLOWER"),
+        ("IDLE SLOWER FASTER", "SLOWER"),
+        ("FASTER IDLE", "IDLE"),
+        ("FASTER SLOWER", "SLOWER"),
+    ],
+)
+def test_of_actions_that_are_as_bad_it_is_the_slowest(
+    offered: str, least: str, reverse: bool, junction: Junction
+) -> None:
+    # The two overlap already, whatever CAV1 does.
+    thoughts = junction.thoughts(car("CAV1", "south-north", 60.0, 6.0), car("HDV1", "south-north", 62.0, 0.0))
+    actions = tuple(Action(name) for name in offered.split())
+    assert least_dangerous(thoughts.safety_input("CAV1", actions=actions[::-1] if reverse else actions)) == least
+
+
 def test_without_the_check_everything_stays(junction: Junction) -> None:
     given = junction.safety_input(car("CAV1", "south-north", 60.0, 9.0), car("HDV1", "south-north", 67.0, 0.0))
     assessments = NoCheck().assess(given)

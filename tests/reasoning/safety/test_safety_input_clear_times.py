@@ -32,6 +32,15 @@ def test_behind_a_vehicle_that_merges_the_zone_need_not_be_left(junction: Juncti
     assert (zone.merge_i - 80.0) / 9.0 < time < (zone.exit_i - 80.0) / 9.0
 
 
+@pytest.mark.parametrize(("place", "time"), [(80.0, 4.8), (95.0, 3.2), (100.0, 2.6)])
+def test_behind_one_that_has_merged_the_way_is_free_a_car_length_down_the_common_road(
+    place: float, time: float, junction: Junction
+) -> None:
+    # The common road begins at 118.0 m: at 9 m/s it is at 123.0 m after 4.77, 3.11 and 2.55 s; a sample is 0.2 s.
+    given = junction.safety_input(CARS[0], car("CAV2", "west-north", place, 9.0), order=order_of("CAV2 CAV1"))
+    assert clear_time(given, given.conflicts[0]) == pytest.approx(time)
+
+
 def test_never_behind_one_who_stands_in_the_way(junction: Junction) -> None:
     given = junction.safety_input(CARS[0], car("HDV1", "west-east", 112.0, 0.0), order=order_of("HDV1 CAV1"))
     straight = next(c for c in given.conflicts if c.routes[1] == "west-east")
