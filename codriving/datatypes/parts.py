@@ -9,7 +9,7 @@ from codriving.datatypes.experience import Experience, Interaction, Memory
 from codriving.datatypes.record import Outcome, Score, Trajectory
 from codriving.datatypes.road import Road, Route
 from codriving.datatypes.situation import Deliberation, Situation
-from codriving.datatypes.world import Action, DrivingModel, Kind, Scene, Start, WorldState
+from codriving.datatypes.world import Action, DrivingModel, Kind, Manner, Scene, Start, WorldState
 
 if TYPE_CHECKING:
     import numpy as np
@@ -90,6 +90,10 @@ class Simulator(ABC):
     @abstractmethod
     def trajectory(self) -> Trajectory:
         """Return what was driven since the last reset."""
+
+    def manners(self) -> Mapping[str, Manner]:
+        """Return how each human driver on the road treats the right of way, by id; nothing where that is not known."""
+        return {}
 
     def alone(self, seed: int) -> "Mapping[str, NDArray[np.float64]]":
         """Drive each vehicle of an episode alone, from the same start along the same route.
@@ -175,6 +179,7 @@ class Method(ABC):
     remembers: str = ""  # Its memory in tables; empty without one
     most_cavs: int | None = None  # CAVs on the road that it can decide for at most; None for any number
     hands_over: bool = False  # Whether its CAVs drive as human drivers do, so that it gives no actions
+    knows_drivers: bool = False  # Whether it is told what no vehicle can know: how human drivers treat the right of way
 
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
         """Refuse a road that the method was not made for, before anything is driven.
@@ -211,6 +216,10 @@ class Method(ABC):
             seed: For what the method draws at random. It is not the seed of the episode, from which the scene with the
                 routes of human drivers could be made again.
         """
+
+    def be_told(self, manners: Mapping[str, Manner]) -> None:
+        """Hear how human drivers treat the right of way, before each decision; only if ``knows_drivers``."""
+        return None
 
     @abstractmethod
     def act(self, world: WorldState) -> Deliberation:

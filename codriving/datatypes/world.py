@@ -113,6 +113,16 @@ class Scene:
 
 
 @dataclass(frozen=True, slots=True)
+class Manner:
+    """How a human driver treats the right of way; it stands in no world state, since minds cannot be read."""
+
+    gives_way: str  # ``by_rule``, ``to_higher_rank`` or ``never``
+    hesitates: bool  # Whether it still waits for all that move, although it may go first
+    reaction: float  # Time from what happens to what it does about it [s]
+    distraction: float = 0.0  # How much later it sees who crosses its way [s]
+
+
+@dataclass(frozen=True, slots=True)
 class WorldState:
     """All vehicles on the road, and what the CAVs among them intend.
 

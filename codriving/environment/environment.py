@@ -10,6 +10,7 @@ from codriving.datatypes import (
     DrivingModel,
     Flow,
     Kind,
+    Manner,
     Outcome,
     Scenario,
     Scene,
@@ -216,6 +217,10 @@ class Environment(Simulator):
         if self._world is None:
             raise EpisodeError("no episode has begun; call reset(seed) before trajectory()")
         return self._recorder.trajectory(self.driving_model.step, self._termination.arrivals)
+
+    def manners(self) -> Mapping[str, Manner]:
+        """Return how each human driver on the road treats the right of way, by id."""
+        return {v.id: v.manner for v in self._traffic.vehicles if v.kind is Kind.HDV}
 
     @property
     def _time(self) -> float:

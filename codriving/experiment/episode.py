@@ -97,6 +97,8 @@ def run_episode(
         while (outcome := environment.outcome) is None:
             go_on()
             log.time = world.time
+            if method.knows_drivers:
+                method.be_told(environment.manners())
             before, cpu_before = perf_counter(), thread_time()
             deliberation = method.act(world)
             log.cpu.append(thread_time() - cpu_before)

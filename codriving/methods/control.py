@@ -1,11 +1,12 @@
 """Controls: codriving with one part taken for something plain, so that a table tells what that part is worth."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from codriving.datatypes import DrivingModel, Road, RuleModel
 from codriving.geometry import RoadMap
 from codriving.methods.codriving import CoDriving
-from codriving.reasoning import CdaLevel, Decider
+from codriving.reasoning import CdaLevel, Decider, OrderRule
 
 CONTROL = "control"  # How the variant of every control begins, so that no table can show one as a method
 
@@ -13,10 +14,21 @@ CONTROL = "control"  # How the variant of every control begins, so that no table
 class Control(CoDriving):
     """Codriving by its rules, without a memory, with another part in a slot."""
 
-    def __init__(self, name: str, said: str, cda: CdaLevel, margin: float, decider: Decider | None) -> None:
-        super().__init__(cda, RuleModel(), None, margin)
+    def __init__(
+        self,
+        name: str,
+        said: str,
+        cda: CdaLevel,
+        margin: float,
+        order: OrderRule | None = None,
+        decider: Decider | None = None,
+    ) -> None:
+        # An order that is common by nature needs no negotiation.
+        cda = cda if order is None or cda.negotiation else replace(cda, negotiation=True)
+        super().__init__(cda, RuleModel(), None, margin, order)
         self.name, self.said, self.decider = name, said, decider
-        self.variant = CONTROL if self.variant == "full" else f"{CONTROL}/{self.variant}"
+        own = self.variant if decider is not None else cda.variant
+        self.variant = CONTROL if own == "full" else f"{CONTROL}/{own}"
 
     def remark(self, road: Road, world: Mapping[str, str]) -> str:
         return f"{self.name}: a control and no method: {self.said}."

@@ -7,6 +7,7 @@ from codriving.datatypes import Action, Conflict, DrivingModel, SceneDescription
 from codriving.geometry import RoadMap
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.prediction.forecast import Forecast, State
+from codriving.reasoning.prediction.right_of_way import GivesWay, gives_way
 from codriving.reasoning.sharing.scenes import describe_scenes, with_conflicts
 from codriving.reasoning.sharing.sharing import GUESSED_INTENTS, IntentSharing, SensedStates, StateSharing
 from codriving.reasoning.sharing.tracking import Tracking
@@ -24,6 +25,7 @@ class Moment:
     road_map: RoadMap
     forecast: Forecast
     sees_conflicts: bool = True  # Whether conflicts can be told at all, which takes routes that are shared or guessed
+    gives_way: GivesWay = gives_way  # Says why a human driver is expected to let the CAV pass first
 
 
 @dataclass(slots=True)
@@ -36,6 +38,7 @@ class Perception:
     state_sharing: StateSharing
     intent_sharing: IntentSharing
     may_hold: bool = True  # Whether those who decide know HOLD
+    gives_way: GivesWay = gives_way  # Says why a human driver is expected to let the CAV pass first
 
     def perceive(self, world: WorldState) -> Moment:
         """Return what every CAV knows, and begin the predictions of this step."""
@@ -51,7 +54,8 @@ class Perception:
         available = world.available
         if not self.may_hold:
             available = {name: tuple(a for a in known if a is not Action.HOLD) for name, known in available.items()}
-        return Moment(world.time, scenes, conflicts, vehicles, available, self.road_map, self.forecast, finds_conflicts)
+        known = (scenes, conflicts, vehicles, available, self.road_map, self.forecast, finds_conflicts)
+        return Moment(world.time, *known, self.gives_way)
 
 
 def states(world: WorldState, road_map: RoadMap, model: DrivingModel) -> list[State]:

@@ -16,13 +16,18 @@ def built(*overrides: str) -> CoDriving:
     return build(node, CoDriving, "method", given={Model: RuleModel(), CaseMemory: None})
 
 
-@pytest.mark.parametrize("name", ["fastest", "random_action"])
+ROUTES = ("south-north", "west-east", "north-south", "east-west")
+
+NAMES = ["fastest", "random_action", "random_order", "oracle"]
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_a_control_says_in_each_table_that_it_is_one(name: str, junction: Junction) -> None:
     control = built(f"method={name}")
     assert isinstance(control, Control)
     assert (control.name, control.variant, control.reasoner) == (name, "control", "rules")
     assert built(f"method={name}", "cda.safety_check=false").variant == "control/no_safety_check"
-    assert control.remark(junction.road_map.road, {}).startswith(f"{name}: a control and no method: codriving in which")
+    assert control.remark(junction.road_map.road, {}).startswith(f"{name}: a control and no method: codriving ")
 
 
 @pytest.mark.parametrize("name", ["fastest", "random_action"])
@@ -38,3 +43,22 @@ def test_a_control_knows_what_codriving_knows(name: str, junction: Junction) -> 
         differs = {key for key in mine if mine[key] != theirs[key]}
         assert differs <= {"action", "reason"}
         assert mine["action"] in mine["allowed"]
+
+
+def test_random_order_is_codriving_with_the_order_of_that_name(junction: Junction) -> None:
+    world = junction.world(*(car(f"CAV{k}", route, 60.0, 8.0) for k, route in enumerate(ROUTES)))
+    found = []
+    for seed in range(6):
+        both = [built("method=random_order"), built("order=random")]
+        for method in both:
+            method.reset(junction.road_map, junction.model, seed)
+        mine, theirs = (method.act(world).as_dict() for method in both)
+        assert mine == theirs
+        found.append(tuple(mine["cavs"][0]["order"]["sequence"]))
+    assert len(set(found)) >= 4
+
+
+def test_a_random_order_is_common_without_negotiation_too() -> None:
+    assert built("method=random_order", "cda.negotiation=false").variant == "control"
+    assert built("method=random_order", "cda=status_sharing").cda.negotiation
+    assert built("method=fastest", "order=fcfs").variant == "control/order=fcfs"

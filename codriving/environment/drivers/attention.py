@@ -89,7 +89,8 @@ class Judgement:
         self.traits = traits
         self.stood = 0.0  # How long it has stood and waited [s]
         self._looks: deque[Look] = deque()
-        self._hesitates, self._waits_on = traits.hesitation > 0, True
+        # Whether it still waits although it may go first; and for those who stand.
+        self.hesitates, self._waits_on = traits.hesitation > 0, True
 
     def watch(self, driver: RouteFollower, dt: float) -> None:
         """Note how long the driver has stood at a line."""
@@ -98,7 +99,7 @@ class Judgement:
             return
         self.stood += dt
         # Once it has gone on for this reason it does not stop again for the same.
-        self._hesitates = self._hesitates and self.stood < self.traits.hesitation
+        self.hesitates = self.hesitates and self.stood < self.traits.hesitation
         self._waits_on = self._waits_on and self.stood < self.traits.patience
 
     def line(
@@ -149,7 +150,7 @@ class Judgement:
         # It goes first, but the other one is in the junction, or cannot stop before it any more.
         if not stops_before_junction(other, driver.ACC_MAX):
             return True
-        return self._hesitates and other.speed >= STANDS
+        return self.hesitates and other.speed >= STANDS
 
 
 def believed(road_map: RoadMap, vehicle: RouteFollower) -> Spot:

@@ -9,7 +9,7 @@ from highway_env.road.road import Road
 from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.objects import Obstacle, RoadObject
 
-from codriving.datatypes import BLOCKER, LaneId, Start
+from codriving.datatypes import BLOCKER, LaneId, Manner, Start
 from codriving.environment.drivers.attention import Judgement
 from codriving.environment.drivers.style import DriverMix, DriverTraits
 from codriving.environment.motion import STANDSTILL, clip
@@ -61,6 +61,14 @@ class HumanDriver(RouteFollower, IDMVehicle):
             driver.style = BLOCKER
             driver.target_speed = float(driver.lane.speed_limit) * (1.0 if traits is None else traits.speed)
         return driver
+
+    @property
+    def manner(self) -> Manner:
+        """How it treats the right of way; without a style it keeps to the rules, and reacts at once."""
+        if self.traits is None or self.judgement is None:
+            return Manner("by_rule", hesitates=False, reaction=0.0)
+        traits = self.traits
+        return Manner(traits.gives_way, self.judgement.hesitates, traits.reaction, traits.distraction)
 
     def act(self, action: dict[str, float] | str | None = None) -> None:
         """Steer along the route and follow the vehicle ahead on it."""

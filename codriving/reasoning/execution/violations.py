@@ -13,7 +13,6 @@ from codriving.reasoning.conflicts import has_joined, is_behind
 from codriving.reasoning.exits import gets_out
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Steps, first_true, halts_behind
-from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.conflict_lane import BODY
 
 # Sizes of vehicles for planning; a smaller one is taken where vehicles are already closer together than the larger.
@@ -109,7 +108,7 @@ def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, 
 def _in_zone(moment: Moment, c: Conflict, other: TrackedVehicle, travels: Array, lag: int, pad: float) -> Steps:
     place, there = c.places
     low, high = moment.forecast.likely(other.speed, (c.routes[1], there))
-    yields = gives_way(c, other, moment.road_map)
+    yields = moment.gives_way(c, other, moment.road_map)
     steps: Steps = np.zeros(len(travels), dtype=np.int64)
     # Beside a driver who gives way the bodies have to keep clear, no more.
     for size in SIZES[1:] if yields else SIZES:

@@ -21,7 +21,6 @@ from codriving.datatypes import (
 from codriving.geometry import TRUE, ConflictZone, Footprint, RoadMap
 from codriving.reasoning.exits import full_exit, gets_out
 from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.right_of_way import gives_way
 
 GAP = 1.0  # Time between one vehicle's leaving a zone and the next one's entering it [s]
 
@@ -188,7 +187,7 @@ def _add_windows(moment: Moment, vehicle: ApproachingVehicle) -> dict[str, Windo
 def window(moment: Moment, c: Conflict, human: TrackedVehicle, reference: float) -> Window:
     """Return the times at which a CAV must not pass its reference point because of a human driver."""
     forecast = moment.forecast
-    if gives_way(c, human, moment.road_map):
+    if moment.gives_way(c, human, moment.road_map):
         return inf, inf
     zone = moment.road_map.zones(*c.routes)[c.zone]
     slow, fast = forecast.likely(human.speed, (c.routes[1], c.places[1]))

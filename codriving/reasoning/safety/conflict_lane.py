@@ -8,7 +8,6 @@ from codriving.datatypes import Action, Conflict, Relation, TrackedVehicle
 from codriving.geometry import TRUE, ConflictZone, Footprint
 from codriving.reasoning.exits import full_exit, gets_out
 from codriving.reasoning.prediction.clearance import Array, Flags, first_overlap, reacts, stays_ahead, stays_behind
-from codriving.reasoning.prediction.right_of_way import gives_way
 from codriving.reasoning.safety.safety_input import SafetyInput
 
 PAD = 0.5  # Room along the route beyond the planning footprint [m]
@@ -111,7 +110,7 @@ def passes_and_stops(given: SafetyInput, c: Conflict) -> tuple[Flags, Flags]:
     motions = np.concatenate((given.goes, given.stops))
     fine = stays_behind(zone, motions, place + (reach.steady if relied_on else reach.least), lag, PAD)
     goes_first = given.order.first_of(c.ego, c.other) == c.ego
-    if goes_first and (other.is_cav or gives_way(c, other, given.road_map)):
+    if goes_first and (other.is_cav or given.moment.gives_way(c, other, given.road_map)):
         fine |= keeps_clear(given, c, motions, place + reach.least)
     if gets_out(given.moment, given.vehicles[c.ego], other, goes_first):
         fine[:] = True

@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 from worlds import Car, Junction, car
 
+from codriving.datatypes.world import Manner
 from codriving.geometry.road_map import RoadMap, road_map
-from codriving.reasoning.prediction.right_of_way import gives_way
+from codriving.reasoning.prediction.right_of_way import gives_way, known_to_give_way
 
 PLACES = [60.0 + 0.5 * k for k in range(80)]
 
@@ -18,6 +19,7 @@ def reason(
     standing: float = 0.0,
     pedal: float | None = 0.0,
     road: RoadMap | None = None,
+    manner: Manner | None = None,
 ) -> str:
     """What is said of a human driver on exactly the route that it drives; empty if it is not relied on."""
     # Far from one another no vehicle is perceived: a second CAV beside the driver tells of it.
@@ -26,6 +28,8 @@ def reason(
     mover = replace(thoughts.scenes["CAV1"].vehicles()["HDV1"], standing=standing, acceleration=pedal)
     reasons = {
         gives_way(c, mover, road or junction.road_map)
+        if manner is None
+        else known_to_give_way(c, mover, road or junction.road_map, manner)
         for c in thoughts.conflicts["CAV1"]
         if c.other == "HDV1" and c.routes[1] == human.route
     }
@@ -108,3 +112,41 @@ def test_who_has_to_leave_a_lane_that_ends_gives_way_while_it_can_stop(merge: Ju
 
 def test_no_vehicle_gives_way_to_who_has_to_leave_the_lane_itself(merge: Junction) -> None:
     assert not reason(merge, car("CAV1", "ramp", 235.0, 15.0), car("HDV1", "main-1", 230.0, 15.0))
+
+
+RULE, HIGHER, NEVER = (Manner(name, False, 0.8) for name in ("by_rule", "to_higher_rank", "never"))
+HESITANT, LATE = Manner("by_rule", True, 0.8), Manner("by_rule", False, 0.8, 1.2)
+
+# The CAV, the human driver, and the styles of those that give way to it. East and west rank above south and north;
+# the junction begins 100 m down each leg.
+KNOWN = [
+    ("east-west 80 8", "south-north 60 8", "rule higher hesitant late"),
+    ("east-west 80 8", "south-north 80 8", "rule higher hesitant"),  # Who sees it late brakes too late
+    ("east-west 80 8", "south-north 90 8", ""),  # None of them can stop any more before it has noticed
+    ("south-north 80 8", "west-east 60 8", "hesitant"),  # It has the right of way
+    ("south-north 80 8", "north-east 60 8", "hesitant"),  # Of equal rank
+    ("south-north 104 3", "west-east 60 8", "rule higher hesitant late"),  # The CAV is in the junction already
+    ("south-north 111 3", "west-east 80 8", "rule higher hesitant late never"),  # In the zone: bodies are minded by all
+    ("east-west 80 8", "south-north 96 0.1", "rule higher hesitant late"),  # It stands
+    ("south-north 80 8", "west-east 96 0.1", "hesitant"),  # It stands, but has the right of way
+]
+
+
+@pytest.mark.parametrize(("cav", "human", "styles"), KNOWN)
+def test_of_whom_it_is_known_how_it_treats_the_right_of_way(
+    cav: str, human: str, styles: str, junction: Junction
+) -> None:
+    def at(name: str, text: str) -> Car:
+        route, place, speed = text.split()
+        return car(name, route, float(place), float(speed))
+
+    manners = {"rule": RULE, "higher": HIGHER, "hesitant": HESITANT, "late": LATE, "never": NEVER}
+    told = {n: reason(junction, at("CAV1", cav), at("HDV1", human), 30.0, manner=m) for n, m in manners.items()}
+    assert " ".join(name for name, why in told.items() if why) == styles
+
+
+def test_a_driver_who_is_seen_to_brake_has_noticed(junction: Junction) -> None:
+    pair = car("CAV1", "east-west", 80.0, 8.0), car("HDV1", "south-north", 88.0, 8.0)
+    assert not reason(junction, *pair, pedal=0.0, manner=LATE)
+    assert reason(junction, *pair, pedal=-2.0, manner=LATE)
+    assert not reason(junction, *pair, pedal=-2.0, manner=NEVER)
