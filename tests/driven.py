@@ -31,7 +31,7 @@ def configured_executor(name: str) -> dict[str, Any]:
     return {key: value for key, value in yaml.safe_load(text).items() if key != "_target_"}
 
 
-def planned(**change: float) -> Planned:
+def planned(**change: Any) -> Planned:
     """The executor as it is configured, but for what is named."""
     return Planned(**{**configured_executor("planned"), **change})
 

@@ -41,7 +41,7 @@ class Ordered(Method):
         self.rule, self.executor, self.name = rule, executor, rule.name
         self.most_cavs = rule.most_cavs
         driven = "" if executor.name == "planned" else executor.name
-        self.variant = "/".join(word for word in (rule.variant, driven) if word)
+        self.variant = "/".join(word for word in (rule.variant, driven, executor.variant) if word)
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
@@ -79,14 +79,17 @@ class Ordered(Method):
 def _situation(moment: Moment, name: str, agreed: PassingOrder, drive: Drive, change: Decision | None) -> Situation:
     """Write down what a decision rests on, in the form in which every method's decisions are recorded."""
     taken = change.action if change is not None else drive.actions[name]
-    progress = drive.progress.get(name, {})
-    assessments = tuple(_assessment(action, progress.get(action), taken) for action in moment.available[name])
+    progress, removed = drive.progress.get(name, {}), drive.removed.get(name, {})
+    assessments = tuple(
+        _assessment(action, progress.get(action), taken, removed.get(action, ())) for action in moment.available[name]
+    )
     conflicts = moment.conflicts[name]
     return Situation(moment.scenes[name], conflicts, agreed, (0.0,) * len(conflicts), assessments)
 
 
-def _assessment(action: Action, gain: float | None, taken: Action) -> ActionAssessment:
-    why: tuple[str, ...] = ()
+def _assessment(action: Action, gain: float | None, taken: Action, why: tuple[str, ...]) -> ActionAssessment:
+    if why:
+        return ActionAssessment(action, action is taken, why, (), gain)
     if action not in LONGITUDINAL and action is not taken:
         why = ("not asked for, not safe, or granted to another vehicle",)
     elif action in LONGITUDINAL and gain is None:

@@ -42,6 +42,9 @@ HOW_A_MODEL_IS_ASKED = (
 _CAME_LATER: dict[str, Any] = {"label": None, "max_tokens_field": "max_tokens", "system_role": "system"}
 _CAME_LATER |= {"extra": {}, "headers": {}}
 
+# The same for ``executor``: with these values it minds human drivers as before.
+_MINDS: dict[str, Any] = {"humans": "planned", "human_margin": 1.5}
+
 # The same for ``scenario``: with these values it is the scene of before.
 _SCENES: dict[str, Any] = {"pattern": "random", "row_gap": 14.0, "turns": ["left", "straight", "right"]}
 _SCENES |= {"blocked_exit": 0.0, "blocked_room": 7.0, "blind": None}
@@ -111,7 +114,7 @@ def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     for key, names in dropped.items():
         if isinstance(node := values.get(key), Mapping):
             values[key] = {name: value for name, value in node.items() if name not in names}
-    for key, later in (("llm", _CAME_LATER), ("scenario", _SCENES)):
+    for key, later in (("llm", _CAME_LATER), ("scenario", _SCENES), ("executor", _MINDS)):
         if isinstance(node := values.get(key), Mapping):
             values[key] = {name: value for name, value in node.items() if (name, value) not in later.items()}
     return values

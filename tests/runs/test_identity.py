@@ -93,6 +93,16 @@ def test_a_config_that_does_not_know_orders_is_one_whose_order_is_negotiated() -
     assert told() == told("order=negotiated") != told("order=fcfs") != told("order=fcfs", "order.control_radius=50")
 
 
+def test_a_config_that_does_not_know_how_human_drivers_are_minded_is_one_that_plans() -> None:
+    resolved = compose(["method=fcfs"])
+    executor = {k: v for k, v in resolved["executor"].items() if k not in ("humans", "human_margin")}
+    before = {**resolved, "executor": executor, "method": {**resolved["method"], "executor": executor}}
+    assert fingerprint(NAMES, {}, resolved, ()) == fingerprint(NAMES, {}, before, ())
+    assert settings_of(resolved) == settings_of(before)
+    changes = ("humans=checked", "human_margin=1.4")
+    assert len({told("method=fcfs"), *(told("method=fcfs", f"executor.{change}") for change in changes)}) == 3
+
+
 def test_a_config_that_does_not_know_the_group_of_drivers_is_one_with_those_of_the_simulator() -> None:
     resolved = compose(["drivers=simulator"])
     before = {key: value for key, value in resolved.items() if key != "drivers"}

@@ -1,19 +1,20 @@
 """Plans all CAVs one after another in an order; what two plans mean for one another is worked out once."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from codriving.datatypes import TrackedVehicle
+from codriving.datatypes import Action, PassingOrder, TrackedVehicle
 from codriving.geometry import TRUE
 from codriving.reasoning.conflicts import is_behind, is_open
+from codriving.reasoning.execution.checked_humans import CheckedHumans
 from codriving.reasoning.execution.violations import SIZES, Meeting, meetings_behind, minds_humans
 from codriving.reasoning.exits import full_exit
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
 from codriving.reasoning.perception import Moment
 from codriving.reasoning.prediction.clearance import Array, Flags, Steps, first_true
-from codriving.reasoning.prediction.expectation import planning_order, worth
+from codriving.reasoning.prediction.expectation import Expected, planning_order, progress_by_action, worth
 from codriving.reasoning.prediction.reversals import price
 from codriving.reasoning.prediction.rollout import Plan, plan_library
 from codriving.reasoning.safety.safety_input import SIDES, then_stop
@@ -27,10 +28,15 @@ class Joint:
     chosen: Mapping[str, int]
     works: Mapping[str, Flags]
     stuck: tuple[str, ...]
+    steps: Mapping[str, Steps]  # When each plan first comes too close; the number of samples where it never does
+    gains: Mapping[str, Array]  # What each plan is worth in this order [m]
 
 
 class JointPlans(JointPlanner):
     """The plans of one moment.
+
+    Args:
+        checked: How human drivers are minded; None for where they are likely to be (`minds_humans`).
 
     Attributes:
         plans: Every plan that a CAV may follow, before the one that it planned a step ago.
@@ -38,8 +44,16 @@ class JointPlans(JointPlanner):
         gains: What each plan is worth, by id (plans,) [m].
     """
 
-    def __init__(self, moment: Moment, before: Mapping[str, Plan], margin: float, pad: float, headway: float) -> None:
-        self.moment, self.pad = moment, pad
+    def __init__(
+        self,
+        moment: Moment,
+        before: Mapping[str, Plan],
+        margin: float,
+        pad: float,
+        headway: float,
+        humans: CheckedHumans | None = None,
+    ) -> None:
+        self.moment, self.pad, self.humans = moment, pad, humans
         self.vehicles = {name: known[name] for name, known in sorted(moment.vehicles.items())}
         sample = moment.forecast.sample
         self._lag, self._following = round(margin / sample), round(min(margin, headway) / sample)
@@ -59,7 +73,8 @@ class JointPlans(JointPlanner):
             self.gains = {name: gained - self._price(name) for name, gained in self.gains.items()}
         self._met: dict[tuple[str, str], list[Meeting]] = {}
         self._pairs: dict[tuple[str, int, str], Steps] = {}
-        self._joint: dict[tuple[tuple[str, ...], tuple[tuple[str, float], ...]], Joint] = {}
+        self._joint: dict[tuple[object, ...], Joint] = {}
+        self._towards: dict[tuple[object, ...], Steps] = {}
 
     def _continuations(self) -> dict[str, Array]:
         """Predict what each CAV planned a step ago (1, steps + 1)."""
@@ -80,19 +95,30 @@ class JointPlans(JointPlanner):
         """Return a plan of a CAV."""
         return self.plans[k] if k < len(self.plans) else self._continued[name]
 
-    def joint(self, sequence: Sequence[str], not_before: Mapping[str, float] | None = None) -> Joint:
-        """Plan all CAVs, some of which may reach their first zone at a time at the earliest, by id [s]."""
+    def joint(
+        self, sequence: Sequence[str], not_before: Mapping[str, float] | None = None, times: Mapping[str, float] = {}
+    ) -> Joint:
+        """Plan all CAVs.
+
+        Args:
+            not_before: Earliest time at which some of them may reach their first zone, by id [s].
+            times: When they are to pass, which tells who goes before which human driver; empty for a schedule [s].
+        """
         # No vehicle waits for one that waits for room past the junction.
         goes = sorted(sequence, key=lambda name: name in self._waits)
         order = tuple(planning_order(goes, self.vehicles, self._ahead))
         held = tuple(sorted((not_before or {}).items()))
-        if (order, held) not in self._joint:
-            self._joint[order, held] = self._plan(order, dict(held))
-        return self._joint[order, held]
+        agreed = self.humans.order(sequence, times) if self.humans is not None else None
+        firsts = self.humans.firsts(agreed) if self.humans is not None and agreed is not None else ()
+        if (order, held, firsts) not in self._joint:
+            self._joint[order, held, firsts] = self._plan(order, dict(held), agreed)
+        return self._joint[order, held, firsts]
 
-    def _plan(self, order: Sequence[str], held: Mapping[str, float]) -> Joint:
+    def _plan(self, order: Sequence[str], held: Mapping[str, float], agreed: PassingOrder | None) -> Joint:
         chosen: dict[str, int] = {}
         works: dict[str, Flags] = {}
+        until: dict[str, Steps] = {}
+        gains: dict[str, Array] = {}
         stuck = []
         for name in order:
             steps = self._violations_alone(name)
@@ -102,14 +128,60 @@ class JointPlans(JointPlanner):
                 against = self._against(other, k, name)
                 if against is not None:
                     steps = np.minimum(steps, against)
-            works[name] = steps >= self.travels[name].shape[1]
-            if works[name].any():
-                chosen[name] = int(np.argmax(np.where(works[name], self.gains[name], -np.inf)))
-            else:
+            gains[name] = self.gains[name]
+            if agreed is not None:
+                steps, gains[name] = self._minds(name, agreed, steps)
+            until[name], works[name] = steps, steps >= self.travels[name].shape[1]
+            chosen[name] = self._choose(name, steps, gains[name])
+            if not works[name].any():
                 stuck.append(name)
-                # Of those that keep clear for longest the one that stops soonest.
-                chosen[name] = int(np.argmin(np.where(steps == steps.max(), self.travels[name][:, -1], np.inf)))
-        return Joint(chosen, works, tuple(stuck))
+        return Joint(chosen, works, tuple(stuck), until, gains)
+
+    def _choose(self, name: str, steps: Steps, gains: Array) -> int:
+        """Return the plan that is worth most of those that work."""
+        travels = self.travels[name]
+        works = steps >= travels.shape[1]
+        if works.any():
+            return int(np.argmax(np.where(works, gains, -np.inf)))
+        # Of those that keep clear for longest the one that stops soonest.
+        return int(np.argmin(np.where(steps == steps.max(), travels[:, -1], np.inf)))
+
+    def _minds(self, name: str, agreed: PassingOrder, steps: Steps) -> tuple[Steps, Array]:
+        """Return when each plan of a CAV first comes too close, and what it is worth, human drivers considered."""
+        assert self.humans is not None
+        travels, gains, n = self.travels[name], self.gains[name], len(self.plans)
+        key = (name, *(pair for pair in self.humans.firsts(agreed) if name in pair))
+        if key not in self._towards:
+            self._towards[key] = self.humans.violations(name, agreed, travels)
+        steps = np.minimum(steps, self._towards[key])
+        gained = np.where(steps >= travels.shape[1], gains, -np.inf)
+        less = self.humans.guesses(name, agreed, travels[:n], gained[:n])
+        return steps, gains + [less.get(action, 0.0) for action in self._firsts(name)] if less else gains
+
+    def _firsts(self, name: str) -> list[Action]:
+        """Return the first action of each plan of a CAV."""
+        return [self.plan_of(name, k)[0] for k in range(len(self.travels[name]))]
+
+    def expected(self, joint: Joint) -> dict[str, tuple[Expected, ...]]:
+        """Return how each CAV means to drive, and how far it would get after each action."""
+        found, n = {}, len(self.plans)
+        for name, k in joint.chosen.items():
+            gains = progress_by_action(np.where(joint.works[name][:n], joint.gains[name][:n], -np.inf), self.plans)
+            found[name] = tuple(
+                Expected(route, place + self.travels[name][k], k == 0, gains if r == 0 else {})
+                for r, (route, place) in enumerate(self.vehicles[name].routes)
+            )
+        return found
+
+    def beginning(self, joint: Joint, actions: Mapping[str, Action]) -> Joint:
+        """Let CAVs begin with given actions, and go on as well as that allows."""
+        chosen, stuck = dict(joint.chosen), list(joint.stuck)
+        for name, action in actions.items():
+            so = np.array([first is action for first in self._firsts(name)])
+            chosen[name] = self._choose(name, np.where(so, joint.steps[name], -1), joint.gains[name])
+            if name not in stuck and not joint.works[name][chosen[name]]:
+                stuck.append(name)
+        return replace(joint, chosen=chosen, stuck=tuple(stuck))
 
     def _too_early(self, name: str, time: float) -> Steps:
         """When each plan reaches the first zone, if that is before the method allows it."""
@@ -123,12 +195,14 @@ class JointPlans(JointPlanner):
         """When each plan first comes too close to a human driver, or cannot stop before the lane ends any more."""
         if name not in self._alone:
             v, travels = self.vehicles[name], self.travels[name]
-            steps = minds_humans(self.moment, v, travels, self._lag, self._following, self.pad)
+            steps: Steps = np.full(len(travels), travels.shape[1])
+            if self.humans is None:
+                steps = minds_humans(self.moment, v, travels, self._lag, self._following, self.pad)
             if name in self._waits:
                 steps = np.minimum(steps, first_true(v.routes[0][1] + travels >= self._waits[name]))
             change = self.moment.scenes[name].must_change
             if change is not None:
-                firsts = [self.plan_of(name, k)[0] for k in range(len(travels))]
+                firsts = self._firsts(name)
                 kinds = sorted(set(firsts))
                 plans = [then_stop(a) for a in kinds]
                 stops = self.moment.forecast.travel(v.speed, v.target, plans, v.routes[0])[:, -1]

@@ -2,17 +2,21 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-
-import numpy as np
+from dataclasses import dataclass, field, replace
+from typing import Literal, get_args
 
 from codriving.datatypes import Action, OrderExecutor
-from codriving.errors import require_range
+from codriving.errors import require, require_range
+from codriving.reasoning.execution.checked_humans import CheckedHumans
 from codriving.reasoning.execution.joint_planner import Joint, JointPlans
+from codriving.reasoning.ordering.problem import pose
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
 from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.expectation import Expected, expect_human, progress_by_action
+from codriving.reasoning.prediction.expectation import Expected, expect_human
 from codriving.reasoning.prediction.rollout import Plan
+
+# How human drivers are minded: where they are likely to be, or as the safety check of ``codriving`` does.
+Humans = Literal["planned", "checked"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,12 +30,14 @@ class Drive:
     # entry for an action with which it cannot.
     progress: Mapping[str, Mapping[Action, float]]
     counts: Mapping[str, int] = field(default_factory=dict)
+    removed: Mapping[str, Mapping[Action, tuple[str, ...]]] = field(default_factory=dict)  # By the safety check, by id
 
 
 class Executor(OrderExecutor, ABC):
     """Turns passing orders into actions, step after step of one episode."""
 
     name: str = ""
+    variant: str = ""  # What tells it from its default settings, in tables
     gap: float  # Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s]
     margin: float  # The same for motions, and for the gap test of lane changes [s]
     library: tuple[Plan, ...] = ()  # Plans that it uses besides those that all methods predict
@@ -67,10 +73,22 @@ class Planned(Executor):
 
     name = "planned"
 
-    def __init__(self, gap: float, margin: float, pad: float, headway: float) -> None:
-        for key, value in (("gap", gap), ("margin", margin), ("pad", pad), ("headway", headway)):
+    def __init__(
+        self,
+        gap: float,
+        margin: float,
+        pad: float,
+        headway: float,
+        humans: Humans = "planned",
+        human_margin: float = 1.5,
+    ) -> None:
+        settings = {"gap": gap, "margin": margin, "pad": pad, "headway": headway, "human_margin": human_margin}
+        for key, value in settings.items():
             require_range(key, value, 0, 5)
+        require(humans in get_args(Humans), f"humans must be planned or checked, got {humans}")
         self.gap, self.margin, self.pad, self.headway = gap, margin, pad, headway
+        self.humans, self.human_margin = humans, human_margin
+        self.variant = "" if humans == "planned" else f"humans={humans}"
         self.reset()
 
     def reset(self) -> None:
@@ -81,30 +99,33 @@ class Planned(Executor):
     def planner(self, moment: Moment) -> JointPlans:
         """Return what plans all CAVs in an order."""
         if self._plans is None or self._plans.moment is not moment:
-            self._plans = JointPlans(moment, self._before, self.margin, self.pad, self.headway)
+            checked = self.humans == "checked"
+            humans = CheckedHumans(moment, pose(moment, self.gap), self.human_margin) if checked else None
+            self._plans = JointPlans(moment, self._before, self.margin, self.pad, self.headway, humans)
         return self._plans
 
     def drive(self, moment: Moment, ordering: Ordering) -> Drive:
         """Return the first action of each CAV's plan."""
         plans = self.planner(moment)
-        joint = plans.joint(ordering.sequence, ordering.not_before)
+        joint = plans.joint(ordering.sequence, ordering.not_before, ordering.times)
+        decided = {}
+        if plans.humans is not None:
+            agreed = plans.humans.order(ordering.sequence, ordering.times)
+            decided = plans.humans.decide(agreed, plans.expected(joint), round(self.margin / moment.forecast.sample))
+            joint = plans.beginning(joint, {name: decision.action for name, (decision, _) in decided.items()})
         self._before = {name: plans.plan_of(name, k)[1:] or plans.plan_of(name, k) for name, k in joint.chosen.items()}
-        return drive_of(moment, plans, joint, ordering)
+        drive = drive_of(moment, plans, joint, ordering)
+        reasons = {name: decision.reason for name, (decision, _) in decided.items()}
+        removed = {name: {a.action: a.reasons for a in each if not a.safe} for name, (_, each) in decided.items()}
+        return replace(drive, reasons={**drive.reasons, **reasons}, removed=removed)
 
 
 def drive_of(moment: Moment, plans: JointPlans, joint: Joint, ordering: Ordering) -> Drive:
     """Write down what a joint plan means for the step."""
-    actions, reasons, expected, progress = {}, {}, {}, {}
-    for name, k in joint.chosen.items():
-        actions[name] = plans.plan_of(name, k)[0]
-        reasons[name] = _reason(plans, joint, name, ordering.sequence)
-        n = len(plans.plans)
-        gains = progress_by_action(np.where(joint.works[name][:n], plans.gains[name][:n], -np.inf), plans.plans)
-        progress[name] = gains
-        expected[name] = tuple(
-            Expected(route, place + plans.travels[name][k], k == 0, gains if r == 0 else {})
-            for r, (route, place) in enumerate(plans.vehicles[name].routes)
-        )
+    actions = {name: plans.plan_of(name, k)[0] for name, k in joint.chosen.items()}
+    reasons = {name: _reason(plans, joint, name, ordering.sequence) for name in joint.chosen}
+    expected = plans.expected(joint)
+    progress = {name: motions[0].progress for name, motions in expected.items()}
     return Drive(actions, reasons, expected | humans_expected(moment), progress, {"plans_infeasible": len(joint.stuck)})
 
 

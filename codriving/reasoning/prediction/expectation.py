@@ -75,7 +75,7 @@ def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str,
         travels, keeps = plans_that_keep(moment, ego, v, found, order, lag)
         gained = np.where(keeps, valued(moment, v, travels), -np.inf)
         best = int(np.argmax(gained)) if keeps.any() else len(travels) - 1
-        gains = _with_guesses(moment, ego, v, travels, gained, found, order, lag)
+        gains = with_guesses(moment, ego, v, travels, gained, found, order, lag)
         found[v.id] = tuple(
             Expected(route, place + travels[best], best == 0, gains if k == 0 else {})
             for k, (route, place) in enumerate(v.routes)
@@ -83,7 +83,7 @@ def expect(moment: Moment, ego: str, order: PassingOrder, lag: int) -> dict[str,
     return found
 
 
-def _with_guesses(
+def with_guesses(
     moment: Moment,
     ego: str,
     vehicle: TrackedVehicle,
@@ -108,7 +108,7 @@ def _with_guesses(
             continue
         each = []
         for motion in motions:
-            bounds = list(_bounds(moment, ego, vehicle.id, route, place, {other: (motion,)}, order, lag, True))
+            bounds = list(bounds_of(moment, ego, vehicle.id, route, place, {other: (motion,)}, order, lag, True))
             if not bounds:
                 each.append(unhindered)
                 continue
@@ -202,7 +202,7 @@ def keeps_order(
 ) -> Flags:
     """Whether a vehicle that one CAV knows of stays behind all vehicles that drive ahead or go first."""
     place = float(places[0, 0])
-    return _keeps(places, _bounds(moment, ego, name, route, place, expected, order, lag, minds_conflicts))
+    return _keeps(places, bounds_of(moment, ego, name, route, place, expected, order, lag, minds_conflicts))
 
 
 def _keeps(places: Array, bounds: Iterable[Bound]) -> Flags:
@@ -215,7 +215,7 @@ def _keeps(places: Array, bounds: Iterable[Bound]) -> Flags:
     return keeps
 
 
-def _bounds(
+def bounds_of(
     moment: Moment,
     ego: str,
     name: str,
@@ -232,7 +232,7 @@ def _bounds(
     for other, motions in expected.items():
         if other == name:
             continue
-        # No CAV slows down early for a driver who may still take several routes; see `_with_guesses`.
+        # No CAV slows down early for a driver who may still take several routes; see `with_guesses`.
         certain = vehicles[other].is_cav or len(motions) == 1
         minds = minds_conflicts and certain and order.first_of(name, other) != name
         for motion in motions:
