@@ -3,7 +3,9 @@
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
+import hydra
 import pytest
 
 SOURCE = """
@@ -57,6 +59,12 @@ class Later:
 def function(x: int) -> int:
     return x
 """
+
+
+@pytest.fixture(autouse=True)
+def _each_config_is_composed(composed_anew: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here nothing is composed only once."""
+    monkeypatch.setattr(hydra, "compose", composed_anew)
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
+from thorough import THOROUGH
 
 from codriving.config.choices import choices
 from codriving.datatypes.record import Track
@@ -79,7 +80,7 @@ def places(env: Environment, track: Track, step: int, route: str) -> np.ndarray:
 
 
 @on_each("simulator", "rough")
-@settings(max_examples=3, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=3 if THOROUGH else 1, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(seed=st.integers(10_000, 15_000))
 @example(seed=614)  # A CAV that changes lanes while it slows down almost to a stop
 @example(seed=10_008)  # A CAV that cuts the corner, and is therefore earlier where it may drive faster

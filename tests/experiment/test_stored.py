@@ -25,12 +25,19 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return output / "run" / "first"
 
 
-@pytest.fixture
-def single(tmp_path: Path) -> Path:
-    """A run of one cell, to be spoilt."""
-    tokens = [f"output={tmp_path}", "run=one", "episodes=3", "launcher=serial", "scenario.time_limit=1"]
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of one cell."""
+    output = tmp_path_factory.mktemp("whole")
+    tokens = [f"output={output}", "run=one", "episodes=3", "launcher=serial", "scenario.time_limit=1"]
     assert run_experiment(tokens) == 0
-    return tmp_path / "run" / "one"
+    return output / "run" / "one"
+
+
+@pytest.fixture
+def single(whole: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be spoilt."""
+    return shutil.copytree(whole, tmp_path / "run" / "one")
 
 
 def test_an_episode_is_found_by_cell_and_seed(swept: Path) -> None:

@@ -4,6 +4,7 @@ import json
 from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import pytest
@@ -85,21 +86,33 @@ def few(environment: Environment, made: Ordered, seed: int = 10_007) -> Episode:
     return drive(environment, made, seed, decisions=DECISIONS)
 
 
+@pytest.fixture(scope="module")
+def driven(configured: Make) -> Callable[..., Episode]:
+    """The first decisions of each method on each road, driven once."""
+
+    @cache
+    def once(scenario: str, name: str, executor: str = "planned") -> Episode:
+        return few(configured(f"scenario={scenario}"), method(name, f"executor={executor}"))
+
+    return once
+
+
 @pytest.mark.parametrize(("name", "executor"), [*((name, "planned") for name in RULES), ("fcfs", "layered")])
 @pytest.mark.parametrize("scenario", SCENARIOS)
-def test_the_same_seed_gives_the_same_bytes(scenario: str, name: str, executor: str, configured: Make) -> None:
-    environment = configured(f"scenario={scenario}")
-    used, new = method(name, f"executor={executor}"), method(name, f"executor={executor}")
-    few(environment, used, 10_008)
-    written = [lines_text("", [step.as_dict() for step in few(environment, made).steps]) for made in (used, new)]
+def test_the_same_seed_gives_the_same_bytes(
+    scenario: str, name: str, executor: str, configured: Make, driven: Callable[..., Episode]
+) -> None:
+    environment, used = configured(f"scenario={scenario}"), method(name, f"executor={executor}")
+    drive(environment, used, 10_008, decisions=3)
+    episodes = few(environment, used), driven(scenario, name, executor)
+    written = [lines_text("", [step.as_dict() for step in episode.steps]) for episode in episodes]
     assert written[0] == written[1], "nothing is left of the episode before"
     assert written[0].count("\n") == DECISIONS
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
-def test_a_line_is_strict_json_and_has_all_that_a_line_has(scenario: str, configured: Make) -> None:
-    environment = configured(f"scenario={scenario}")
-    for step in few(environment, method("idfst")).steps:
+def test_a_line_is_strict_json_and_has_all_that_a_line_has(scenario: str, driven: Callable[..., Episode]) -> None:
+    for step in driven(scenario, "idfst").steps:
         line = step.as_dict()
         assert json.loads(json.dumps(line, allow_nan=False)) == line
         assert json.loads(lines_text("", [line])) == line
@@ -235,9 +248,8 @@ def test_a_slow_driver_is_overtaken_if_the_rule_grants_it(highway: Junction) -> 
 
 @pytest.mark.parametrize("name", ["fcfs", "coop_game_fuzzy"])
 @pytest.mark.parametrize("scenario", ["intersection", "highway"])
-def test_its_episodes_can_be_drawn(scenario: str, name: str, configured: Make) -> None:
-    environment = configured(f"scenario={scenario}")
-    episode = few(environment, method(name))
+def test_its_episodes_can_be_drawn(scenario: str, name: str, configured: Make, driven: Callable[..., Episode]) -> None:
+    environment, episode = configured(f"scenario={scenario}"), driven(scenario, name)
     lines = [json.loads(text) for text in lines_text("", [s.as_dict() for s in episode.steps]).splitlines()]
     read = [deliberated(line, environment.road_map) for line in lines]
     for step, shown in zip(episode.steps, read, strict=True):

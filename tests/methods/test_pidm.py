@@ -95,10 +95,10 @@ def test_the_end_of_a_lane_stands_still(merge: Junction) -> None:
 
 @pytest.mark.parametrize("key", sorted(LIMITS))
 def test_settings_out_of_range_are_refused(key: str) -> None:
-    low, high = LIMITS[key]
+    node, (low, high) = compose(["method=pidm"])["method"], LIMITS[key]
     for value in (low - 1, high + 1):
         with pytest.raises(ConfigError, match=f"{key} must be "):
-            build(compose(["method=pidm", f"method.driver.{key}={value}"])["method"], object)
+            build({**node, "driver": {**node["driver"], key: value}}, object)
 
 
 def test_of_those_who_wait_each_starts_after_the_one_before(junction: Junction) -> None:

@@ -152,5 +152,11 @@ def test_a_lane_change_before_a_vehicle_that_would_have_to_brake_hard_is_refused
     ],
 )
 def test_settings_out_of_range_are_refused(key: str, said: str) -> None:
+    node = compose(["method=noncoop_game"])["method"]
+    (*groups, last), value = key.split("=")[0].split("."), key.split("=")[1]
+    inner = node["driver"]
+    for group in groups:
+        inner = inner[group]
+    inner[last] = value if last == "own" else float(value)
     with pytest.raises(ConfigError, match=said):
-        build(compose(["method=noncoop_game", f"method.driver.{key}"])["method"], object)
+        build(node, object)

@@ -1,5 +1,7 @@
 """The ordering problem of one moment: who, when at the earliest, how far apart, and what is fixed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -74,6 +76,14 @@ def test_those_without_a_conflict_are_not_ordered(junction: Junction) -> None:
     third = posed(junction, *cars, car("CAV3", "west-east", 60.0, 8.0)).instance
     assert list(third.vehicles) == ["CAV1", "CAV2", "CAV3"]
     assert not third.conflict("CAV1", "CAV2")
+
+
+def test_they_are_ordered_by_name_whatever_the_order_in_which_they_are_seen(junction: Junction) -> None:
+    moment = junction.thoughts(
+        car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "west-east", 60.0, 8.0), car("CAV3", "east-west", 60.0, 8.0)
+    ).moment()
+    turned = replace(moment, scenes=dict(reversed(moment.scenes.items())))
+    assert list(pose(turned).instance.vehicles) == ["CAV1", "CAV2", "CAV3"]
 
 
 def test_one_arrives_as_early_as_it_can(junction: Junction) -> None:

@@ -130,6 +130,7 @@ def test_objective_weighs_delay_and_evacuation() -> None:
     assert Objective(0.5).value(problem, times) == 2.0 + 0.5 * evacuation_time(problem, times) == 5.0
     assert Objective(fairness={"b": 3.0}).value(problem, times) == 6.0
     assert Objective().value(problem, {"a": 1.0, "b": inf}) == LONGEST_WAIT
+    assert evacuation_time(problem, {}) == Objective(0.5).value(problem, {}) == 0.0
 
 
 @pytest.mark.parametrize(
