@@ -124,7 +124,6 @@ def test_list_without_a_group_shows_all_groups() -> None:
         (("compare", "single-vehicle", "method=typo"), "unknown method 'typo'; choices: fcfs, idfst, mcts, coop_game"),
         (("compare", "all", "episodes=0"), "episodes must be a whole number, 1 to 100000, got 0"),
         (("compare", "baselines", "method=typo"), "unknown method 'typo'; choices: "),
-        (("compare", "baselines", "episodes=0"), "episodes must be a whole number, 1 to 100000, got 0"),
         (("compare", "load", "--cfg", "scenario=merge", "scenario.cavs=4,99"), "in the cell scenario.cavs=99 method="),
         (("compare", "baselines", "--cfg", "scenario=nowhere"), "unknown scenario 'nowhere'; choices: intersection"),
         (("run", "scenario=nowhere"), "unknown scenario 'nowhere'; choices: intersection"),

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from thorough import some
 
 from codriving.cli.faults import one_line
 
@@ -26,7 +27,7 @@ def shell(line: str, folder: Path, **variables: str) -> subprocess.CompletedProc
     )
 
 
-@pytest.mark.parametrize("closed", ["2>&-", ">&-", "<&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closed", some(2, ["2>&-", "<&- >&- 2>&-", ">&-", "<&-"]))
 def test_with_a_closed_stream_episodes_are_driven(closed: str, tmp_path: Path) -> None:
     result = shell(f"codriving run run=a episodes=1 scenario.time_limit=1 launcher=serial {closed}", tmp_path)
     assert result.returncode == 0
@@ -56,7 +57,7 @@ def test_a_narrow_encoding_shows_what_it_can(tmp_path: Path) -> None:
     assert (result.returncode, result.stderr) == (0, "")
 
 
-@pytest.mark.parametrize("value", ["module://nothing.here", "nothing"])
+@pytest.mark.parametrize("value", some(1, ["module://nothing.here", "nothing"]))
 def test_drawing_ignores_the_backend_of_a_notebook(value: str, tmp_path: Path) -> None:
     result = shell("codriving run --cfg", tmp_path, MPLBACKEND=value)
     assert (result.returncode, result.stderr) == (0, "")
@@ -75,15 +76,22 @@ def test_a_shell_that_asks_nonsense_after_tab_is_told_nothing(tmp_path: Path) ->
 
 @pytest.mark.parametrize(
     ("name", "value", "said"),
-    [
-        ("LITELLM_LOG", "nothing", "AttributeError: module 'logging' has no attribute 'NOTHING'); unset LITELLM_LOG"),
-        (
-            "DEFAULT_MAX_RETRIES",
-            "many",
-            "ValueError: invalid literal for int() with base 10: 'many'); unset DEFAULT_MAX_",
-        ),
-        ("SSL_CERT_FILE", "/", "IsADirectoryError: [Errno 21] Is a directory); unset SSL_CERT_FILE"),
-    ],
+    some(
+        1,
+        [
+            (
+                "LITELLM_LOG",
+                "nothing",
+                "AttributeError: module 'logging' has no attribute 'NOTHING'); unset LITELLM_LOG",
+            ),
+            (
+                "DEFAULT_MAX_RETRIES",
+                "many",
+                "ValueError: invalid literal for int() with base 10: 'many'); unset DEFAULT_MAX_",
+            ),
+            ("SSL_CERT_FILE", "/", "IsADirectoryError: [Errno 21] Is a directory); unset SSL_CERT_FILE"),
+        ],
+    ),
 )
 def test_a_variable_that_stops_an_import_is_named(name: str, value: str, said: str, tmp_path: Path) -> None:
     check = "codriving check llm=custom llm.api_base=http://127.0.0.1:9/v1"
