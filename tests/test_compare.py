@@ -54,7 +54,7 @@ class Steady(Method):
         return Said({cav.id: Action[self.action] for cav in world.cavs})
 '''
 YAML = "# Always the same.\n_target_: toy_methods.Steady\nplugins: [toy_methods]\naction: {action}\n{rest}"
-BOTH = ("launcher=serial", "scenario.time_limit=4", "run=x")
+BOTH = ("launcher=serial", "scenario.time_limit=4", "controls=false", "run=x")
 
 
 @pytest.fixture

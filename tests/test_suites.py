@@ -113,8 +113,8 @@ def settings(run: str) -> list[dict[str, Any]]:
     ("command", "more", "runs", "cells"),
     [
         (("run",), ("episodes=1",), ["run/x"], 1),
-        (("ablate",), ("episodes=1",), ["ablate/x"], 7),
-        (("compare", "single-vehicle"), ("episodes=1",), ["compare-single-vehicle/x"], 6),
+        (("ablate",), ("episodes=1", "controls=false"), ["ablate/x"], 7),
+        (("compare", "single-vehicle"), ("episodes=1", "controls=false"), ["compare-single-vehicle/x"], 6),
         (("memory", "build"), ("interactions=1",), ["memory/x"], 1),
         (
             ("learn",),

@@ -128,6 +128,7 @@ def test_an_ablation_of_several_scenarios_keeps_their_rows_together(
 ) -> None:
     names = list(choices("scenario"))[:2]
     tokens = [f"scenario={','.join(names)}", "episodes=1", "scenario.cavs=2", *SHORT, f"output={tmp_path}", "run=x"]
+    tokens.append("controls=false")
     assert run_command(ABLATE, tokens) == 0
     summary = rows(tmp_path / "ablate" / "x" / "summary.csv")
     assert [row["scenario"] for row in summary] == [name for name in names for _ in range(7)]

@@ -24,7 +24,10 @@ def run(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConf
 
 
 def ablate(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConfig = False) -> None:
-    """Run the full method and each reasoning sub-module removed, on the same seeds, into one table."""
+    """Run the full method, each reasoning sub-module removed, and the controls, on the same seeds, into one table.
+
+    controls=false leaves the controls out.
+    """
     from codriving.experiment import ABLATE, run_command
 
     raise typer.Exit(run_command(ABLATE, overrides or [], config_dir, cfg))
@@ -44,7 +47,7 @@ def compare(
     """Drive every method of the paper on the same seeds, into one table beside the paper's.
 
     baselines: each method against codriving. single-vehicle: those by which each CAV is on its own. all: both.
-    load: baselines with 4, 6, 8 and 12 CAVs. method=NAME adds a method of your own.
+    load: baselines with 4, 6, 8 and 12 CAVs. method=NAME adds a method of your own; controls=false leaves controls out.
     """
     from codriving.experiment import comparison_command, run_command
 

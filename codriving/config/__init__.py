@@ -2,7 +2,9 @@
 
 from codriving.config.build import TARGET, asks_for, build, targets, validate
 from codriving.config.choices import (
+    ABLATION,
     ALL,
+    CONTROLS,
     EXPERIMENTS,
     LISTED,
     SUITE,
@@ -28,7 +30,9 @@ from codriving.config.sweep import Point, expand
 from codriving.config.training import compose_training, trainings
 
 __all__ = [
+    "ABLATION",
     "ALL",
+    "CONTROLS",
     "EXPERIMENTS",
     "GROUPS",
     "LARGEST_SEED",

@@ -30,6 +30,8 @@ TABLES = {
     "load": "The methods of the first table with 4, 6, 8 and 12 CAVs.",
 }
 
+CONTROLS, ABLATION = "controls", "ablation"  # The tables below others in which controls say their place
+
 # Choices that come before the others: in the paper's order, or from the least to the most; the rest goes by name.
 # Methods say their place themselves, and their rules come in the same order.
 FIRST = {
@@ -68,7 +70,9 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
     roots = [experiments_root() if group == EXPERIMENTS else conf_dir(), *([config_dir] if config_dir else [])]
     found = {file.stem: file for root in roots for file in sorted((root / group).glob("[!_]*.yaml"))}
     first = (*FIRST.get(group, ()), *(taking_part("all") if group in ("method", "order") else ()))
-    return {name: found[name] for name in (*first, *sorted(found)) if name in found}
+    last = taking_part(CONTROLS) if group == "method" else ()
+    rest = (name for name in sorted(found) if name not in last)
+    return {name: found[name] for name in (*first, *rest, *last) if name in found}
 
 
 @cache

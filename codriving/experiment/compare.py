@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from codriving.config import (
+    CONTROLS,
     SUITE,
     TABLES,
     Point,
@@ -26,6 +27,7 @@ from codriving.config import (
 from codriving.errors import ConfigError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.cells import Cell
+from codriving.experiment.controls import split_controls
 from codriving.experiment.drive import Driven, Outputs, drive
 from codriving.experiment.flows import is_flow
 from codriving.experiment.plan import Plan, make_plan
@@ -109,9 +111,9 @@ def compare_frames(table: str, *overrides: str, config_dir: str | Path | None = 
 def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
     """Find out what a comparison consists of.
 
-    Every method of the table that has a YAML takes part. ``method=`` adds others to them.
+    Every method of the table that has a YAML takes part. ``method=`` adds others to them; controls come last.
     """
-    overrides = written(overrides)
+    controlled, overrides = split_controls(written(overrides), usual=table != LOAD)
     keys = [parse(token).key_or_group for token in overrides]
     added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
     others = [token for token, key in zip(overrides, keys, strict=True) if key != "method"]
@@ -120,11 +122,11 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
         others = [*(token for token in LOADED if token.partition("=")[0] not in named), *others]
     # Asked for once more on the command line, it is the user's.
     base = () if "experiment" in keys else (f"experiment={EXPERIMENT[table]}",)
-    methods = _methods(table, added, config_dir)
+    methods = [*_methods(table, added, config_dir), *(taking_part(CONTROLS) if controlled else ())]
     return [
         Point((*base, *point.overrides, f"method={name}"), {**point.swept, "method": name}, point.removed)
         for point in expand(others, config_dir)
-        for name in methods
+        for name in dict.fromkeys(methods)
     ]
 
 

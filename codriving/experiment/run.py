@@ -5,16 +5,17 @@ import sys
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from codriving.config import Point, config_folder, expand, show
 from codriving.errors import ConfigError, ModelError
 from codriving.experiment.cells import Cell
+from codriving.experiment.controls import ablation_controls, split_controls
 from codriving.experiment.drive import Driven, Finished, HaltedError, Interrupted, Outputs, drive
 from codriving.experiment.plan import Plan, cell_name, composed, make_plan, validated
-from codriving.reports import print_table
+from codriving.reports import REFERENCE, print_table
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -105,10 +106,15 @@ def run_frames(*overrides: str, config_dir: str | Path | None = None) -> Results
 
 
 def ablation_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
-    """Take the sub-modules of the reasoning module out of each config in turn."""
+    """Take the sub-modules of the reasoning module out of each config in turn; then come the controls."""
+    wanted, overrides = split_controls(overrides, usual=True)
     points = expand(overrides, config_dir)
     base = () if any(token.lstrip("+").startswith("experiment=") for token in overrides) else ("experiment=ablate",)
-    return [Point((*base, *p.overrides, *removal), p.swept, removal) for p in points for removal in REMOVALS]
+    rows = []
+    for p in points:
+        rows += [Point((*p.overrides, *removal), p.swept, removal) for removal in REMOVALS]
+        rows += ablation_controls(p, REFERENCE, config_dir) if wanted else []
+    return [replace(row, overrides=(*base, *row.overrides)) for row in rows]
 
 
 def _refuse_alike(plan: Plan) -> None:

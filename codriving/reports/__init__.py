@@ -4,6 +4,7 @@ from codriving.reports.built_memory import BuiltMemory, print_built
 from codriving.reports.columns import Table, table
 from codriving.reports.comparison import (
     METHOD_CHOICE,
+    REFERENCE,
     Compared,
     Condition,
     comparison_rows,
@@ -24,7 +25,7 @@ from codriving.reports.results import CellResults
 from codriving.reports.summary import RunTables, run_tables
 
 __all__ = [
-    "METHOD_CHOICE", "BuiltMemory", "CellResults", "Compared", "Condition", "LearningRow", "PrintedTable",
+    "METHOD_CHOICE", "REFERENCE", "BuiltMemory", "CellResults", "Compared", "Condition", "LearningRow", "PrintedTable",
     "RunTables", "Table", "TimedEpisode", "comparison_rows", "comparison_table", "cpu_per_decision", "flow_table",
     "flow_tables", "learning_figure", "learning_rows", "learning_table", "load_figure", "load_rows", "load_table",
     "markdown_text", "print_built", "print_comparison", "print_each_load", "print_flows", "print_learning",

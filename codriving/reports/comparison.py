@@ -75,6 +75,11 @@ class Compared:
         return self.cell.name if self.cell else self.method
 
     @property
+    def is_control(self) -> bool:
+        """Whether it is no method."""
+        return self.cell is not None and self.cell.is_control
+
+    @property
     def block(self) -> tuple[object, ...]:
         """What it shares with all rows of its block."""
         return self.scenario, *setting_of(self.swept).items()
@@ -171,10 +176,13 @@ def with_corrected(rows: Sequence[Compared]) -> list[Compared]:
 
 
 def _ranked(rows: Sequence[Compared]) -> list[Compared]:
-    """Put the best first, and last what was not driven; the order stays where clean success is not known."""
+    """Put the best first, controls below the methods, and last what was not driven.
+
+    Where clean success is not known, the order of methods and that of controls stay.
+    """
     if not any(cell.judged for cell in _cells(rows)):
-        return list(rows)
-    driven = [(row.cell.standing, row) for row in rows if row.cell]
+        return sorted(rows, key=lambda row: row.is_control)
+    driven = [((row.is_control, *row.cell.standing), row) for row in rows if row.cell]
     return [*(row for _, row in sorted(driven, key=lambda pair: pair[0])), *(row for row in rows if not row.cell)]
 
 
@@ -218,7 +226,9 @@ def print_comparison(
         *notes_of([(row.method, row.status, row.cell) for row in rows], screen),
     )
     notes = (*([condition.sentence] if condition.sentence else []), *(general if condition.last else ()))
-    return printed(heading, comparison_table(rows, swept), [row.block for row in rows], notes, theirs, screen)
+    return printed(
+        heading, comparison_table(rows, swept), [(row.block, row.is_control) for row in rows], notes, theirs, screen
+    )
 
 
 def notes_of(rows: Iterable[tuple[str, str, CellResults | None]], screen: bool) -> list[str]:
@@ -264,7 +274,7 @@ def print_pairs(
     named = f"{condition.name}: " if condition.name else ""
     heading = f"{named}against {REFERENCE} on the same seeds - {scenarios}{metrics_text(metrics)}"
     notes = (*_level_notes(found, swept), *beaten, *(PAIRED_NOTES if condition.last else ()))
-    return printed(heading, table(columns, found), [row.block for row in found], notes)
+    return printed(heading, table(columns, found), [(row.block, row.is_control) for row in found], notes)
 
 
 def _level_notes(rows: Sequence[Compared], swept: Sequence[str]) -> list[str]:

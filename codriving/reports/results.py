@@ -69,6 +69,11 @@ class CellResults:
         """The method, with its variant."""
         return f"{self.first.method} {self.first.variant}".strip()
 
+    @property
+    def is_control(self) -> bool:
+        """Whether it is no method: its variant says so with its first word."""
+        return self.first.variant.replace("/", " ").startswith("control ") or self.first.variant == "control"
+
     @cached_property
     def episodes(self) -> "list[ScoredEpisode]":
         """Each episode with its score."""

@@ -194,7 +194,8 @@ def print_summary(
     models = stand_in_notes((row["method"], row["reasoner"]) for row in rows)
     said = (NOTE, *clean_notes(cells), *number_notes(cells), *models, *remarks(cells), *model_notes(cells), *notes)
     heading, shown = title("", scenarios, reasoners, metrics), Table((*made.columns, *claimed), rows)
-    return printed(heading, shown, scenarios, said, _beside(cells, paper), screen)
+    blocks = [(scenario, cell.is_control) for scenario, cell in zip(scenarios, cells, strict=True)]
+    return printed(heading, shown, blocks, said, _beside(cells, paper), screen)
 
 
 def clean_notes(cells: Iterable[CellResults]) -> list[str]:

@@ -287,7 +287,7 @@ def test_the_exit_code_is_the_experiments(monkeypatch: pytest.MonkeyPatch, code:
     assert given[1:] == [["episodes=3", "+seed=4"], None, False]
 
 
-@pytest.mark.parametrize(("command", "cells"), [("run", 2), ("ablate", 14)])
+@pytest.mark.parametrize(("command", "cells"), [("run", 2), ("ablate", 22)])
 def test_cfg_of_a_sweep_is_a_document_for_each_cell(command: str, cells: int) -> None:
     import yaml
 

@@ -29,7 +29,8 @@ def own(tmp_path: Path) -> Path:
 
 
 def methods(table: str, *tokens: str, config_dir: Path | None = None) -> list[str]:
-    return [point.overrides[-1] for point in comparison(table, tokens, config_dir)]
+    """The methods of a comparison, without controls."""
+    return [point.overrides[-1] for point in comparison(table, ["controls=false", *tokens], config_dir)]
 
 
 def there(names: tuple[str, ...]) -> list[str]:
@@ -86,10 +87,34 @@ def test_a_papers_method_of_ones_own_takes_part_without_being_asked(own: Path, m
 
 
 def test_each_scenario_and_setting_is_a_block_of_all_methods() -> None:
-    points = comparison("baselines", ["scenario=merge,highway", "episodes=3"])
+    points = comparison("baselines", ["scenario=merge,highway", "controls=false", "episodes=3"])
     assert [point.swept["scenario"] for point in points] == ["merge"] * len(THERE) + ["highway"] * len(THERE)
     assert points[0].overrides[:3] == ("experiment=compare", "scenario=merge", "episodes=3")
     assert points[0].swept["method"] == THERE[0].partition("=")[2]
+
+
+CONTROLS = ["fastest", "random_action", "random_order", "idm", "oracle"]
+
+
+@pytest.mark.parametrize("table", ["baselines", "single-vehicle", "all"])
+def test_controls_are_the_last_rows_unless_they_are_left_out(table: str, own: Path) -> None:
+    points = comparison(table, ["method=mine", "scenario=merge,highway"], own)
+    named = [point.swept["method"] for point in points if point.swept["scenario"] == "merge"]
+    assert named == [*(m.partition("=")[2] for m in methods(table)), "mine", *CONTROLS]
+    assert methods(table) + [f"method={name}" for name in CONTROLS] == [p.overrides[-1] for p in comparison(table, [])]
+    assert methods(table, "method=idm")[-1] == "method=idm", "one that is asked for takes part all the same"
+    with pytest.raises(ConfigError, match="controls must be true or false, got 'no'"):
+        comparison(table, ["controls=no"])
+
+
+def test_loads_have_controls_only_if_they_are_asked_for() -> None:
+    assert "method=idm" not in {point.overrides[-1] for point in comparison("load", [])}
+    asked = comparison("load", ["controls=true", "scenario=merge", "scenario.cavs=4"])
+    assert [point.swept["method"] for point in asked] == [*COMPARED, *CONTROLS]
+
+
+def test_controls_stand_last_in_lists() -> None:
+    assert list(choices("method"))[-5:] == CONTROLS
 
 
 def test_load_is_four_numbers_of_cavs_at_two_scenarios_unless_the_user_says_otherwise() -> None:

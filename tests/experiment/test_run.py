@@ -73,7 +73,7 @@ def test_the_command_to_go_on_replaces_the_name_and_is_quoted(tmp_path: Path) ->
 
 
 def test_the_ablation_removes_one_thing_at_a_time_under_three_readings() -> None:
-    variations = [point.overrides for point in ablation_points(["episodes=5"])]
+    variations = [point.overrides for point in ablation_points(["episodes=5", "controls=false"])]
     assert variations[0] == ("experiment=ablate", "episodes=5")
     assert [v[2] for v in variations[1:]] == [
         "cda.state_sharing=false",
@@ -87,9 +87,21 @@ def test_the_ablation_removes_one_thing_at_a_time_under_three_readings() -> None
 
 def test_an_ablation_of_several_keeps_the_rows_of_each_together() -> None:
     points = ablation_points(["scenario=intersection,merge"])
-    assert [point.swept["scenario"] for point in points] == ["intersection"] * 7 + ["merge"] * 7
-    assert points[7].removed == ()
-    assert points[8].removed == ("cda.state_sharing=false",)
+    assert [point.swept["scenario"] for point in points] == ["intersection"] * 11 + ["merge"] * 11
+    assert points[11].removed == ()
+    assert points[12].removed == ("cda.state_sharing=false",)
+
+
+def test_an_ablation_ends_with_the_controls_of_codriving_in_its_settings() -> None:
+    given = ["method=codriving", "method.margin=1.2", "cda=agreement_seeking", "episodes=5"]
+    found = [point.overrides for point in ablation_points(given)][7:]
+    margin = ("method.margin=1.2",)
+    assert found == [
+        ("experiment=ablate", *kept, "cda=agreement_seeking", "episodes=5", f"method={name}")
+        for name, kept in (("fastest", margin), ("random_action", margin), ("random_order", margin), ("idm", ()))
+    ]
+    assert len(ablation_points(["method=fcfs"])) == 7, "they are controls of no other method"
+    assert len(ablation_points(["controls=false"])) == 7
 
 
 def test_a_method_without_sub_modules_cannot_be_ablated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
