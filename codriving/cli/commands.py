@@ -54,6 +54,29 @@ def compare(
     raise typer.Exit(run_command(comparison_command(table), overrides or [], config_dir, cfg))
 
 
+def bound(
+    overrides: Overrides = None,
+    margin: Annotated[
+        float | None, typer.Option(metavar="T", help="Bound an executor that keeps so many seconds at zones.")
+    ] = None,
+    one_order: Annotated[
+        bool, typer.Option("--one-order", help="With --margin: CAVs keep one order of vehicles at all zones.")
+    ] = False,
+    measure: Annotated[
+        bool, typer.Option("--measure", help="Measure how CAVs turn on a road of which that is not known; a minute.")
+    ] = False,
+    config_dir: ConfigDir = None,
+) -> None:
+    """Say how fast the CAVs of each seed can arrive at most, by any way of driving.
+
+    A proven bound at intersection and roundabout, human drivers left out; at merge and highway the time alone. The same
+    command with the same run=NAME goes on where it was interrupted.
+    """
+    from codriving.experiment import BoundOptions, run_bound
+
+    raise typer.Exit(run_bound(overrides or [], BoundOptions(measure, margin, one_order, config_dir)))
+
+
 def learn(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConfig = False) -> None:
     """Learn from so many interactions, then test what was learnt: success after each, as table and figure.
 

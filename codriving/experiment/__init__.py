@@ -4,6 +4,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from codriving.experiment.bounds import BoundOptions, run_bound
     from codriving.experiment.check import run_check
     from codriving.experiment.compare import Comparison, compare_frames, comparison_command
     from codriving.experiment.learn import run_learn
@@ -13,11 +14,13 @@ if TYPE_CHECKING:
     from codriving.experiment.run import ABLATE, RUN, Results, run_command, run_frames
 
 __all__ = [
-    "ABLATE", "BUILD", "RUN", "Comparison", "ReplayOptions", "Results", "compare_frames", "comparison_command",
-    "merge_page", "run_check", "run_command", "run_frames", "run_learn", "run_replay", "search_page", "show_page",
+    "ABLATE", "BUILD", "RUN", "BoundOptions", "Comparison", "ReplayOptions", "Results", "compare_frames",
+    "comparison_command", "merge_page", "run_bound", "run_check", "run_command", "run_frames", "run_learn",
+    "run_replay", "search_page", "show_page",
 ]  # fmt: skip
 
 _FILES = {
+    "bounds": ("BoundOptions", "run_bound"),
     "check": ("run_check",),
     "compare": ("Comparison", "compare_frames", "comparison_command"),
     "learn": ("run_learn",),

@@ -1,14 +1,15 @@
 """Shapes: paths by arc length, oriented boxes, and the conflict zones between routes."""
 
 from codriving.geometry.box import PLANNING, TRUE, Footprint, corners, overlap, overlaps, separation
+from codriving.geometry.collision_set import collision_set
 from codriving.geometry.curve import FloatArray
 from codriving.geometry.lane_path import lane_path, lane_starts
 from codriving.geometry.path import Path, progress
 from codriving.geometry.road_map import RoadMap, road_map
 from codriving.geometry.speed_profile import SpeedProfile
-from codriving.geometry.zone import ConflictZone
+from codriving.geometry.zone import ConflictZone, FollowingBand
 
 __all__ = [
-    "PLANNING", "TRUE", "ConflictZone", "FloatArray", "Footprint", "Path", "RoadMap", "SpeedProfile", "corners",
-    "lane_path", "lane_starts", "overlap", "overlaps", "progress", "road_map", "separation",
+    "PLANNING", "TRUE", "ConflictZone", "FloatArray", "FollowingBand", "Footprint", "Path", "RoadMap", "SpeedProfile",
+    "collision_set", "corners", "lane_path", "lane_starts", "overlap", "overlaps", "progress", "road_map", "separation",
 ]  # fmt: skip

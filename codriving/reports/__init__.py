@@ -1,5 +1,6 @@
 """Records -> tables and figures, from what is stored alone, without the simulator."""
 
+from codriving.reports.bounds import BoundRow, print_bounds
 from codriving.reports.built_memory import BuiltMemory, print_built
 from codriving.reports.columns import Table, table
 from codriving.reports.comparison import (
@@ -25,10 +26,10 @@ from codriving.reports.results import CellResults
 from codriving.reports.summary import RunTables, run_tables
 
 __all__ = [
-    "METHOD_CHOICE", "REFERENCE", "BuiltMemory", "CellResults", "Compared", "Condition", "LearningRow", "PrintedTable",
-    "RunTables", "Table", "TimedEpisode", "comparison_rows", "comparison_table", "cpu_per_decision", "flow_table",
-    "flow_tables", "learning_figure", "learning_rows", "learning_table", "load_figure", "load_rows", "load_table",
-    "markdown_text", "print_built", "print_comparison", "print_each_load", "print_flows", "print_learning",
-    "print_loads", "print_pairs", "print_table", "profile_figure", "read_learning", "read_paper", "run_tables",
-    "table", "timing_columns", "with_corrected",
+    "METHOD_CHOICE", "REFERENCE", "BoundRow", "BuiltMemory", "CellResults", "Compared", "Condition", "LearningRow",
+    "PrintedTable", "RunTables", "Table", "TimedEpisode", "comparison_rows", "comparison_table", "cpu_per_decision",
+    "flow_table", "flow_tables", "learning_figure", "learning_rows", "learning_table", "load_figure", "load_rows",
+    "load_table", "markdown_text", "print_bounds", "print_built", "print_comparison", "print_each_load",
+    "print_flows", "print_learning", "print_loads", "print_pairs", "print_table", "profile_figure", "read_learning",
+    "read_paper", "run_tables", "table", "timing_columns", "with_corrected",
 ]  # fmt: skip

@@ -1,0 +1,154 @@
+"""`codriving bound`: how fast the CAVs of each seed can arrive at most, and what was solved before."""
+
+import csv
+import hashlib
+import io
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from codriving.bound import BoundedWorld, Margins, bounded_world
+from codriving.config import build, expand
+from codriving.datatypes import Simulator
+from codriving.errors import ConfigError
+from codriving.experiment.cells import swept_values
+from codriving.experiment.plan import composed, each_cell, validated
+from codriving.reports import BoundRow, print_bounds, print_table
+from codriving.runs import BEHAVIOUR, locked, new_run_path, unwritable, write_text
+
+FILE = "bound.csv"
+
+COLUMNS = ("world", "scenario", "seed", "cavs", "bound", "driven", "alone", "binaries", "optimal")
+
+ENVELOPES = "envelopes"  # Folder below the output, for those that are measured
+
+Row = Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class BoundOptions:
+    """What ``codriving bound`` takes besides settings."""
+
+    measure: bool = False  # Whether a missing envelope is measured
+    margin: float | None = None  # Time that an executor keeps at zones [s]; None bounds all ways of driving
+    one_order: bool = False  # Whether CAVs keep one order of vehicles
+    config_dir: Path | None = None
+
+    @property
+    def margins(self) -> Margins | None:
+        """What the executor keeps."""
+        return None if self.margin is None else Margins(self.margin)
+
+    def check(self) -> None:
+        """Refuse what is out of range."""
+        if self.margin is not None and not 0 <= self.margin <= 5:
+            raise ConfigError(f"--margin must be 0 to 5 s, got {self.margin:g}")
+        if self.one_order and self.margin is None:
+            raise ConfigError("--one-order needs --margin: without margins the bound holds for all orders")
+
+
+def world_of(
+    resolved: Mapping[str, Any], measured: Path, options: BoundOptions | None = None
+) -> tuple[BoundedWorld, str]:
+    """Make the world of a config, and the mark that tells its bounds from those of others.
+
+    Args:
+        measured: Folder with envelopes that were measured before.
+
+    Raises:
+        ConfigError: If no bound is defined in it, or its envelope was not measured.
+    """
+    options = options or BoundOptions()
+    environment = build(resolved["environment"], Simulator, "environment", resolved["plugins"])
+    world = bounded_world(environment, measured, options.margins, options.one_order, options.measure)
+    parts = [BEHAVIOUR, resolved["environment"], world.settings]
+    return world, hashlib.sha256(json.dumps(parts, sort_keys=True, default=str).encode()).hexdigest()[:12]
+
+
+@dataclass
+class KeptBounds:
+    """The bounds in a folder, which are solved once."""
+
+    folder: Path
+    rows: dict[tuple[str, int], Row] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, folder: Path) -> "KeptBounds":
+        """Read what is there; what cannot be read is solved anew."""
+        kept = cls(folder)
+        try:
+            with (folder / FILE).open(encoding="utf-8", newline="") as file:
+                for row in csv.DictReader(file):
+                    if set(COLUMNS) <= row.keys() and row["seed"].isdecimal() and _is_number(row["bound"]):
+                        kept.rows[row["world"], int(row["seed"])] = row
+        except (OSError, UnicodeDecodeError, csv.Error):
+            pass
+        return kept
+
+    def row(self, world: BoundedWorld, mark: str, seed: int) -> Row:
+        """Return the bound of a seed, solved if it is not there."""
+        found = self.rows.get((mark, seed))
+        if found is None:
+            found = self.rows[mark, seed] = _row(world, mark, seed)
+            write_text(self.folder / FILE, self.text())
+        return found
+
+    def text(self) -> str:
+        """Write all bounds down."""
+        out = io.StringIO()
+        writer = csv.DictWriter(out, COLUMNS, lineterminator="\n", extrasaction="ignore")
+        writer.writeheader()
+        writer.writerows(row for _, row in sorted(self.rows.items()))
+        return out.getvalue()
+
+
+def _is_number(text: str | None) -> bool:
+    try:
+        return float(text or "") >= 0
+    except ValueError:
+        return False
+
+
+def _row(world: BoundedWorld, mark: str, seed: int) -> Row:
+    bound = world.solve(seed)
+    values = (mark, world.name, str(seed), str(bound.cavs), f"{bound.total:.1f}", "", f"{bound.alone:.1f}")
+    return dict(zip(COLUMNS, (*values, str(bound.binaries), "yes" if bound.optimal else "no"), strict=True))
+
+
+def run_bound(overrides: Sequence[str], options: BoundOptions) -> int:
+    """Do what ``codriving bound`` does.
+
+    Args:
+        overrides: ``key=value`` tokens.
+
+    Raises:
+        UserError: If the config or the folder cannot be used, or no bound is defined.
+    """
+    options.check()
+    base = () if any(token.lstrip("+").startswith("experiment=") for token in overrides) else ("experiment=bound",)
+    points = expand([*base, *overrides], options.config_dir)
+    configs, _ = composed(points, options.config_dir)
+    validated(points, configs)
+    first = configs[0]
+    output = Path(first["output"])
+    worlds = each_cell(points, configs, lambda config: world_of(config, output / ENVELOPES, options))
+    experiment = output / first["experiment"]
+    folder = experiment / first["run"] if first["run"] else new_run_path(experiment, datetime.now(UTC))
+    seeds = range(first["seed"], first["seed"] + first["episodes"])
+    rows = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with locked(folder):
+            kept = KeptBounds.of(folder)
+            for point, config, (world, mark) in zip(points, configs, worlds, strict=True):
+                solved = [kept.row(world, mark, seed) for seed in seeds]
+                swept = swept_values(point.swept, config)
+                rows.append(BoundRow.of(world.name, swept, solved, world.envelopes is not None))
+    except OSError as error:
+        raise unwritable(folder, error) from error
+    print_table(print_bounds(rows, options.margin, options.one_order))
+    print(folder / FILE)
+    return 0

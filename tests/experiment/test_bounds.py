@@ -1,0 +1,66 @@
+"""``codriving bound``: what it prints, keeps and refuses."""
+
+from pathlib import Path
+
+import pytest
+
+from codriving.errors import ConfigError
+from codriving.experiment.bounds import BoundOptions, run_bound
+
+FEW = ["scenario=intersection", "episodes=2", "seed=24000", "run=few"]
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_bounds_are_printed_kept_and_not_solved_again(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_bound(FEW, BoundOptions()) == 0
+    shown = capsys.readouterr().out
+    assert "intersection     4      2" in shown
+    assert "human drivers are left out" in shown
+    file = Path("outputs/bound/few/bound.csv")
+    lines = file.read_text().splitlines()
+    assert lines[0] == "world,scenario,seed,cavs,bound,driven,alone,binaries,optimal"
+    rows = [line.split(",") for line in lines[1:]]
+    assert [row[1:4] for row in rows] == [["intersection", "24000", "4"], ["intersection", "24001", "4"]]
+    assert all(float(row[4]) >= float(row[6]) > 30 for row in rows)
+    # A number that is there is taken as it is.
+    file.write_text("\n".join([lines[0], lines[1].replace(rows[0][4], "77.7"), ""]))
+    assert run_bound(FEW, BoundOptions()) == 0
+    assert "77.7" in file.read_text()
+    assert file.read_text().splitlines()[2] == lines[2]
+
+
+def test_rows_of_other_settings_stay_beside(capsys: pytest.CaptureFixture[str]) -> None:
+    run_bound([*FEW, "episodes=1"], BoundOptions())
+    run_bound(["scenario=merge", "seed=24000", "episodes=1", "run=few"], BoundOptions())
+    assert "Where CAVs choose their lanes (merge) no more is proven" in capsys.readouterr().out
+    run_bound([*FEW, "episodes=1"], BoundOptions(margin=0.6))
+    assert "keeps 0.6 s at zones" in capsys.readouterr().out
+    rows = [line.split(",") for line in Path("outputs/bound/few/bound.csv").read_text().splitlines()[1:]]
+    assert sorted(row[1] for row in rows) == ["intersection", "intersection", "merge"]
+    assert len({row[0] for row in rows}) == 3
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (BoundOptions(margin=-1), "--margin must be 0 to 5 s, got -1"),
+        (BoundOptions(one_order=True), "--one-order needs --margin"),
+    ],
+)
+def test_options_out_of_range_are_refused(options: BoundOptions, words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        run_bound(FEW, options)
+
+
+def test_margin_bound_of_free_lanes_is_refused() -> None:
+    with pytest.raises(ConfigError, match="merge has no margin bound"):
+        run_bound(["scenario=merge", "episodes=1"], BoundOptions(margin=0.6))
+
+
+def test_cell_without_bound_is_named() -> None:
+    with pytest.raises(ConfigError, match=r"blocked_exit=5.*no bound is defined at a blocked exit"):
+        run_bound(["scenario.blocked_exit=0,5", "scenario.cavs=6", "episodes=1"], BoundOptions())
