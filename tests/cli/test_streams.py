@@ -16,10 +16,12 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 def shell(line: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
     command = f"{sys.executable} -m codriving"
     path = os.pathsep.join(filter(None, [str(REPOSITORY), os.environ.get("PYTHONPATH")]))
+    # LiteLLM sets variables of its own where another test has imported it.
+    ours = {name: value for name, value in os.environ.items() if not name.startswith("LITELLM_")}
     return subprocess.run(
         ["/bin/sh", "-c", line.replace("codriving", command)],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": path, **variables},
+        env={**ours, "PYTHONPATH": path, **variables},
         capture_output=True,
         text=True,
         timeout=60,

@@ -17,6 +17,7 @@ from faults import Fault
 from hypothesis import given
 from hypothesis import strategies as st
 from loopback import Loopback, Request
+from thorough import THOROUGH
 
 from codriving.llm.answers import JudgedReply, judge
 from codriving.llm.client import ModelChat
@@ -142,8 +143,10 @@ def thought_only(case: Case) -> bool:
 @pytest.mark.parametrize("model", ["openai/any", "hosted_vllm/any"])
 def test_answers_are_read_through_litellm(server: Loopback, model: str) -> None:
     chat = ModelChat(replace(SETTINGS, model=model, api_base=server.url), forms=Forms())
-    answers = chat.ask([question(number) for number in range(len(CASES))])
-    for case, answer in zip(CASES, answers, strict=True):
+    # What differs for a server of vLLM's is little of the way.
+    numbers = range(0, len(CASES), 1 if THOROUGH or model == "openai/any" else 4)
+    answers = chat.ask([question(number) for number in numbers])
+    for case, answer in zip((CASES[number] for number in numbers), answers, strict=True):
         check(case, answer.value, answer.problem, answer.mended)
         assert len(answer.calls) == (2 if "refused" in case and not thought_only(case) else 1), case
         assert answer.calls[0].prompt_tokens == 10

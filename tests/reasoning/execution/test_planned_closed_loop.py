@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 from driven import Episode, drive, ordered
+from thorough import THOROUGH
 from worlds import Junction
 
 from codriving.config.build import build
@@ -20,7 +21,7 @@ from codriving.methods.ordered import Ordered
 from codriving.reasoning.conflicts import is_open
 
 Make = Callable[..., Environment]
-EPISODES = {"fcfs": 20, "idfst": 6, "mcts": 6}
+EPISODES = {"fcfs": 20, "idfst": 6, "mcts": 6} if THOROUGH else {"fcfs": 8, "idfst": 4, "mcts": 4}
 FIRST_SEED = 10_000
 ALONE = "scenario.hdvs=[0,0]"
 
