@@ -18,6 +18,7 @@ from codriving.config.choices import (
     describe,
     styles,
     taking_part,
+    target_of,
     values,
 )
 from codriving.config.compose import compose, compose_named, show
@@ -27,6 +28,7 @@ from codriving.config.plugins import PLUGINS
 from codriving.config.schema import GROUPS, LARGEST_SEED, ROOT
 from codriving.config.suites import changed_worlds, members, sets_scenario, suite_sets
 from codriving.config.sweep import Point, expand
+from codriving.config.target import find_class
 from codriving.config.training import compose_training, trainings
 
 __all__ = [
@@ -60,6 +62,7 @@ __all__ = [
     "describe",
     "expand",
     "experiments_dir",
+    "find_class",
     "members",
     "parse",
     "sets_scenario",
@@ -67,6 +70,7 @@ __all__ = [
     "styles",
     "suite_sets",
     "taking_part",
+    "target_of",
     "targets",
     "trainings",
     "validate",

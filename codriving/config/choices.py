@@ -28,6 +28,7 @@ TABLES = {
     "single-vehicle": "The methods for a single vehicle, each against codriving.",
     "all": "The methods of both tables, each against codriving.",
     "load": "The methods of the first table with 4, 6, 8 and 12 CAVs.",
+    "orders": "The paper's method with each passing order, each against the order that is negotiated.",
 }
 
 CONTROLS, ABLATION = "controls", "ablation"  # The tables below others in which controls say their place
@@ -49,6 +50,7 @@ FIRST = {
 
 _LINE = re.compile(r"^(\w+):[^\S\n]*([^#\n]*)", re.MULTILINE)
 _STYLE = re.compile(r'^_style_: "(\S+) (\S+) (\S+)"', re.MULTILINE)
+_TARGET = re.compile(r"^_target_: (\S+)", re.MULTILINE)
 _PARENT = re.compile(r"\[(_\w+), _self_\]")
 _DEFAULT = re.compile(r"^\s*-\s*(?:override /)?(\w+):\s*\"?(\w+)", re.MULTILINE)
 
@@ -78,6 +80,8 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
 @cache
 def taking_part(table: str) -> tuple[str, ...]:
     """Return the methods of a table of ``codriving compare``, in its order: each says its place in its YAML."""
+    if table == "orders":
+        return taking_part("baselines")[-1:]
     if table == "all":
         return (*dict.fromkeys((*taking_part("baselines")[:-1], *taking_part("single-vehicle"))),)
     place = re.compile(rf"^_tables_: .*\b{'baselines' if table == 'load' else table}: (\d+)", re.MULTILINE)
@@ -126,6 +130,12 @@ def values(file: Path) -> dict[str, str]:
 def chosen_in(file: Path, group: str) -> str | None:
     """Return what a YAML sets a group to."""
     return dict(_DEFAULT.findall(read_yaml(file))).get(group)
+
+
+def target_of(file: Path) -> str | None:
+    """Return the class that a YAML names, if it names one."""
+    found = _TARGET.search(read_yaml(file))
+    return found[1] if found else None
 
 
 def default_choice(group: str, suite: Path | None = None) -> str | None:

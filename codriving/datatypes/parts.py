@@ -255,6 +255,8 @@ class OrderExecutor:
 class OrderOfCavs:
     """What says who passes first: base of what a choice of ``order`` may be; reasoning adds its hooks."""
 
+    most_cavs: int | None = None  # CAVs that it orders at most; None for any number
+
 
 class EpisodeLauncher:
     """Where episodes are driven: base of what a choice of ``launcher`` may be; a batch adds its hooks."""

@@ -27,6 +27,7 @@ from codriving.config import (
 from codriving.errors import ConfigError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.cells import Cell
+from codriving.experiment.compare_orders import ORDER, as_orders, order_points, subject_of
 from codriving.experiment.controls import split_controls
 from codriving.experiment.drive import Driven, Outputs, drive
 from codriving.experiment.flows import is_flow
@@ -34,9 +35,13 @@ from codriving.experiment.plan import Plan, make_plan
 from codriving.experiment.run import Command
 from codriving.reports import (
     METHOD_CHOICE,
+    METHODS,
+    REFERENCE,
     CellResults,
     Compared,
     Condition,
+    Paper,
+    Subject,
     comparison_rows,
     comparison_table,
     cpu_per_decision,
@@ -58,10 +63,11 @@ from codriving.reports import (
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-BASELINES, SINGLE_VEHICLE, ALL, LOAD = "baselines", "single-vehicle", "all", "load"
+BASELINES, SINGLE_VEHICLE, ALL, LOAD, ORDERS = "baselines", "single-vehicle", "all", "load", "orders"
 
 # The folder of each table's runs, if the user names none.
 EXPERIMENT = {BASELINES: "compare", SINGLE_VEHICLE: "compare-single-vehicle", ALL: "compare-all", LOAD: "load"}
+EXPERIMENT |= {ORDERS: "compare-orders"}
 
 CAVS = "scenario.cavs"  # The key that the load is
 
@@ -94,7 +100,7 @@ def compare_frames(table: str, *overrides: str, config_dir: str | Path | None = 
     """Drive all methods on the same seeds and give the tables as data frames; prints no table.
 
     Args:
-        table: ``baselines``, ``single-vehicle``, ``all`` or ``load``.
+        table: ``baselines``, ``single-vehicle``, ``all``, ``load`` or ``orders``.
         *overrides: ``key=value`` tokens that hold for every cell; ``method=`` adds methods.
 
     Raises:
@@ -113,7 +119,7 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
 
     Every method of the table that has a YAML takes part. ``method=`` adds others to them; controls come last.
     """
-    controlled, overrides = split_controls(written(overrides), usual=table != LOAD)
+    controlled, overrides = split_controls(written(overrides), usual=table not in (LOAD, ORDERS))
     keys = [parse(token).key_or_group for token in overrides]
     added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
     others = [token for token, key in zip(overrides, keys, strict=True) if key != "method"]
@@ -123,6 +129,8 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
     # Asked for once more on the command line, it is the user's.
     base = () if "experiment" in keys else (f"experiment={EXPERIMENT[table]}",)
     methods = [*_methods(table, added, config_dir), *(taking_part(CONTROLS) if controlled else ())]
+    if table == ORDERS:
+        return order_points(base, others, methods, config_dir)
     return [
         Point((*base, *point.overrides, f"method={name}"), {**point.swept, "method": name}, point.removed)
         for point in expand(others, config_dir)
@@ -139,27 +147,29 @@ def _methods(table: str, added: Sequence[str], config_dir: Path | None) -> list[
     return list(dict.fromkeys([*(name for name in taking_part(table) if name in known), *own]))
 
 
-def setting(resolved: Mapping[str, Any]) -> str:
-    """Mark the setting of a cell: cells with the same mark differ in the method alone."""
-    kept = {key: value for key, value in resolved.items() if key not in ("method", "plugins")}
+def setting(resolved: Mapping[str, Any], varied: Sequence[str] = ()) -> str:
+    """Mark the setting of a cell: cells with the same mark differ in the method, and what else is varied, alone."""
+    kept = {key: value for key, value in resolved.items() if key not in ("method", "plugins", *varied)}
     return json.dumps(kept, sort_keys=True)
 
 
 def make_comparison(table: str, driven: Driven) -> Outputs:
     """Make a comparison of methods."""
     if driven.flows:
-        return _compared_flows(driven)
-    paper, metrics = read_paper(experiments_dir()), driven.metrics
+        return _compared_flows(table, driven)
+    varied = (ORDER,) if table == ORDERS else ()
+    paper, metrics = Paper() if varied else read_paper(experiments_dir()), driven.metrics
     blocks: dict[str, list[CellResults]] = {}
     for cell, results in _results(driven):
-        blocks.setdefault(setting(cell.resolved), []).append(results)
+        blocks.setdefault(setting(cell.resolved, varied), []).append(results)
     rows = with_corrected(
         [row for block in blocks.values() for row in comparison_rows(block, taking_part(table), paper)]
     )
     swept = tuple(dict.fromkeys(key for block in blocks.values() for results in block for key in results.swept))
     whole = comparison_table(rows, swept)
     pages, printed = [], []
-    conditions = _conditions(rows)
+    rows = as_orders(rows) if varied else rows
+    conditions = _conditions(rows, subject_of(rows) if varied else METHODS)
     for condition, members in conditions:
         # One table a suite, which its title names.
         keys = tuple(key for key in swept if not condition.name or key != SUITE)
@@ -174,23 +184,25 @@ def make_comparison(table: str, driven: Driven) -> Outputs:
     return Outputs(files, tuple(printed), (whole,))
 
 
-def _conditions(rows: Sequence[Compared]) -> list[tuple[Condition, list[Compared]]]:
+def _conditions(rows: Sequence[Compared], subject: Subject) -> list[tuple[Condition, list[Compared]]]:
     """Part the rows of a comparison by suite, if several were driven."""
     groups: dict[str, list[Compared]] = {}
     for row in rows:
         groups.setdefault(row.swept.get(SUITE, ""), []).append(row)
     last, files = next(reversed(groups), ""), choices(SUITE)
     return [
-        (Condition(name, describe(files[name]) if name in files else "", name == last), members)
+        (Condition(name, describe(files[name]) if name in files else "", name == last, subject), members)
         for name, members in groups.items()
     ]
 
 
-def _compared_flows(driven: Driven) -> Outputs:
+def _compared_flows(table: str, driven: Driven) -> Outputs:
     """Make a comparison of methods in flows, in which nothing is paired."""
     cells = [results for _, results in _results(driven)]
     swept = tuple(dict.fromkeys(key for results in cells for key in results.swept))
-    kept, printed = (print_flows(cells, driven.metrics, swept, screen=screen) for screen in (False, True))
+    rows = [Compared(cell.first.scenario, cell.first.method, cell=cell) for cell in cells]
+    notes = (f"{REFERENCE} full goes by the negotiated order.", *subject_of(rows).notes) if table == ORDERS else ()
+    kept, printed = (print_flows(cells, driven.metrics, swept, notes, screen) for screen in (False, True))
     whole = flow_table(cells, swept)
     files = {"comparison.csv": whole.csv().encode(), "comparison.md": markdown_text(kept).encode()}
     return Outputs(files, (printed,), (whole,))

@@ -5,7 +5,6 @@ from codriving.reports.built_memory import BuiltMemory, print_built
 from codriving.reports.columns import Table, table
 from codriving.reports.comparison import (
     METHOD_CHOICE,
-    REFERENCE,
     Compared,
     Condition,
     comparison_rows,
@@ -19,17 +18,19 @@ from codriving.reports.figures import learning_figure, load_figure
 from codriving.reports.flows import flow_table, flow_tables, print_flows
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
 from codriving.reports.load import load_rows, load_table, print_each_load, print_loads
-from codriving.reports.paper import read_learning, read_paper
+from codriving.reports.paper import Paper, read_learning, read_paper
 from codriving.reports.printed import PrintedTable, markdown_text, print_table
 from codriving.reports.profile import profile_figure
 from codriving.reports.results import CellResults
+from codriving.reports.subject import METHODS, REFERENCE, Subject
 from codriving.reports.summary import RunTables, run_tables
 
 __all__ = [
-    "METHOD_CHOICE", "REFERENCE", "BoundRow", "BuiltMemory", "CellResults", "Compared", "Condition", "LearningRow",
-    "PrintedTable", "RunTables", "Table", "TimedEpisode", "comparison_rows", "comparison_table", "cpu_per_decision",
-    "flow_table", "flow_tables", "learning_figure", "learning_rows", "learning_table", "load_figure", "load_rows",
-    "load_table", "markdown_text", "print_bounds", "print_built", "print_comparison", "print_each_load",
-    "print_flows", "print_learning", "print_loads", "print_pairs", "print_table", "profile_figure", "read_learning",
-    "read_paper", "run_tables", "table", "timing_columns", "with_corrected",
+    "METHODS", "METHOD_CHOICE", "REFERENCE", "BoundRow", "BuiltMemory", "CellResults", "Compared", "Condition",
+    "LearningRow", "Paper", "PrintedTable", "RunTables", "Subject", "Table", "TimedEpisode", "comparison_rows",
+    "comparison_table", "cpu_per_decision", "flow_table", "flow_tables", "learning_figure", "learning_rows",
+    "learning_table", "load_figure", "load_rows", "load_table", "markdown_text", "print_bounds", "print_built",
+    "print_comparison", "print_each_load", "print_flows", "print_learning", "print_loads", "print_pairs",
+    "print_table", "profile_figure", "read_learning", "read_paper", "run_tables", "table", "timing_columns",
+    "with_corrected",
 ]  # fmt: skip

@@ -7,10 +7,11 @@ from typing import Any
 from codriving.metrics import FEWEST, RESAMPLES
 from codriving.reports.columns import Column, Table, swept_columns, table
 from codriving.reports.episodes import number_columns
-from codriving.reports.pairs import PAIRED, PairedCells, corrected, p_text, points
+from codriving.reports.pairs import PAIRED, PairedCells, corrected, p_text, paired_columns, points
 from codriving.reports.paper import Paper, PaperRow
 from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.results import CellResults, named_numbers
+from codriving.reports.subject import METHODS, REFERENCE, Subject
 from codriving.reports.summary import (
     BY_KEY,
     CLEAN,
@@ -33,8 +34,6 @@ from codriving.reports.wording import (
     title,
 )
 
-REFERENCE = "codriving"  # The method that all others are compared with
-
 # Whether a method could be driven; the last for one that goes by a language model, where rules stood in for it.
 DRIVEN, MISSING, QUOTED_ALONE = "driven", "not there yet", "only in the paper"
 
@@ -46,15 +45,21 @@ CPU_NOTE = "CPU: computing time of one decision for all CAVs, of this machine; i
 
 QUOTED = ("success_rate", "pet_mean", "pet_max", "pet_min", "velocity_mean", "velocity_max", "velocity_min")
 
-PAIRED_NOTES = (
-    "Each difference is the method minus codriving on the same seeds. Success and clean success: exact McNemar test, "
-    "two-sided.",
-    "Velocity and PET: means of an episode, over seeds on which both succeed; 95 % bootstrap intervals of "
-    f"{RESAMPLES} resamples, where there are {FEWEST} pairs or more.",
-    "Better or worse: p (Holm) below 0.05, or an interval without 0. Holm: corrected for the number of rows of the "
-    "whole comparison, success and clean success each by itself; intervals are not corrected.",
-    "Level: at most 3 points below the other, and not shown to be worse.",
-)
+
+def paired_notes(subject: Subject) -> tuple[str, ...]:
+    """Say what the columns of differences mean."""
+    return (
+        f"Each difference is the {subject.row} minus {subject.reference} on the same seeds. Success and clean success: "
+        "exact McNemar test, two-sided.",
+        "Velocity and PET: means of an episode, over seeds on which both succeed; 95 % bootstrap intervals of "
+        f"{RESAMPLES} resamples, where there are {FEWEST} pairs or more.",
+        "Better or worse: p (Holm) below 0.05, or an interval without 0. Holm: corrected for the number of rows of the "
+        "whole comparison, success and clean success each by itself; intervals are not corrected.",
+        "Level: at most 3 points below the other, and not shown to be worse.",
+    )
+
+
+PAIRED_NOTES = paired_notes(METHODS)
 
 
 @dataclass(frozen=True)
@@ -68,11 +73,12 @@ class Compared:
     quoted: PaperRow | None = None  # The paper's row, if it has one
     swept: Mapping[str, str] = field(default_factory=dict)
     pairs: PairedCells | None = None  # The comparison with the reference on the same seeds
+    label: str = ""  # What it is called where its method and variant do not say what it differs in
 
     @property
     def name(self) -> str:
         """The method, with its variant."""
-        return self.cell.name if self.cell else self.method
+        return self.label or (self.cell.name if self.cell else self.method)
 
     @property
     def is_control(self) -> bool:
@@ -198,6 +204,7 @@ class Condition:
     name: str
     sentence: str  # What its YAML says of it
     last: bool = True  # Whether notes that hold for every condition stand below its tables
+    subject: Subject = METHODS
 
 
 WHOLE = Condition("", "")  # A comparison in one table
@@ -217,9 +224,11 @@ def print_comparison(
     """
     theirs = {index: paper_row(row.quoted) for index, row in enumerate(rows) if row.quoted}
     reasoners = [row.cell.first.reasoner for row in rows if row.cell]
-    what = f"{condition.name}: comparison of methods" if condition.name else "comparison of methods"
+    what = f"{condition.name}: " if condition.name else ""
+    what += f"comparison of {condition.subject.rows}"
     heading = title(what, [row.scenario for row in rows], reasoners, metrics)
     general = (
+        *condition.subject.notes,
         NOTE,
         *clean_notes(_cells(rows)),
         *number_notes(_cells(rows)),
@@ -259,26 +268,28 @@ def print_pairs(
         The table, with a note on every method that is better than codriving in something; None where there is no
         other method.
     """
-    found = [row for row in rows if row.pairs]
+    found, subject = [row for row in rows if row.pairs], condition.subject
     if not found:
         return None
+    paired = PAIRED if subject is METHODS else paired_columns(subject.reference, f"against {subject.reference}")
     columns: list[Column[Any]] = [
         *status_columns(len({row.scenario for row in rows}) > 1),
         *swept_columns(swept),
-        *(column.of(lambda r: r.pairs) for column in PAIRED),
+        *(column.of(lambda r: r.pairs) for column in paired),
     ]
-    beaten = [_better_note(row, row.pairs, swept) for row in found if row.pairs and row.pairs.better] or [
-        "No method is shown to be better than codriving in clean success, success, velocity or PET on these seeds."
+    beaten = [_better_note(row, row.pairs, swept, subject) for row in found if row.pairs and row.pairs.better] or [
+        f"No {subject.row} is shown to be better than {subject.reference} in clean success, success, velocity or PET "
+        "on these seeds."
     ]
     scenarios = ", ".join(dict.fromkeys(row.scenario for row in rows))
     named = f"{condition.name}: " if condition.name else ""
-    heading = f"{named}against {REFERENCE} on the same seeds - {scenarios}{metrics_text(metrics)}"
-    notes = (*_level_notes(found, swept), *beaten, *(PAIRED_NOTES if condition.last else ()))
+    heading = f"{named}against {subject.reference} on the same seeds - {scenarios}{metrics_text(metrics)}"
+    notes = (*_level_notes(found, swept, subject), *beaten, *(paired_notes(subject) if condition.last else ()))
     return printed(heading, table(columns, found), [(row.block, row.is_control) for row in found], notes)
 
 
-def _level_notes(rows: Sequence[Compared], swept: Sequence[str]) -> list[str]:
-    """Say of each block whether codriving is level with the best row in success and in clean success."""
+def _level_notes(rows: Sequence[Compared], swept: Sequence[str], subject: Subject) -> list[str]:
+    """Say of each block whether the reference is level with the best row in success and in clean success."""
     blocks: dict[tuple[object, ...], list[tuple[Compared, PairedCells]]] = {}
     for row in rows:
         if row.pairs:
@@ -295,11 +306,11 @@ def _level_notes(rows: Sequence[Compared], swept: Sequence[str]) -> list[str]:
             if not any(rate.pairs for _, rate in known):
                 continue
             if not best.difference or best.difference < 0:
-                notes.append(f"{measure}{where}: no row is above {REFERENCE}.")
+                notes.append(f"{measure}{where}: no row is above {subject.reference}.")
                 continue
             is_level = "level" if best.level else "not level"
             by = f"{points(best.difference)} points, p (Holm) = {p_text(best.corrected)}"
-            notes.append(f"{measure}{where}: {REFERENCE} is {is_level} with the best row, {row.name} ({by}).")
+            notes.append(f"{measure}{where}: {subject.reference} is {is_level} with the best row, {row.name} ({by}).")
     return notes
 
 
@@ -307,7 +318,7 @@ def _where(row: Compared, swept: Sequence[str]) -> str:
     return " at " + ", ".join([row.scenario, *(f"{key}={row.swept[key]}" for key in swept if row.swept.get(key))])
 
 
-def _better_note(row: Compared, pairs: PairedCells, swept: Sequence[str]) -> str:
+def _better_note(row: Compared, pairs: PairedCells, swept: Sequence[str], subject: Subject) -> str:
     texts = {column.key: column.text(column.value(pairs)) for column in PAIRED}
     shown = {
         "clean": f"clean success by {texts['clean_text']} points (p = {texts['clean_p_text']})",
@@ -316,4 +327,5 @@ def _better_note(row: Compared, pairs: PairedCells, swept: Sequence[str]) -> str
         "PET": f"PET by {texts['pet']} s",
     }
     where = _where(row, swept).removeprefix(" at ")
-    return f"Better than codriving: {row.name} in {' and in '.join(shown[what] for what in pairs.better)} - {where}."
+    better = " and in ".join(shown[what] for what in pairs.better)
+    return f"Better than {subject.reference}: {row.name} in {better} - {where}."

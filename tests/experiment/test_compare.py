@@ -131,9 +131,9 @@ def test_the_experiment_is_the_users_if_named() -> None:
 @pytest.mark.parametrize(
     ("table", "tokens", "said"),
     [
-        ("baseline", [], "unknown table 'baseline'; .* tables: baselines, single-vehicle, all, load"),
+        ("baseline", [], "unknown table 'baseline'; .* tables: baselines, single-vehicle, all, load, orders"),
         ("scenario=merge", [], "unknown table 'scenario=merge'; write codriving compare TABLE"),
-        (None, [], "compare needs the name of a table; .* tables: baselines, single-vehicle, all, load"),
+        (None, [], "compare needs the name of a table; .* tables: baselines, single-vehicle, all, load, orders"),
         ("single", [], "unknown table 'single'"),
         ("single-vehicle", ["method=typo"], "unknown method 'typo'; choices: "),
         ("all", ["episodes=3,4"], "episodes takes one value"),

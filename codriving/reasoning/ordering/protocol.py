@@ -99,7 +99,6 @@ class OrderRule(OrderOfCavs, ABC):
     name: str = ""
     variant: str = ""
     chosen_as: str = ""  # What ``order=`` of codriving calls it in tables; empty for its name
-    most_cavs: int | None = None  # CAVs that it orders at most; None for any number
 
     def reset(self, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
