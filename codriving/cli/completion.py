@@ -33,6 +33,7 @@ PLURALS = {
     "methods": "method",
     "executors": "executor",
     "orders": "order",
+    "filters": "filter",
     "cdas": "cda",
     "llms": "llm",
     "memories": "memory",

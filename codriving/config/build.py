@@ -13,6 +13,7 @@ from codriving.config.plugins import refuse_missing
 from codriving.config.schema import GROUPS, check_root, texts, unknown, value_shown
 from codriving.config.target import find_class
 from codriving.datatypes import (
+    ActionFilter,
     CaseMemory,
     Cooperation,
     Drivers,
@@ -248,6 +249,7 @@ def _part(value: object, wanted: object, phrase: str) -> object:
 EXPECTED: dict[str, type] = {"scenario": Scenario, "executor": OrderExecutor, "cda": Cooperation, "llm": Model}
 EXPECTED |= {
     "order": OrderOfCavs,
+    "filter": ActionFilter,
     "memory": CaseMemory,
     "metrics": Metric,
     "launcher": EpisodeLauncher,

@@ -38,6 +38,7 @@ CONTROLS, ABLATION = "controls", "ablation"  # The tables below others in which 
 FIRST = {
     "scenario": ("intersection", "roundabout", "highway", "merge"),
     "order": ("negotiated",),
+    "filter": ("false", "true"),
     "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
     "llm": ("offline",),
     "limits": ("none", "road"),

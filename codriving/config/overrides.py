@@ -43,7 +43,8 @@ def prepare(token: str, config_dir: Path | None = None) -> str:
     if key in LISTED:
         check_choice(key, override.value(), config_dir)
     if key in LISTED or "/" in key:
-        return plain
+        # Hydra wants the name of a choice as a text.
+        return f"{key}='{choice_named(override.value())}'" if isinstance(override.value(), bool) else plain
     head, _, rest = key.partition(".")
     if head == "method" and rest in SHOWN:
         raise ConfigError(f"{key} is no setting of a run, but what a YAML says for tables; leave it out")
@@ -174,6 +175,11 @@ def at_home(text: str) -> str:
     return path
 
 
+def choice_named(value: object) -> str:
+    """Return the name of a choice; ``true`` and ``false`` are names like others."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
 def check_choice(group: str, value: object, config_dir: Path | None = None) -> None:
     """Refuse what is not the name of a YAML file of a group.
 
@@ -192,6 +198,6 @@ def check_choice(group: str, value: object, config_dir: Path | None = None) -> N
             f"{SUITE}={value} is a set of suites, {sets[str(value)].name}, and one is asked for here; name one of it: "
             f"{', '.join(member.suite for member in members(str(value), config_dir))}"
         )
-    if str(value) not in known:
+    if choice_named(value) not in known:
         several = [*known, *(suite_sets(config_dir) if group == SUITE else ())]
         raise ConfigError(f"unknown {group} {value_shown(str(value))}; choices: {', '.join(several) or 'none'}")

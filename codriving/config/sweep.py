@@ -8,7 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config.choices import ALL, LISTED, SUITE, check_config_dir, choices
-from codriving.config.overrides import TEXT_WITH_COMMAS, check_choice, may_be_secret, parse, shown, written
+from codriving.config.overrides import (
+    TEXT_WITH_COMMAS,
+    check_choice,
+    choice_named,
+    may_be_secret,
+    parse,
+    shown,
+    written,
+)
 from codriving.config.schema import ROOT
 from codriving.config.suites import members, suite_sets
 from codriving.errors import ConfigError
@@ -127,7 +135,7 @@ def _values(override: Any, token: str, config_dir: Path | None) -> Iterator[str]
                     yield from (member.suite for member in members(name, config_dir))
                 else:
                     check_choice(key, name, config_dir)
-                    yield str(name)
+                    yield choice_named(name)
         except (HydraException, ValueError) as err:
             if may_be_secret(token):
                 raise ConfigError(f"cannot read {shown(token)!r}") from None

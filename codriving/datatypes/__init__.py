@@ -16,6 +16,7 @@ from codriving.datatypes.order import (
 )
 from codriving.datatypes.parts import (
     Account,
+    ActionFilter,
     CaseMemory,
     Chat,
     Cooperation,
@@ -76,12 +77,12 @@ from codriving.datatypes.situation import (
 from codriving.datatypes.world import Action, DrivingModel, Intent, Kind, Manner, Scene, Start, VehicleState, WorldState
 
 __all__ = [
-    "BLOCKER", "Account", "Action", "ActionAssessment", "Approach", "ApproachingVehicle", "Arc", "Block", "CaseMemory",
-    "Chat", "Collision", "Conflict", "Cooperation", "Decision", "Deliberation", "Description", "Drivers",
-    "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience", "Flow", "FlowArrival",
-    "FlowLog", "Instance", "Intent", "Interaction", "Kind", "Lane", "LaneChange", "LaneId", "LaneNeighbour",
-    "LaneShape", "Line", "Manner", "Memory", "Method", "Metric", "Model", "NamedNumber", "OrderExecutor",
-    "OrderOfCavs", "Outcome", "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence",
+    "BLOCKER", "Account", "Action", "ActionAssessment", "ActionFilter", "Approach", "ApproachingVehicle", "Arc",
+    "Block", "CaseMemory", "Chat", "Collision", "Conflict", "Cooperation", "Decision", "Deliberation", "Description",
+    "Drivers", "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience", "Flow",
+    "FlowArrival", "FlowLog", "Instance", "Intent", "Interaction", "Kind", "Lane", "LaneChange", "LaneId",
+    "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory", "Method", "Metric", "Model", "NamedNumber",
+    "OrderExecutor", "OrderOfCavs", "Outcome", "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence",
     "ReasonedDeliberation", "Relation", "Road", "Role", "Route", "RuleModel", "Scenario", "Scene", "SceneDescription",
     "Score", "Severity", "Simulator", "Sine", "Situation", "Start", "Straight", "Track", "TrackedVehicle",
     "Trajectory", "TravelScore", "Turn", "VehicleLimits", "VehicleState", "Verdict", "WorldState", "beside",

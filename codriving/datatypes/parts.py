@@ -178,6 +178,7 @@ class Method(ABC):
     reasoner: str = "none"  # What reasons: ``rules``, the name of a language model, or ``none``
     remembers: str = ""  # Its memory in tables; empty without one
     most_cavs: int | None = None  # CAVs on the road that it can decide for at most; None for any number
+    is_checked: bool = False  # Whether its actions pass the safety check of codriving already
     hands_over: bool = False  # Whether its CAVs drive as human drivers do, so that it gives no actions
     knows_drivers: bool = False  # Whether it is told what no vehicle can know: how human drivers treat the right of way
 
@@ -256,6 +257,14 @@ class OrderOfCavs:
     """What says who passes first: base of what a choice of ``order`` may be; reasoning adds its hooks."""
 
     most_cavs: int | None = None  # CAVs that it orders at most; None for any number
+
+
+class ActionFilter:
+    """What all actions of a method pass: base of what a choice of ``filter`` may be."""
+
+    def around(self, method: Method) -> Method:
+        """Return the method with all its actions filtered; the method itself if none can be."""
+        return method
 
 
 class EpisodeLauncher:

@@ -22,7 +22,7 @@ LONGEST = 100  # Characters of a folder's name; Windows allows 260 for a whole p
 
 _LABELS = {"scenario": "scenario", "method": "method"}
 # The label in which a group, or a key of it, may show.
-_LABELS_BELOW = {"cda": "variant", "order": "variant", "method": "variant", "llm": "reasoner"}
+_LABELS_BELOW = {"cda": "variant", "order": "variant", "filter": "variant", "method": "variant", "llm": "reasoner"}
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from codriving.config import asks_for, build, targets
-from codriving.datatypes import CaseMemory, Method, Model, Simulator
+from codriving.datatypes import ActionFilter, CaseMemory, Method, Model, Simulator
 from codriving.experiment.scoring import scorers_of
 from codriving.experiment.worker import Objects
 
@@ -25,8 +25,11 @@ def memory_of(config: Mapping[str, Any]) -> CaseMemory | None:
 
 
 def make_method(config: Mapping[str, Any], llm: Model | None, memory: CaseMemory | None) -> Method:
-    """Build the method of a config, which is handed what it asks for."""
-    return build(config["method"], Method, "method", config["plugins"], {Model: llm, CaseMemory: memory})
+    """Build the method of a config, which is handed what it asks for, and put the filter behind it."""
+    plugins = config["plugins"]
+    method = build(config["method"], Method, "method", plugins, {Model: llm, CaseMemory: memory})
+    filtered = config.get("filter")
+    return method if filtered is None else build(filtered, ActionFilter, "filter", plugins).around(method)
 
 
 def make_objects(config: Mapping[str, Any], llm: Model | None = None) -> Objects:

@@ -1,6 +1,17 @@
 """Shapes: paths by arc length, oriented boxes, and the conflict zones between routes."""
 
 from codriving.geometry.box import PLANNING, TRUE, Footprint, corners, overlap, overlaps, separation
+from codriving.geometry.clearance import (
+    Array,
+    Flags,
+    Steps,
+    first_overlap,
+    first_true,
+    halts_behind,
+    reacts,
+    stays_ahead,
+    stays_behind,
+)
 from codriving.geometry.collision_set import collision_set
 from codriving.geometry.curve import FloatArray
 from codriving.geometry.lane_path import lane_path, lane_starts
@@ -10,6 +21,8 @@ from codriving.geometry.speed_profile import SpeedProfile
 from codriving.geometry.zone import ConflictZone, FollowingBand
 
 __all__ = [
-    "PLANNING", "TRUE", "ConflictZone", "FloatArray", "FollowingBand", "Footprint", "Path", "RoadMap", "SpeedProfile",
-    "collision_set", "corners", "lane_path", "lane_starts", "overlap", "overlaps", "progress", "road_map", "separation",
+    "PLANNING", "TRUE", "Array", "ConflictZone", "Flags", "FloatArray", "FollowingBand", "Footprint", "Path",
+    "RoadMap", "SpeedProfile", "Steps", "collision_set", "corners", "first_overlap", "first_true", "halts_behind",
+    "lane_path", "lane_starts", "overlap", "overlaps", "progress", "reacts", "road_map", "separation", "stays_ahead",
+    "stays_behind",
 ]  # fmt: skip

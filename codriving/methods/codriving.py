@@ -60,6 +60,7 @@ class CoDriving(ModelMethod):
         super().__init__(llm, memory)
         self.cda, self.margin, self.variant = cda, margin, order_variant(cda.variant, order)
         self.order, self.most_cavs = order, order.most_cavs if order is not None else None
+        self.is_checked = cda.safety_check
         self.asked = ("negotiate", "decide") if order is None else ("decide",)
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
@@ -69,10 +70,7 @@ class CoDriving(ModelMethod):
         if self.order is not None:
             self.order.reset(seed)
             coordinator = ChosenOrder(self.order, self.cda.binding, self.margin)
-        forecast = Forecast(model, (*CONTINUATIONS, *plan_library(model)), road_map)
-        states = SharedStates() if self.cda.state_sharing else SensedStates()
-        intents = SHARED_INTENTS if self.cda.intent_sharing else HIDDEN_INTENTS
-        perception = Perception(road_map, forecast, Tracking(road_map), states, intents)
+        perception = perception_at(self.cda, road_map, model)
         negotiation = AgreedOrder(coordinator) if self.cda.negotiation else OwnOrders(self.cda.own_order, seed)
         safety = ThreeLayers() if self.cda.safety_check else NoCheck()
         ledger = self._model.ledger if self._model is not None else None
@@ -102,6 +100,14 @@ class CoDriving(ModelMethod):
             account = self.unfinished_step(world.time)
         learnt = learn(self.memory, experiences)
         return {**account[0], **learnt}, account[1]
+
+
+def perception_at(cda: CdaLevel, road_map: RoadMap, model: DrivingModel) -> Perception:
+    """Return what CAVs perceive that cooperate so far."""
+    forecast = Forecast(model, (*CONTINUATIONS, *plan_library(model)), road_map)
+    states = SharedStates() if cda.state_sharing else SensedStates()
+    intents = SHARED_INTENTS if cda.intent_sharing else HIDDEN_INTENTS
+    return Perception(road_map, forecast, Tracking(road_map), states, intents)
 
 
 class _ForOne(Decider):

@@ -35,14 +35,14 @@ from codriving.reasoning.ordering.schedule import (
 )
 from codriving.reasoning.ordering.tickets import CONTROL_RADIUS, TicketBook, by_slot, by_ticket, reasons
 from codriving.reasoning.perception import Moment, Perception, single_vehicle_perception
-from codriving.reasoning.prediction.clearance import stays_behind
 from codriving.reasoning.prediction.expectation import HEADWAY, Expected, expect_all
 from codriving.reasoning.prediction.forecast import HORIZON, Forecast
 from codriving.reasoning.prediction.idm import IntelligentDriver
 from codriving.reasoning.prediction.right_of_way import gives_way, known_to_give_way
 from codriving.reasoning.prediction.rollout import Plan, plan_library, rollout
-from codriving.reasoning.safety.assessment import NoCheck, SafetyCheck, ThreeLayers
+from codriving.reasoning.safety.assessment import NoCheck, SafetyCheck, ThreeLayers, least_dangerous
 from codriving.reasoning.safety.conflict_lane import PAD
+from codriving.reasoning.safety.nearest import nearest
 from codriving.reasoning.safety.safety_input import (
     CONTINUATIONS,
     LONGITUDINAL,
@@ -67,7 +67,7 @@ __all__ = [
     "SharedStates", "ThreeLayers", "TicketBook", "Tracking", "after_windows", "agreement", "best_subset", "by_slot",
     "by_ticket", "carried_over", "clear_time", "decide_one", "describe_scenes", "evacuation_time", "expect_all",
     "favour", "find_circle", "find_conflicts", "gives_way", "humans_expected", "in_order", "inserted", "is_behind",
-    "is_open", "is_plain", "known_to_give_way", "open_pairs", "plan_library", "pose", "premise", "reasons", "repaired",
-    "rollout", "safety_input", "schedule", "sequence", "single_vehicle_perception", "stays_behind", "then_stop",
-    "timed", "total_delay", "ttcp", "with_roles",
+    "is_open", "is_plain", "known_to_give_way", "least_dangerous", "nearest", "open_pairs", "plan_library", "pose",
+    "premise", "reasons", "repaired", "rollout", "safety_input", "schedule", "sequence", "single_vehicle_perception",
+    "then_stop", "timed", "total_delay", "ttcp", "with_roles",
 ]  # fmt: skip

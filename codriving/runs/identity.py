@@ -55,8 +55,8 @@ CHOICES = ("scenario", "method", "executor", "llm", "memory")
 DRIVERS, ENVIRONMENT = "drivers", "environment"  # Drivers are told by their values in the environment, as before
 
 # Without limits a world is that of a run whose config did not know them yet; without a flow, and with the order that is
-# negotiated, likewise.
-LIMITS, FLOW, ORDER = "limits", "flow", "order"
+# negotiated or without a filter, likewise.
+LIMITS, FLOW, ORDER, FILTER = "limits", "flow", "order", "filter"
 
 STEADY = "steady"  # Where it is false a world is that of a run whose config did not know it yet
 
@@ -64,7 +64,7 @@ MEMORY = "memory"
 SNAPSHOT, AUTO = "snapshot", "auto"  # Where a memory's snapshot is told by its contents, its file may lie anywhere
 
 # Nodes of the root to which other nodes refer, and which therefore stand in these once more.
-_COPIED = (*CHOICES, "cda", LIMITS, FLOW, ORDER)
+_COPIED = (*CHOICES, "cda", LIMITS, FLOW, ORDER, FILTER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class CellEntry:
 def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out of a resolved config what does not change what is driven, the names of classes, and repetitions."""
     values = {key: _plain(node, resolved) for key, node in resolved.items() if key not in WITHOUT_EFFECT}
-    for key in (LIMITS, FLOW, ORDER):
+    for key in (LIMITS, FLOW, ORDER, FILTER):
         if values.get(key) is None:
             values.pop(key, None)
     environment = values.get(ENVIRONMENT)

@@ -100,6 +100,7 @@ def test_list_without_a_group_shows_all_groups() -> None:
         "methods",
         "executors",
         "orders",
+        "filters",
         "cdas",
         "llms",
         "memories",

@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.datatypes import Action
+from codriving.geometry import stays_behind
 from codriving.methods.single_vehicle.encounters import Encounter, Leader, WaitingDriver, leaders
 from codriving.methods.single_vehicle.lane_choice import Side
 from codriving.methods.single_vehicle.method import Choice
-from codriving.reasoning import IntelligentDriver, Moment, Plan, stays_behind
+from codriving.reasoning import IntelligentDriver, Moment, Plan
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

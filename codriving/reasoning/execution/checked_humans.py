@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from codriving.datatypes import Action, ActionAssessment, Decision, PassingOrder, Situation
+from codriving.geometry import Array, Steps, halts_behind
 from codriving.reasoning.decision.rules import decide_one
 from codriving.reasoning.execution.violations import passes_too_early
 from codriving.reasoning.ordering.coordinator import agreement
 from codriving.reasoning.ordering.problem import Problem
 from codriving.reasoning.ordering.schedule import timed
 from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.clearance import Array, Steps, halts_behind
 from codriving.reasoning.prediction.expectation import (
     Expected,
     bounds_of,

@@ -6,14 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from codriving.datatypes import Action, PassingOrder, TrackedVehicle
-from codriving.geometry import TRUE
+from codriving.geometry import TRUE, Array, Flags, Steps, first_true
 from codriving.reasoning.conflicts import is_behind, is_open
 from codriving.reasoning.execution.checked_humans import CheckedHumans
 from codriving.reasoning.execution.violations import SIZES, Meeting, meetings_behind, minds_humans
 from codriving.reasoning.exits import full_exit
 from codriving.reasoning.ordering.protocol import JointPlan, JointPlanner
 from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.clearance import Array, Flags, Steps, first_true
 from codriving.reasoning.prediction.expectation import Expected, planning_order, progress_by_action, worth
 from codriving.reasoning.prediction.reversals import price
 from codriving.reasoning.prediction.rollout import Plan, plan_library

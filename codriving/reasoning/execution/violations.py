@@ -8,11 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from codriving.datatypes import Conflict, TrackedVehicle
-from codriving.geometry import PLANNING, TRUE, ConflictZone, Footprint
+from codriving.geometry import PLANNING, TRUE, Array, ConflictZone, Footprint, Steps, first_true, halts_behind
 from codriving.reasoning.conflicts import has_joined, is_behind
 from codriving.reasoning.exits import gets_out
 from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.clearance import Array, Steps, first_true, halts_behind
 from codriving.reasoning.safety.conflict_lane import BODY
 
 # Sizes of vehicles for planning; a smaller one is taken where vehicles are already closer together than the larger.

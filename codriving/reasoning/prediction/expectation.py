@@ -7,11 +7,10 @@ from functools import lru_cache
 import numpy as np
 
 from codriving.datatypes import Action, PassingOrder, TrackedVehicle
-from codriving.geometry import ConflictZone
+from codriving.geometry import Array, ConflictZone, Flags, halts_behind, stays_behind
 from codriving.reasoning.conflicts import has_joined, is_behind, is_open
 from codriving.reasoning.exits import full_exit
 from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.clearance import Array, Flags, halts_behind, stays_behind
 from codriving.reasoning.prediction.reversals import price
 from codriving.reasoning.prediction.rollout import Plan, plan_library, starts_with
 

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.datatypes import Action, DrivingModel
-from codriving.geometry import RoadMap
-from codriving.reasoning.prediction.clearance import Array
+from codriving.geometry import Array, RoadMap
 from codriving.reasoning.prediction.limited import Along, driven, fastest
 from codriving.reasoning.prediction.rollout import Plan, canonical, travelled
 

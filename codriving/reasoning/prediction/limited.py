@@ -5,8 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from codriving.datatypes import DrivingModel, VehicleLimits
-from codriving.geometry import SpeedProfile
-from codriving.reasoning.prediction.clearance import Array
+from codriving.geometry import Array, SpeedProfile
 
 Along = tuple[SpeedProfile, float]  # The speed profile of a route, and the arc length of a vehicle there [m]
 

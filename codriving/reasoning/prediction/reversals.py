@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from codriving.datatypes import Action
-from codriving.reasoning.prediction.clearance import Array
+from codriving.geometry import Array
 from codriving.reasoning.prediction.rollout import Plan
 
 # Distance that a reversal counts as, from one decision to the next and with others in between [m].

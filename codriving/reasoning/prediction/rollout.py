@@ -8,7 +8,7 @@ from math import nan
 import numpy as np
 
 from codriving.datatypes import Action, DrivingModel
-from codriving.reasoning.prediction.clearance import Array
+from codriving.geometry import Array
 from codriving.reasoning.prediction.limited import Along, limited
 
 Plan = tuple[Action, ...]  # Actions, one a decision; the last one is repeated for ever

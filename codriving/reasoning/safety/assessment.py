@@ -1,13 +1,13 @@
 """All three layers together: which actions stay, and why the others were removed."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
 from codriving.datatypes import Action, ActionAssessment
+from codriving.geometry import Array, Steps, first_overlap
 from codriving.reasoning.conflicts import is_behind, is_open
-from codriving.reasoning.prediction.clearance import Array, Steps, first_overlap
 from codriving.reasoning.prediction.expectation import plans_that_keep, progress_by_action, valued
 from codriving.reasoning.prediction.rollout import plan_library
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
@@ -93,7 +93,7 @@ def progress(given: SafetyInput, action: Action) -> float | None:
     return progress_by_action(gained, plan_library(there.forecast.model)).get(Action.IDLE)
 
 
-def least_dangerous(given: SafetyInput) -> Action:
+def least_dangerous(given: SafetyInput, among: Collection[Action] | None = None) -> Action:
     """Return the action after which an overlap with any vehicle lies farthest ahead, braking or going on.
 
     Others are taken to keep their speed, to brake hard and to accelerate hard; the vehicle ahead may always brake.
@@ -102,7 +102,9 @@ def least_dangerous(given: SafetyInput) -> Action:
     motions = np.concatenate((given.stops, given.goes))
     soonest = sum(_soonest(given, motions, n).reshape(2, -1).max(axis=0) for n in range(3))
     margins: dict[Action, int] = dict(zip(given.actions, np.asarray(soonest).tolist(), strict=True))
-    return max(margins, key=lambda action: (margins[action], preferred.get(action, 0)))
+    return max(
+        given.actions if among is None else among, key=lambda action: (margins[action], preferred.get(action, 0))
+    )
 
 
 def _soonest(given: SafetyInput, motions: Array, guess: int) -> Steps:

@@ -5,9 +5,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from codriving.datatypes import Action, Conflict, Relation, TrackedVehicle
-from codriving.geometry import TRUE, ConflictZone, Footprint
+from codriving.geometry import (
+    TRUE,
+    Array,
+    ConflictZone,
+    Flags,
+    Footprint,
+    first_overlap,
+    reacts,
+    stays_ahead,
+    stays_behind,
+)
 from codriving.reasoning.exits import full_exit, gets_out
-from codriving.reasoning.prediction.clearance import Array, Flags, first_overlap, reacts, stays_ahead, stays_behind
 from codriving.reasoning.safety.safety_input import SafetyInput
 
 PAD = 0.5  # Room along the route beyond the planning footprint [m]

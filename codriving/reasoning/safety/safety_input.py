@@ -6,10 +6,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from codriving.datatypes import Action, Conflict, PassingOrder, Precedence, SceneDescription, TrackedVehicle
-from codriving.geometry import RoadMap
+from codriving.geometry import Array, RoadMap
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.perception import Moment
-from codriving.reasoning.prediction.clearance import Array
 from codriving.reasoning.prediction.expectation import Expected
 from codriving.reasoning.prediction.forecast import Forecast
 from codriving.reasoning.prediction.rollout import Plan

@@ -5,8 +5,8 @@ from math import ceil
 import numpy as np
 
 from codriving.datatypes import Action, Role, TrackedVehicle
+from codriving.geometry import Array, stays_behind
 from codriving.reasoning.conflicts import is_behind
-from codriving.reasoning.prediction.clearance import Array, stays_behind
 from codriving.reasoning.safety.safety_input import SafetyInput
 
 STANDSTILL_GAP = 1.0  # Free distance that must be left to the leading vehicle when both have stopped [m]

@@ -10,8 +10,8 @@ from worlds import LAG, Junction, Thoughts, car, order_of
 
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.world import Action, DrivingModel
+from codriving.geometry.clearance import first_overlap
 from codriving.reasoning.conflicts import is_behind
-from codriving.reasoning.prediction.clearance import first_overlap
 from codriving.reasoning.prediction.expectation import Expected, expect, keeps_order, worth
 from codriving.reasoning.prediction.rollout import FIRST, HOLDS, PLANS, ROLLS, WAITS, plan_library, starts_with
 

@@ -11,7 +11,7 @@ from worlds import Junction, car, order_of, standing
 from codriving.datatypes.order import Relation
 from codriving.datatypes.world import Action
 from codriving.geometry.box import TRUE
-from codriving.reasoning.prediction.clearance import first_overlap
+from codriving.geometry.clearance import first_overlap
 from codriving.reasoning.safety.adjacent_lane import check_adjacent
 from codriving.reasoning.safety.conflict_lane import changes_before, check_conflicts
 from codriving.reasoning.safety.safety_input import SafetyInput

@@ -5,7 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from codriving.datatypes import Instance
-from codriving.reasoning import JointPlanner, Ordering, OrderRule, Request, in_order, reasons, repaired, timed
+from codriving.reasoning.ordering.protocol import JointPlanner, Ordering, OrderRule, Request, in_order
+from codriving.reasoning.ordering.schedule import repaired, timed
+from codriving.reasoning.ordering.tickets import reasons
 
 
 class RandomOrder(OrderRule):

@@ -6,8 +6,8 @@ from itertools import permutations
 from instances import NoPlanner, both, crossroads, instance, is_valid
 
 from codriving.datatypes.world import Action
-from codriving.methods.random_order import RandomOrder
 from codriving.reasoning.ordering.protocol import Request
+from codriving.reasoning.ordering.random_order import RandomOrder
 
 THREE = both("a", "b", 2.0) | both("a", "c", 2.0) | both("b", "c", 2.0)
 

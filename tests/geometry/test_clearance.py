@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Junction
 
-from codriving.reasoning.prediction.clearance import first_overlap, halts_behind, reacts, stays_ahead, stays_behind
+from codriving.geometry.clearance import first_overlap, halts_behind, reacts, stays_ahead, stays_behind
 
 TIMES = np.arange(51) * 0.2
 PLACES = st.floats(60.0, 125.0)

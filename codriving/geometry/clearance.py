@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.geometry import ConflictZone
+from codriving.geometry.zone import ConflictZone
 
 CALM = 3.0  # Braking with which a plan may come to a stop past the horizon [m/s2]
 

@@ -1,0 +1,151 @@
+"""The safety check behind any method: an action that it removes gives way to the nearest one that it allows."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from codriving.datatypes import (
+    Account,
+    Action,
+    ActionAssessment,
+    ActionFilter,
+    Deliberation,
+    DrivingModel,
+    Manner,
+    Method,
+    Outcome,
+    PassingOrder,
+    ReasonedDeliberation,
+    Road,
+    WorldState,
+)
+from codriving.errors import require_range
+from codriving.geometry import RoadMap
+from codriving.methods.codriving import CoDriving, perception_at
+from codriving.methods.ordered import Ordered
+from codriving.reasoning import (
+    AgreedOrder,
+    CdaLevel,
+    Moment,
+    OwnOrders,
+    RuleCoordinator,
+    ThreeLayers,
+    expect_all,
+    least_dangerous,
+    nearest,
+    safety_input,
+)
+
+
+class SafetyFilter(ActionFilter):
+    """The three layers of ``codriving``, with what it perceives."""
+
+    def __init__(self, cda: CdaLevel, margin: float) -> None:
+        require_range("margin", margin, 0, 5, " s")
+        self.cda, self.margin = cda, margin
+
+    def around(self, method: Method) -> Method:
+        return method if method.is_checked or method.hands_over else Filtered(method, self.cda, self.margin)
+
+
+@dataclass(frozen=True, slots=True)
+class FilteredAction:
+    """What became of an action."""
+
+    wanted: Action
+    taken: Action
+    assessments: tuple[ActionAssessment, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return it as a part of a line of ``decisions.jsonl``."""
+        removed = {str(a.action): list(a.reasons) for a in self.assessments if not a.safe}
+        return {"wanted": str(self.wanted), "taken": str(self.taken), "removed": removed}
+
+
+@dataclass(frozen=True, slots=True)
+class FilteredDeliberation(Deliberation):
+    """A decision step of a method, and what the safety check made of it."""
+
+    inner: Deliberation
+    filtered: Mapping[str, FilteredAction]
+    counts: Mapping[str, float]
+    transcript: tuple[dict[str, Any], ...]
+
+    @property
+    def actions(self) -> dict[str, Action]:
+        return {name: action.taken for name, action in self.filtered.items()}
+
+    def as_dict(self) -> dict[str, Any]:
+        line = self.inner.as_dict()
+        for entry in line.get("cavs", ()):
+            found = self.filtered[entry["id"]]
+            entry["filter"] = found.as_dict()
+            if found.taken is not found.wanted:
+                why = f"{found.taken} in the place of {found.wanted}, which the safety check removed"
+                entry |= {"action": str(found.taken), "reason": f"{why}; {found.wanted} since: {entry.get('reason')}"}
+        return line
+
+
+class Filtered(Method):
+    """A method behind the safety check."""
+
+    def __init__(self, method: Method, cda: CdaLevel, margin: float) -> None:
+        self.method, self.cda, self.margin = method, cda, margin
+        self.name, self.variant, self.is_checked = method.name, f"{method.variant} filtered".strip(), True
+        self.reasoner, self.remembers, self.most_cavs = method.reasoner, method.remembers, method.most_cavs
+        self.knows_drivers = method.knows_drivers
+        self._safety = ThreeLayers()
+
+    def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
+        self.method.check_road(road, target_speeds, decision_interval)
+
+    def files(self, road: Road) -> Mapping[str, Path]:
+        return self.method.files(road)
+
+    def remark(self, road: Road, world: Mapping[str, str]) -> str:
+        return self.method.remark(road, world)
+
+    def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
+        """Begin an episode."""
+        self.method.reset(road_map, model, seed)
+        self._perception = perception_at(self.cda, road_map, model)
+        agreed = AgreedOrder(RuleCoordinator(self.cda.binding)) if self.cda.negotiation else None
+        self._negotiation = agreed or OwnOrders(self.cda.own_order, seed)
+
+    def be_told(self, manners: Mapping[str, Manner]) -> None:
+        self.method.be_told(manners)
+
+    def act(self, world: WorldState) -> FilteredDeliberation:
+        return self._check(world, self.method.act(world))
+
+    def ask_once(self, world: WorldState) -> FilteredDeliberation:
+        return self._check(world, self.method.ask_once(world))
+
+    def conclude(self, world: WorldState, outcome: Outcome) -> Account:
+        return self.method.conclude(world, outcome)
+
+    def unfinished_step(self, time: float) -> Account:
+        return self.method.unfinished_step(time)
+
+    def _check(self, world: WorldState, deliberation: Deliberation) -> FilteredDeliberation:
+        moment, actions = self._perception.perceive(world), deliberation.actions
+        orders = self._orders(moment, deliberation)
+        lag = round(self.margin / moment.forecast.sample)
+        expected = expect_all(moment, orders, lag)
+        found = {}
+        for ego, scene in moment.scenes.items():
+            given = safety_input(moment, ego, orders[ego], expected[ego], lag)
+            assessed = self._safety.assess(given)
+            near = nearest(actions[ego], assessed, scene.ego.speed, scene.intent.target_speed)
+            taken = near[0] if len(near) == 1 else least_dangerous(given, near)
+            found[ego] = FilteredAction(actions[ego], taken, assessed)
+        replaced = sum(action.taken is not action.wanted for action in found.values())
+        counts = {**deliberation.counts, "checked": len(found), "replaced": replaced}
+        return FilteredDeliberation(deliberation, found, counts, deliberation.transcript)
+
+    def _orders(self, moment: Moment, deliberation: Deliberation) -> Mapping[str, PassingOrder]:
+        """Return the order that each CAV goes by: that of the method if it orders, else that of ``codriving``."""
+        if isinstance(self.method, Ordered | CoDriving) and isinstance(deliberation, ReasonedDeliberation):
+            return {situation.scene.ego.id: situation.order for situation in deliberation.situations}
+        return self._negotiation.orders(moment)
