@@ -1,14 +1,14 @@
 """Measures the envelope of a world: CAVs that are alone on the road and take actions at random."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from codriving.bound.envelope import BIN, Envelope, alike
-from codriving.datatypes import Action, Kind, Road, Scenario, Scene, Start
+from codriving.datatypes import Action, Kind, Outcome, Road, Scenario, Scene, Start
 from codriving.environment import Environment
-from codriving.geometry import FloatArray, Path
+from codriving.geometry import FloatArray, Path, corners
 
 DRIVES = 400  # Drives with actions at random, for each shape of a route
 
@@ -31,11 +31,11 @@ Draw = Callable[[int], Action]
 
 
 class Lone(Scenario):
-    """One CAV on the road of a scenario."""
+    """CAVs that are put on the road of a scenario."""
 
     def __init__(self, scenario: Scenario) -> None:
         self.name, self.pace, self._road = scenario.name, scenario.pace, scenario.road
-        self.start = Start("CAV1", Kind.CAV, self._road.routes[0].id, 0.0, 0.0)
+        self.starts: tuple[Start, ...] = ()
 
     @property
     def road(self) -> Road:
@@ -43,8 +43,8 @@ class Lone(Scenario):
         return self._road
 
     def scene(self, seed: int) -> Scene:
-        """Put the CAV where it starts."""
-        return Scene(seed, (self.start,))
+        """Put them where they start."""
+        return Scene(seed, self.starts)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,6 +54,8 @@ class LoneDrive:
     places: FloatArray  # Arc length (n,) [m]
     offsets: FloatArray  # Lateral offset (n,) [m]
     turns: FloatArray  # Heading against that of the route (n,) [rad]
+    driven: FloatArray  # Metres driven (n,) [m]
+    corners: FloatArray  # Corners of its body (n, 4, 2) [m]
     arrived: bool
 
 
@@ -68,7 +70,7 @@ class LoneRoad:
 
     def drive(self, start: Start, choose: Draw) -> LoneDrive:
         """Drive from a start; the function gives the action of each decision."""
-        self._scenario.start = start
+        self._scenario.starts = (start,)
         world = self._environment.reset(0)
         while self._environment.outcome is None and world.time < LONGEST:
             world = self._environment.step({start.id: choose(world.step)})
@@ -76,7 +78,18 @@ class LoneRoad:
         path = self.road_map.paths[start.route]
         places, offsets = projected(path, track.x, track.y, start.position)
         turns = (track.heading - path.heading(places) + np.pi) % (2 * np.pi) - np.pi
-        return LoneDrive(places, offsets, turns, track.arrived is not None)
+        driven = np.concatenate(([0.0], np.cumsum(track.speed[:-1]) * self.model.step))
+        body = corners(track.x, track.y, track.heading, track.length, track.width)
+        return LoneDrive(places, offsets, turns, driven, body, track.arrived is not None)
+
+    def together(self, starts: Sequence[Start], plans: Mapping[str, Sequence[Action]]) -> Outcome | None:
+        """Drive several CAVs by plans whose last action is repeated; None if that takes too long."""
+        self._scenario.starts = tuple(starts)
+        world = self._environment.reset(0)
+        while self._environment.outcome is None and world.time < LONGEST:
+            chosen = {name: plans[name][min(world.step, len(plans[name]) - 1)] for name in world.available}
+            world = self._environment.step(chosen)
+        return self._environment.outcome
 
 
 def projected(path: Path, x: FloatArray, y: FloatArray, place: float) -> tuple[FloatArray, FloatArray]:

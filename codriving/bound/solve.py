@@ -5,20 +5,22 @@ import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from codriving.bound.meetings import Margins, MeetingPlace, kept_meetings, sure_meetings
 from codriving.bound.passing import Passing
 from codriving.bound.program import Program, pose
 from codriving.bound.timetable import Timetable
-from codriving.geometry import RoadMap
+from codriving.geometry import FloatArray, RoadMap
 
 NODES = 20_000  # Nodes of the search at most; a limit of time would make the bound depend on the machine
 
 SLACK = 1e-3  # What the solver's tolerances may add to its bound [s]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Bound:
     """What is proven of one scene, given the envelope."""
 
@@ -27,10 +29,9 @@ class Bound:
     cavs: int
     binaries: int = 0
     optimal: bool = True  # Whether no larger bound can be had from the program
-    # The best timetable: arrivals by id [s], and who goes first at each meeting.
-    arrivals: Mapping[str, float] | None = None
-    meetings: tuple[MeetingPlace, ...] = ()
-    firsts: Mapping[int, int] | None = None  # By the number of the meeting; CAVs are numbered as they start
+    arrivals: Mapping[str, float] = field(default_factory=dict)  # In the best timetable [s], by id
+    # When each CAV passes which places in it (2, n) [m], [s]; in the order in which they start.
+    times: tuple[FloatArray, ...] = ()
 
 
 def lower_bound(
@@ -82,7 +83,8 @@ def solved(table: Timetable, problem: Program) -> Bound:
         number: _first(meeting, float(found.x[problem.orders[number]]) if number in problem.orders else None)
         for number, meeting in enumerate(table.meetings)
     }
-    exact = [max(float(t[-1]), own) for t, own in zip(table.with_firsts(firsts), alone, strict=True)]
+    times = table.with_firsts(firsts)
+    exact = [max(float(t[-1]), own) for t, own in zip(times, alone, strict=True)]
     if proven > sum(exact) + table.step:
         raise ArithmeticError(
             f"HiGHS claims that CAVs need {proven:.4f} s, and its own order {sum(exact):.4f} s; please report this"
@@ -95,8 +97,7 @@ def solved(table: Timetable, problem: Program) -> Bound:
         problem.binaries,
         found.status == 0,
         {name: round(time, 6) for name, time in zip(names, exact, strict=True)},
-        tuple(table.meetings),
-        firsts,
+        tuple(np.array(rows) for rows in zip(table.places, times, strict=True)),
     )
 
 

@@ -56,6 +56,9 @@ def compare(
 
 def bound(
     overrides: Overrides = None,
+    driven: Annotated[
+        bool, typer.Option("--driven", help="Look for a drive that is nearly as fast, too: some seconds a seed.")
+    ] = False,
     margin: Annotated[
         float | None, typer.Option(metavar="T", help="Bound an executor that keeps so many seconds at zones.")
     ] = None,
@@ -74,7 +77,7 @@ def bound(
     """
     from codriving.experiment import BoundOptions, run_bound
 
-    raise typer.Exit(run_bound(overrides or [], BoundOptions(measure, margin, one_order, config_dir)))
+    raise typer.Exit(run_bound(overrides or [], BoundOptions(measure, margin, one_order, driven, config_dir)))
 
 
 def learn(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConfig = False) -> None:

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from codriving.bound import BoundedWorld, Margins, bounded_world
+from codriving.bound import BoundedWorld, Margins, bounded_world, witness
 from codriving.config import build, expand
 from codriving.datatypes import Simulator
 from codriving.errors import ConfigError
@@ -25,6 +25,8 @@ COLUMNS = ("world", "scenario", "seed", "cavs", "bound", "driven", "alone", "bin
 
 ENVELOPES = "envelopes"  # Folder below the output, for those that are measured
 
+NOT_FOUND = "none"  # In place of a drive that was looked for
+
 Row = Mapping[str, str]
 
 
@@ -35,6 +37,7 @@ class BoundOptions:
     measure: bool = False  # Whether a missing envelope is measured
     margin: float | None = None  # Time that an executor keeps at zones [s]; None bounds all ways of driving
     one_order: bool = False  # Whether CAVs keep one order of vehicles
+    driven: bool = False  # Whether a drive is looked for that is as fast as can be
     config_dir: Path | None = None
 
     @property
@@ -46,6 +49,8 @@ class BoundOptions:
         """Refuse what is out of range."""
         if self.margin is not None and not 0 <= self.margin <= 5:
             raise ConfigError(f"--margin must be 0 to 5 s, got {self.margin:g}")
+        if self.driven and self.margin is not None:
+            raise ConfigError("--driven keeps no margins, so it says nothing beside --margin; leave one of them out")
         if self.one_order and self.margin is None:
             raise ConfigError("--one-order needs --margin: without margins the bound holds for all orders")
 
@@ -64,6 +69,8 @@ def world_of(
     options = options or BoundOptions()
     environment = build(resolved["environment"], Simulator, "environment", resolved["plugins"])
     world = bounded_world(environment, measured, options.margins, options.one_order, options.measure)
+    if options.driven and world.envelopes is None:
+        raise ConfigError(f"--driven needs zones, and CAVs choose their lanes at {world.name}; leave it out there")
     parts = [BEHAVIOUR, resolved["environment"], world.settings]
     return world, hashlib.sha256(json.dumps(parts, sort_keys=True, default=str).encode()).hexdigest()[:12]
 
@@ -88,11 +95,11 @@ class KeptBounds:
             pass
         return kept
 
-    def row(self, world: BoundedWorld, mark: str, seed: int) -> Row:
+    def row(self, world: BoundedWorld, mark: str, seed: int, driven: bool = False) -> Row:
         """Return the bound of a seed, solved if it is not there."""
         found = self.rows.get((mark, seed))
-        if found is None:
-            found = self.rows[mark, seed] = _row(world, mark, seed)
+        if found is None or (driven and not found["driven"]):
+            found = self.rows[mark, seed] = _row(world, mark, seed, driven)
             write_text(self.folder / FILE, self.text())
         return found
 
@@ -112,9 +119,12 @@ def _is_number(text: str | None) -> bool:
         return False
 
 
-def _row(world: BoundedWorld, mark: str, seed: int) -> Row:
-    bound = world.solve(seed)
-    values = (mark, world.name, str(seed), str(bound.cavs), f"{bound.total:.1f}", "", f"{bound.alone:.1f}")
+def _row(world: BoundedWorld, mark: str, seed: int, driven: bool) -> Row:
+    bound, total = world.solve(seed), ""
+    if driven:
+        found = witness(world, seed, bound)
+        total = NOT_FOUND if found is None else f"{found.total:.1f}"
+    values = (mark, world.name, str(seed), str(bound.cavs), f"{bound.total:.1f}", total, f"{bound.alone:.1f}")
     return dict(zip(COLUMNS, (*values, str(bound.binaries), "yes" if bound.optimal else "no"), strict=True))
 
 
@@ -144,7 +154,7 @@ def run_bound(overrides: Sequence[str], options: BoundOptions) -> int:
         with locked(folder):
             kept = KeptBounds.of(folder)
             for point, config, (world, mark) in zip(points, configs, worlds, strict=True):
-                solved = [kept.row(world, mark, seed) for seed in seeds]
+                solved = [kept.row(world, mark, seed, options.driven) for seed in seeds]
                 swept = swept_values(point.swept, config)
                 rows.append(BoundRow.of(world.name, swept, solved, world.envelopes is not None))
     except OSError as error:

@@ -16,6 +16,13 @@ KEPT = "Bound: no executor is faster that keeps {margin:g} s at zones{order}; hu
 
 ALONE = "Alone: each CAV by itself. Where CAVs choose their lanes ({names}) no more is proven, so that is the bound."
 
+DRIVEN = (
+    "Driven: CAVs drove so in the environment, without human drivers, and none touched; "
+    "gap: to the bound of the same seeds."
+)
+
+NONE = "In {count} of {seeds} seeds no such drive was found."
+
 OPEN = "In {count} of {seeds} seeds the search ended at its limit of nodes; their bound is valid, and may be larger."
 
 
@@ -28,7 +35,9 @@ class BoundRow:
     seeds: int
     bound: float  # Mean a CAV [s]
     alone: float  # The same
-    driven: float | None
+    driven: float | None  # Mean a CAV of the seeds of which a drive was found [s]
+    gap: float | None  # The same less the bound of these seeds [s]
+    not_found: int
     cavs: float
     unsolved: int  # Seeds of which a larger bound may be found
     by_zones: bool
@@ -39,13 +48,24 @@ class BoundRow:
     ) -> "BoundRow":
         """Sum up the rows of ``bound.csv``."""
 
-        def each(key: str) -> float:
-            return mean([float(row[key]) / int(row["cavs"]) for row in rows]) or 0.0
+        def each(key: str, of: Sequence[Mapping[str, str]]) -> float | None:
+            return mean([float(row[key]) / int(row["cavs"]) for row in of])
 
-        driven = each("driven") if all(row["driven"] for row in rows) else None
-        cavs = mean([float(row["cavs"]) for row in rows]) or 0.0
-        unsolved = sum(row["optimal"] != "yes" for row in rows)
-        return cls(scenario, swept, len(rows), each("bound"), each("alone"), driven, cavs, unsolved, by_zones)
+        found = [row for row in rows if row["driven"] not in ("", "none")]
+        driven, under = each("driven", found), each("bound", found)
+        return cls(
+            scenario,
+            swept,
+            len(rows),
+            each("bound", rows) or 0.0,
+            each("alone", rows) or 0.0,
+            driven,
+            None if driven is None or under is None else driven - under,
+            sum(row["driven"] == "none" for row in rows),
+            mean([float(row["cavs"]) for row in rows]) or 0.0,
+            sum(row["optimal"] != "yes" for row in rows),
+            by_zones,
+        )
 
 
 def print_bounds(rows: Sequence[BoundRow], margin: float | None = None, one_order: bool = False) -> PrintedTable:
@@ -59,17 +79,15 @@ def print_bounds(rows: Sequence[BoundRow], margin: float | None = None, one_orde
         Column[BoundRow]("alone", lambda row: row.alone, "alone [s]", two_digits),
         Column[BoundRow]("bound", lambda row: row.bound, "bound [s]", two_digits),
         Column[BoundRow]("driven", lambda row: row.driven, "driven [s]", two_digits, sparse=True),
-        Column[BoundRow](
-            "gap",
-            lambda row: None if row.driven is None else row.driven - row.bound,
-            "gap [s]",
-            two_digits,
-            sparse=True,
-        ),
+        Column[BoundRow]("gap", lambda row: row.gap, "gap [s]", two_digits, sparse=True),
     ]
     notes = [PROVEN if margin is None else KEPT.format(margin=margin, order=" and one order of vehicles" * one_order)]
     if lanes := ", ".join(dict.fromkeys(row.scenario for row in rows if not row.by_zones)):
         notes.append(ALONE.format(names=lanes))
+    if any(row.driven is not None or row.not_found for row in rows):
+        notes.append(DRIVEN)
+    if count := sum(row.not_found for row in rows):
+        notes.append(NONE.format(count=count, seeds=sum(row.seeds for row in rows)))
     if count := sum(row.unsolved for row in rows):
         notes.append(OPEN.format(count=count, seeds=sum(row.seeds for row in rows)))
     return printed("bound of the arrival times", table(columns, rows), [row.scenario for row in rows], notes)

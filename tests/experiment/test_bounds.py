@@ -48,12 +48,25 @@ def test_rows_of_other_settings_stay_beside(capsys: pytest.CaptureFixture[str]) 
     ("options", "words"),
     [
         (BoundOptions(margin=-1), "--margin must be 0 to 5 s, got -1"),
+        (BoundOptions(margin=1, driven=True), "--driven keeps no margins"),
         (BoundOptions(one_order=True), "--one-order needs --margin"),
     ],
 )
 def test_options_out_of_range_are_refused(options: BoundOptions, words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         run_bound(FEW, options)
+
+
+def test_drive_is_looked_for_where_it_was_not(capsys: pytest.CaptureFixture[str]) -> None:
+    one = [*FEW, "episodes=1"]
+    run_bound(one, BoundOptions())
+    assert "driven" not in capsys.readouterr().out
+    run_bound(one, BoundOptions(driven=True))
+    assert "driven [s]  gap [s]" in capsys.readouterr().out
+    row = Path("outputs/bound/few/bound.csv").read_text().splitlines()[1].split(",")
+    assert float(row[5]) >= float(row[4])
+    with pytest.raises(ConfigError, match="choose their lanes at merge; leave it out there"):
+        run_bound(["scenario=merge", "episodes=1"], BoundOptions(driven=True))
 
 
 def test_margin_bound_of_free_lanes_is_refused() -> None:
