@@ -1,6 +1,5 @@
 """Fixtures for all rooms, and makes ``worlds`` importable."""
 
-import copy
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -18,7 +17,8 @@ HERE = str(Path(__file__).parent)
 if HERE not in sys.path:
     sys.path.insert(0, HERE)
 
-from thorough import THOROUGH  # noqa: E402  (needs the path above)
+from composed import composed_once  # noqa: E402  (needs the path above)
+from thorough import THOROUGH  # noqa: E402
 from worlds import Junction  # noqa: E402
 
 # The same commit has to pass or fail alike everywhere; with DRAWN=1 (make check-all) new examples are drawn every time.
@@ -30,22 +30,11 @@ settings.load_profile("drawn" if THOROUGH else "repeatable")
 
 @pytest.fixture(scope="session", autouse=True)
 def composed_anew() -> Iterator[Any]:
-    """Hydra's own ``compose``; meanwhile the same overrides of the same files are composed once (not in check-all)."""
-    known: dict[tuple[str, ...], Any] = {}
-
-    def once(name: str, overrides: list[str], **more: Any) -> Any:
-        # The files of a folder of the user's are the test's, which may write them anew.
-        if overrides[0].count("file://") != 1:
-            return composed(name, overrides=overrides, **more)
-        key = (name, *overrides)
-        if key not in known:
-            known[key] = composed(name, overrides=overrides, **more)
-        return copy.deepcopy(known[key])
-
+    """Hydra's own ``compose``; meanwhile configs are composed once, but for thorough tests."""
     composed = hydra.compose
     with pytest.MonkeyPatch.context() as patch:
         if not THOROUGH:
-            patch.setattr(hydra, "compose", once)
+            patch.setattr(hydra, "compose", composed_once(composed))
         yield composed
 
 
