@@ -29,6 +29,7 @@ TABLES = {
     "all": "The methods of both tables, each against codriving.",
     "load": "The methods of the first table with 4, 6, 8 and 12 CAVs.",
     "orders": "The paper's method with each passing order, each against the order that is negotiated.",
+    "filters": "The methods of both tables, each with and without the safety check of codriving.",
 }
 
 CONTROLS, ABLATION = "controls", "ablation"  # The tables below others in which controls say their place

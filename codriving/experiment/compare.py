@@ -27,6 +27,7 @@ from codriving.config import (
 from codriving.errors import ConfigError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.cells import Cell
+from codriving.experiment.compare_filters import filter_points, make_filters, refuse_flows_of_filters
 from codriving.experiment.compare_orders import ORDER, as_orders, order_points, subject_of
 from codriving.experiment.controls import split_controls
 from codriving.experiment.drive import Driven, Outputs, drive
@@ -63,11 +64,12 @@ from codriving.reports import (
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-BASELINES, SINGLE_VEHICLE, ALL, LOAD, ORDERS = "baselines", "single-vehicle", "all", "load", "orders"
+BASELINES, SINGLE_VEHICLE, ALL = "baselines", "single-vehicle", "all"
+LOAD, ORDERS, FILTERS = "load", "orders", "filters"
 
 # The folder of each table's runs, if the user names none.
 EXPERIMENT = {BASELINES: "compare", SINGLE_VEHICLE: "compare-single-vehicle", ALL: "compare-all", LOAD: "load"}
-EXPERIMENT |= {ORDERS: "compare-orders"}
+EXPERIMENT |= {ORDERS: "compare-orders", FILTERS: "compare-filters"}
 
 CAVS = "scenario.cavs"  # The key that the load is
 
@@ -93,6 +95,8 @@ def comparison_command(table: str | None) -> Command:
     points, name = partial(comparison, table), f"compare {table}"
     if table == LOAD:
         return Command(name, points, _refuse_flows, make_loads)
+    if table == FILTERS:
+        return Command(name, points, refuse_flows_of_filters, make_filters)
     return Command(name, points, make_outputs=partial(make_comparison, table))
 
 
@@ -100,7 +104,7 @@ def compare_frames(table: str, *overrides: str, config_dir: str | Path | None = 
     """Drive all methods on the same seeds and give the tables as data frames; prints no table.
 
     Args:
-        table: ``baselines``, ``single-vehicle``, ``all``, ``load`` or ``orders``.
+        table: ``baselines``, ``single-vehicle``, ``all``, ``load``, ``orders`` or ``filters``.
         *overrides: ``key=value`` tokens that hold for every cell; ``method=`` adds methods.
 
     Raises:
@@ -119,7 +123,7 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
 
     Every method of the table that has a YAML takes part. ``method=`` adds others to them; controls come last.
     """
-    controlled, overrides = split_controls(written(overrides), usual=table not in (LOAD, ORDERS))
+    controlled, overrides = split_controls(written(overrides), usual=table not in (LOAD, ORDERS, FILTERS))
     keys = [parse(token).key_or_group for token in overrides]
     added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
     others = [token for token, key in zip(overrides, keys, strict=True) if key != "method"]
@@ -131,6 +135,8 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
     methods = [*_methods(table, added, config_dir), *(taking_part(CONTROLS) if controlled else ())]
     if table == ORDERS:
         return order_points(base, others, methods, config_dir)
+    if table == FILTERS:
+        return filter_points(base, others, list(dict.fromkeys(methods)), config_dir)
     return [
         Point((*base, *point.overrides, f"method={name}"), {**point.swept, "method": name}, point.removed)
         for point in expand(others, config_dir)
@@ -144,7 +150,9 @@ def _methods(table: str, added: Sequence[str], config_dir: Path | None) -> list[
     known = choices("method", config_dir)
     for name in own:
         check_choice("method", name, config_dir)
-    return list(dict.fromkeys([*(name for name in taking_part(table) if name in known), *own]))
+    return list(
+        dict.fromkeys([*(name for name in taking_part(ALL if table == FILTERS else table) if name in known), *own])
+    )
 
 
 def setting(resolved: Mapping[str, Any], varied: Sequence[str] = ()) -> str:

@@ -85,7 +85,14 @@ def test_groups_of_list() -> None:
 
 
 def test_tables_of_compare() -> None:
-    assert [name for name, _ in complete_table("")] == ["baselines", "single-vehicle", "all", "load", "orders"]
+    assert [name for name, _ in complete_table("")] == [
+        "baselines",
+        "single-vehicle",
+        "all",
+        "load",
+        "orders",
+        "filters",
+    ]
     assert [name for name, _ in complete_table("b")] == ["baselines"]
 
 

@@ -14,6 +14,7 @@ from codriving.environment.scenarios.intersection import Intersection
 from codriving.environment.scenarios.roundabout import Roundabout
 from codriving.errors import ConfigError
 from codriving.experiment.compare import EXPERIMENT, comparison, comparison_command, setting
+from codriving.experiment.plan import make_plan
 from codriving.experiment.run import resume_command
 from codriving.reports.paper import read_paper
 
@@ -113,6 +114,21 @@ def test_loads_have_controls_only_if_they_are_asked_for() -> None:
     assert [point.swept["method"] for point in asked] == [*COMPARED, *CONTROLS]
 
 
+def test_filters_are_each_method_without_and_with_and_the_reference_once(own: Path) -> None:
+    found = [(p.swept["method"], p.overrides[-2]) for p in comparison("filters", ["method=mine", "episodes=2"], own)]
+    names = [name.partition("=")[2] for name in [*methods("all")[:-1], "method=codriving", "method=mine"]]
+    pairs = [(name, f"filter={value}") for name in names for value in ("false", "true")]
+    assert found == [pair for pair in pairs if pair != ("codriving", "filter=true")]
+    without = comparison("filters", ["cda.safety_check=false", "scenario=merge"])
+    assert without[-1].overrides[-2:] == ("filter=true", "method=codriving")
+    assert {point.overrides[0] for point in without} == {"experiment=compare-filters"}
+    with pytest.raises(ConfigError, match="codriving compare filters sets filter itself"):
+        comparison("filters", ["filter=true"])
+    plan = make_plan(comparison("filters", ["flow=steady", "controls=false"])[:2])
+    with pytest.raises(ConfigError, match="compare filters pairs episodes, and in flows nothing is paired"):
+        comparison_command("filters").check(plan)
+
+
 def test_controls_stand_last_in_lists() -> None:
     assert list(choices("method"))[-5:] == CONTROLS
 
@@ -131,9 +147,13 @@ def test_the_experiment_is_the_users_if_named() -> None:
 @pytest.mark.parametrize(
     ("table", "tokens", "said"),
     [
-        ("baseline", [], "unknown table 'baseline'; .* tables: baselines, single-vehicle, all, load, orders"),
+        ("baseline", [], "unknown table 'baseline'; .* tables: baselines, single-vehicle, all, load, orders, filters"),
         ("scenario=merge", [], "unknown table 'scenario=merge'; write codriving compare TABLE"),
-        (None, [], "compare needs the name of a table; .* tables: baselines, single-vehicle, all, load, orders"),
+        (
+            None,
+            [],
+            "compare needs the name of a table; .* tables: baselines, single-vehicle, all, load, orders, filters",
+        ),
         ("single", [], "unknown table 'single'"),
         ("single-vehicle", ["method=typo"], "unknown method 'typo'; choices: "),
         ("all", ["episodes=3,4"], "episodes takes one value"),
