@@ -53,7 +53,7 @@ def closed() -> Loopback:
 @pytest.mark.parametrize("scenario", ["intersection", "roundabout", "highway", "merge"])
 def test_a_model_drives_every_scenario(scenario: str, tmp_path: Path) -> None:
     with Loopback() as server:
-        result = run(server, tmp_path, f"scenario={scenario}")
+        result = run(server, tmp_path, f"scenario={scenario}", "episodes=1")
     assert result.exit_code == 0, result.output
     folder = tmp_path / "run" / "mine"
     counts: dict[str, float] = {}

@@ -34,16 +34,16 @@ def in_order(requests: Iterable[Request]) -> frozenset[str]:
 def best_subset(requests: Sequence[Request]) -> frozenset[str]:
     """Grant the requests that do not overlap and gain most together."""
     bounded = sorted(requests, key=lambda r: (-min(r.incentive, 1e6), r.since, r.ego))[:12]
-    best: tuple[float, tuple[str, ...]] = (0.0, ())
+    best: tuple[float, frozenset[str]] = 0.0, frozenset()
     for size in range(1, len(bounded) + 1):
         for chosen in combinations(bounded, size):
-            names = {r.ego for r in chosen}
+            names = frozenset(r.ego for r in chosen)
             if any(r.excludes & names for r in chosen):
                 continue
             gain = sum(min(r.incentive, 1e6) for r in chosen)
             if gain > best[0] + 1e-9:
-                best = gain, tuple(sorted(names))
-    return frozenset(best[1])
+                best = gain, names
+    return best[1]
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,6 +44,12 @@ def test_a_mistake_is_not_repeated_if_something_else_is_safe(alone: Situation) -
     assert found.reason == "FASTER intensified the conflict once in situations like this one, so IDLE"
 
 
+def test_what_made_no_difference_speaks_neither_for_nor_against(alone: Situation) -> None:
+    neutral = replace(memory(F, GOOD), verdict=Verdict.NEUTRAL)
+    assert favour([neutral, memory(I, BAD)], F) == 0
+    assert decided(alone, neutral).action is F
+
+
 def test_nothing_unsafe_is_done_to_avoid_a_mistake(alone: Situation) -> None:
     only = replace(alone, assessments=tuple(replace(a, safe=a.action is F) for a in alone.assessments))
     assert decided(only, memory(F, BAD)).action is F

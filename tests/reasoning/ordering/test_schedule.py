@@ -123,6 +123,17 @@ def test_search_counts_as_the_objective_does(seed: int, n: int, share: float, we
     assert coded.bound(coded.root()) <= coded.cost(coded.run(order)) + 1e-9
 
 
+@pytest.mark.parametrize(("etas", "order"), [((1.0, 2.0), "ab"), ((2.0, 1.0), "ba"), ((1.0, 1.0), "ab")])
+def test_of_two_that_can_start_at_once_the_rule_of_thumb_takes_the_one_that_has_waited(
+    etas: tuple[float, float], order: str
+) -> None:
+    # A human driver blocks both until 3 s.
+    blocked = {"windows": [(0.5, 3.0)]}
+    coded = Coded(instance(dict(zip("ab", etas, strict=True)), both("a", "b", 2.0), a=blocked, b=blocked), Objective())
+    found, _ = coded.complete(coded.root(), 1.0, lambda: 0.0)
+    assert "".join(coded.named(found.order)) == order
+
+
 def test_objective_weighs_delay_and_evacuation() -> None:
     problem = instance({"a": 1.0, "b": 2.0}, both("a", "b", 3.0))
     times = {"a": 1.0, "b": 4.0}
