@@ -29,6 +29,11 @@ def test_alone_on_the_road_everything_is_plain(junction: Junction) -> None:
     assert is_plain(situation(junction, ALONE), False)
 
 
+def test_a_lane_change_that_is_not_safe_does_not_matter(junction: Junction) -> None:
+    unsafe = ActionAssessment(Action.LANE_LEFT, False, ("adjacent lane: no",), (), None)
+    assert is_plain(replace(situation(junction, ALONE), assessments=(*GOOD, unsafe)), True)
+
+
 @pytest.mark.parametrize(
     ("other", "plain"),
     [
