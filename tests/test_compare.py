@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import codriving
+from codriving.errors import ConfigError
 from codriving.experiment import comparison_command, run_command
 from codriving.experiment.compare import EXPERIMENT
 
@@ -159,3 +160,33 @@ def test_the_single_vehicle_table_has_methods_and_a_folder_of_its_own(own: Path)
         ("ppo_toy", "not there yet"),
     ]
     assert not (own.parent / "compare").exists()
+
+
+def test_rows_are_set_against_the_bound_if_that_is_asked_for(own: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tokens = [
+        *BOTH,
+        f"output={own.parent}",
+        "scenario.time_limit=30",
+        "scenario.cavs=2",
+        "scenario.hdvs=[0,0]",
+        "episodes=1",
+    ]
+    assert run_command(comparison_command("baselines", bounded=True), tokens, own) == 0
+    folder = own.parent / EXPERIMENT["baselines"] / "x"
+    assert "above bound [s]" in capsys.readouterr().out
+    table = {row["method"]: row for row in rows(folder / "comparison.csv")}
+    bound, ours = float(table["bound"]["arrival_mean"]), float(table["codriving"]["arrival_mean"])
+    assert float(table["codriving"]["above_bound"]) == pytest.approx(ours - bound, abs=1e-3)
+    assert float(rows(folder / "bound.csv")[0]["bound"]) == pytest.approx(2 * bound, abs=0.01)
+    # Where a CAV cannot arrive there is none, and it is said why.
+    tokens[tokens.index("run=x")] = "run=y"
+    assert run_command(comparison_command("baselines", bounded=True), [*tokens, "scenario.time_limit=4"], own) == 0
+    assert "Above bound is empty: CAV1 does not arrive within the time limit" in capsys.readouterr().out
+
+
+def test_bound_is_refused_where_there_is_none(own: Path) -> None:
+    with pytest.raises(ConfigError, match="compare load has no columns of the bound"):
+        comparison_command("load", bounded=True)
+    flow = [*BOTH, f"output={own.parent}", "flow=steady"]
+    with pytest.raises(ConfigError, match="no bound is defined for a flow"):
+        run_command(comparison_command("baselines", bounded=True), flow, own)

@@ -41,6 +41,9 @@ def compare(
         ),
     ] = None,
     overrides: Overrides = None,
+    bound: Annotated[
+        bool, typer.Option("--bound", help="Say how far each row is above the bound; 0.1 to 0.5 s a seed.")
+    ] = False,
     config_dir: ConfigDir = None,
     cfg: ShowConfig = False,
 ) -> None:
@@ -51,7 +54,7 @@ def compare(
     """
     from codriving.experiment import comparison_command, run_command
 
-    raise typer.Exit(run_command(comparison_command(table), overrides or [], config_dir, cfg))
+    raise typer.Exit(run_command(comparison_command(table, bound), overrides or [], config_dir, cfg))
 
 
 def bound(

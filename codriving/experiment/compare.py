@@ -87,32 +87,39 @@ class Comparison:
     folder: Path
 
 
-def comparison_command(table: str | None) -> Command:
-    """Return the command of a table of ``codriving compare``."""
+def comparison_command(table: str | None, bounded: bool = False) -> Command:
+    """Return the command of a table of ``codriving compare``; bounded with columns of what is above the bound."""
     if not isinstance(table, str) or table not in TABLES:
         given = "compare needs the name of a table" if table is None else f"unknown table {table!r}"
         raise ConfigError(f"{given}; write codriving compare TABLE [KEY=VALUE]..., tables: {', '.join(TABLES)}")
     points, name = partial(comparison, table), f"compare {table}"
+    if bounded and table in (LOAD, FILTERS):
+        raise ConfigError(f"compare {table} has no columns of the bound; write codriving compare baselines --bound")
     if table == LOAD:
         return Command(name, points, _refuse_flows, make_loads)
     if table == FILTERS:
         return Command(name, points, refuse_flows_of_filters, make_filters)
+    if bounded:
+        return Command(f"{name} --bound", points, _refuse_bounded_flows, partial(make_comparison, table, bounded=True))
     return Command(name, points, make_outputs=partial(make_comparison, table))
 
 
-def compare_frames(table: str, *overrides: str, config_dir: str | Path | None = None) -> Comparison:
+def compare_frames(
+    table: str, *overrides: str, config_dir: str | Path | None = None, bound: bool = False
+) -> Comparison:
     """Drive all methods on the same seeds and give the tables as data frames; prints no table.
 
     Args:
         table: ``baselines``, ``single-vehicle``, ``all``, ``load``, ``orders`` or ``filters``.
         *overrides: ``key=value`` tokens that hold for every cell; ``method=`` adds methods.
+        bound: Whether it is said how far each row is above the bound of its scenes.
 
     Raises:
         UserError: If the table, the config or the run folder cannot be used.
         KeyboardInterrupt: If the user stops it; finished episodes are kept.
     """
     folder = config_folder(config_dir)
-    command = comparison_command(table)
+    command = comparison_command(table, bound)
     finished = drive(make_plan(command.points(overrides, folder), folder), command.make_outputs)
     (own,) = finished.outputs.tables
     return Comparison(own.frame(), finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
@@ -161,19 +168,27 @@ def setting(resolved: Mapping[str, Any], varied: Sequence[str] = ()) -> str:
     return json.dumps(kept, sort_keys=True)
 
 
-def make_comparison(table: str, driven: Driven) -> Outputs:
+def make_comparison(table: str, driven: Driven, bounded: bool = False) -> Outputs:
     """Make a comparison of methods."""
     if driven.flows:
         return _compared_flows(table, driven)
     varied = (ORDER,) if table == ORDERS else ()
     paper, metrics = Paper() if varied else read_paper(experiments_dir()), driven.metrics
-    blocks: dict[str, list[CellResults]] = {}
+    blocks: dict[str, list[tuple[Cell, CellResults]]] = {}
     for cell, results in _results(driven):
-        blocks.setdefault(setting(cell.resolved, varied), []).append(results)
-    rows = with_corrected(
-        [row for block in blocks.values() for row in comparison_rows(block, taking_part(table), paper)]
-    )
-    swept = tuple(dict.fromkeys(key for block in blocks.values() for results in block for key in results.swept))
+        blocks.setdefault(setting(cell.resolved, varied), []).append((cell, results))
+    found: list[Compared] = []
+    bounds = None
+    if bounded:
+        # Nothing else of a comparison needs scipy's solvers.
+        from codriving.experiment.above import BoundsOfRun
+
+        bounds = BoundsOfRun(driven.folder)
+    for block in blocks.values():
+        own = comparison_rows([results for _, results in block], taking_part(table), paper)
+        found += bounds.over(own, block) if bounds else own
+    rows = with_corrected(found)
+    swept = tuple(dict.fromkeys(key for block in blocks.values() for _, results in block for key in results.swept))
     whole = comparison_table(rows, swept)
     pages, printed = [], []
     rows = as_orders(rows) if varied else rows
@@ -181,7 +196,10 @@ def make_comparison(table: str, driven: Driven) -> Outputs:
     for condition, members in conditions:
         # One table a suite, which its title names.
         keys = tuple(key for key in swept if not condition.name or key != SUITE)
-        kept, screen = (print_comparison(members, metrics, keys, screen, condition) for screen in (False, True))
+        kept, screen = (
+            print_comparison(members, metrics, keys, screen, condition, bounds.notes if bounds else ())
+            for screen in (False, True)
+        )
         against = print_pairs(members, metrics, keys, condition)
         pages += [markdown_text(kept), *([markdown_text(against, level=2)] if against else [])]
         printed += [screen, *([against] if against else [])]
@@ -214,6 +232,11 @@ def _compared_flows(table: str, driven: Driven) -> Outputs:
     whole = flow_table(cells, swept)
     files = {"comparison.csv": whole.csv().encode(), "comparison.md": markdown_text(kept).encode()}
     return Outputs(files, (printed,), (whole,))
+
+
+def _refuse_bounded_flows(plan: Plan) -> None:
+    if any(is_flow(cell.resolved) for cell in plan.cells):
+        raise ConfigError("no bound is defined for a flow, in which vehicles keep coming; leave --bound out")
 
 
 def _refuse_flows(plan: Plan) -> None:

@@ -1,5 +1,6 @@
 """Records -> tables and figures, from what is stored alone, without the simulator."""
 
+from codriving.reports.above import SceneBounds, with_bounds
 from codriving.reports.bounds import BoundRow, print_bounds
 from codriving.reports.built_memory import BuiltMemory, print_built
 from codriving.reports.columns import Table, table
@@ -28,10 +29,10 @@ from codriving.reports.summary import RunTables, run_tables
 
 __all__ = [
     "METHODS", "METHOD_CHOICE", "REFERENCE", "BoundRow", "BuiltMemory", "CellResults", "Compared", "Condition",
-    "FilterRow", "LearningRow", "Paper", "PrintedTable", "RunTables", "Subject", "Table", "TimedEpisode",
-    "comparison_rows", "comparison_table", "cpu_per_decision", "filter_rows", "filter_table", "flow_table",
-    "flow_tables", "learning_figure", "learning_rows", "learning_table", "load_figure", "load_rows", "load_table",
-    "markdown_text", "print_bounds", "print_built", "print_comparison", "print_each_load", "print_filters",
-    "print_flows", "print_learning", "print_loads", "print_pairs", "print_table", "profile_figure", "read_learning",
-    "read_paper", "run_tables", "table", "timing_columns", "with_corrected",
+    "FilterRow", "LearningRow", "Paper", "PrintedTable", "RunTables", "SceneBounds", "Subject", "Table",
+    "TimedEpisode", "comparison_rows", "comparison_table", "cpu_per_decision", "filter_rows", "filter_table",
+    "flow_table", "flow_tables", "learning_figure", "learning_rows", "learning_table", "load_figure", "load_rows",
+    "load_table", "markdown_text", "print_bounds", "print_built", "print_comparison", "print_each_load",
+    "print_filters", "print_flows", "print_learning", "print_loads", "print_pairs", "print_table", "profile_figure",
+    "read_learning", "read_paper", "run_tables", "table", "timing_columns", "with_bounds", "with_corrected",
 ]  # fmt: skip

@@ -10,6 +10,7 @@ from codriving.reports.episodes import number_columns
 from codriving.reports.pairs import PAIRED, PairedCells, corrected, p_text, paired_columns, points
 from codriving.reports.paper import Paper, PaperRow
 from codriving.reports.printed import PrintedTable, printed
+from codriving.reports.regret import HEAD, Above, above_columns, above_notes
 from codriving.reports.results import CellResults, named_numbers
 from codriving.reports.subject import METHODS, REFERENCE, Subject
 from codriving.reports.summary import (
@@ -73,6 +74,7 @@ class Compared:
     quoted: PaperRow | None = None  # The paper's row, if it has one
     swept: Mapping[str, str] = field(default_factory=dict)
     pairs: PairedCells | None = None  # The comparison with the reference on the same seeds
+    above: Above | None = None  # What it takes more than the bound of its scenes
     label: str = ""  # What it is called where its method and variant do not say what it differs in
 
     @property
@@ -135,6 +137,7 @@ def comparison_table(rows: Sequence[Compared], swept: Sequence[str] = ()) -> Tab
         *(column.of(lambda row: row.cell) for column in (*MEASURED, *CLEAN) if column.key not in rates),
         *(column.of(lambda row: row.cell) for column in number_columns(named_numbers(_cells(rows)), MEASURED)),
         *([FALLBACKS.of(lambda row: row.cell)] if any(row.cell and row.cell.asked for row in rows) else []),
+        *(above_columns() if any(row.above for row in rows) else []),
         Column("cpu", lambda r: milliseconds(r.cell.cpu) if r.cell else "", CPU, csv=False, page=False, rank=7),
         *(replace(column, head="").of(lambda r: r.pairs) for column in PAIRED if column.csv),
         *map(_quoted, QUOTED),
@@ -216,18 +219,24 @@ def print_comparison(
     swept: Sequence[str] = (),
     screen: bool = False,
     condition: Condition = WHOLE,
+    further: Sequence[str] = (),
 ) -> PrintedTable:
     """Prepare the table of what was measured, the paper's row below each of ours.
 
     Args:
         screen: Whether it is for the screen, which shows computing times, too.
+        further: What else has to be said.
     """
     theirs = {index: paper_row(row.quoted) for index, row in enumerate(rows) if row.quoted}
     reasoners = [row.cell.first.reasoner for row in rows if row.cell]
     what = f"{condition.name}: " if condition.name else ""
     what += f"comparison of {condition.subject.rows}"
     heading = title(what, [row.scenario for row in rows], reasoners, metrics)
+    bounded = above_notes(rows)
+    heading += f" - {HEAD}" if bounded else ""
     general = (
+        *bounded,
+        *further,
         *condition.subject.notes,
         NOTE,
         *clean_notes(_cells(rows)),
