@@ -9,6 +9,7 @@ from pathlib import Path
 from codriving.config import Point, expand, experiments_dir, parse, sets_scenario, written
 from codriving.errors import ConfigError
 from codriving.experiment.as_in_paper import results_of
+from codriving.experiment.controls import split_controls
 from codriving.experiment.drive import Driven, HaltedError, Interrupted, Outputs, drive
 from codriving.experiment.memory_build import FIRST_SEED, MOST, count_of, refuse_forgetful, split_interactions
 from codriving.experiment.plan import make_plan
@@ -28,6 +29,10 @@ SIZES = (0, 2, 5, 10, 20)  # Interactions after which is tested, unless the user
 
 KEY = "memory.interactions"  # The key that is swept
 
+CONTROL = "memory.control"  # The key by which a memory becomes a control
+
+ALTERED = ("verdicts", "situations", "rule")  # The controls, each of the most interactions
+
 # CDA levels, unless the user names some: everything, nothing negotiated, and only states shared.
 LEVELS = "cda=full,intent_sharing,status_sharing"
 
@@ -45,7 +50,10 @@ def run_learn(overrides: Sequence[str], config_dir: Path | None = None, show_onl
     Raises:
         UserError: If the config or a run folder cannot be used.
     """
-    sizes, others = _sizes(written(overrides))
+    controlled, others = split_controls(written(overrides), usual=True)
+    sizes, others = _sizes(others)
+    # Of no interactions there is nothing to mix up.
+    controls = ALTERED if controlled and max(sizes) > 0 else ()
     points = settings_of(others, config_dir)
     if show_only:
         print_configs(build_points(points, max(SIZES), "learn"), config_dir)
@@ -62,7 +70,7 @@ def run_learn(overrides: Sequence[str], config_dir: Path | None = None, show_onl
         if learnt.failed:
             return report(learnt, again)
         files = [memory_file(learnt.folder, cell.folder) for cell in builds.cells]
-        tests = make_plan(frozen_points(points, files, sizes, run), config_dir)
+        tests = make_plan(frozen_points(points, files, sizes, run, controls), config_dir)
         print(f"Testing: {tests.episodes} episodes in each of {len(tests.cells)} cells.", file=sys.stderr)
         finished = drive(tests, lambda driven: learned(driven, len(points)))
     except (Interrupted, HaltedError) as stop:
@@ -93,16 +101,19 @@ def build_points(points: Sequence[Point], interactions: int, run: str) -> list[P
     ]
 
 
-def frozen_points(points: Sequence[Point], files: Sequence[Path], sizes: Sequence[int], run: str) -> list[Point]:
-    """Give what is tested: every setting with the first interactions of its memory."""
+def frozen_points(
+    points: Sequence[Point], files: Sequence[Path], sizes: Sequence[int], run: str, controls: Sequence[str] = ()
+) -> list[Point]:
+    """Give what is tested: every setting with the first interactions of its memory, then with its controls."""
     cells = []
     for point, file in zip(points, files, strict=True):
         named = any(t.lstrip("+").startswith("experiment=") for t in point.overrides)
         base = ("memory=frozen", *(() if named else ("experiment=learn",)))
         kept = tuple(t for t in point.overrides if t.lstrip("+").partition("=")[0] != "run")
-        for size in sizes:
-            own = (f"run={run}", f"{KEY}={size}", f"memory.file='{file}'")
-            cells.append(Point((*base, *kept, *own), {**point.swept, KEY: str(size)}, point.removed))
+        for size, control in [*((size, "none") for size in sizes), *((max(sizes), control) for control in controls)]:
+            own = (f"run={run}", f"{KEY}={size}", f"memory.file='{file}'", f"{CONTROL}={control}")
+            swept = {**point.swept, KEY: str(size), CONTROL: control}
+            cells.append(Point((*base, *kept, *own), swept, point.removed))
     return cells
 
 
@@ -111,9 +122,10 @@ def learned(driven: Driven, settings: int) -> Outputs:
     paper, each = read_learning(experiments_dir()), len(driven.cells) // settings
     cells = []
     for index, (cell, records) in enumerate(zip(driven.cells, driven.records, strict=True)):
-        other = {key: value for key, value in cell.swept.items() if key != KEY}
+        other = {key: value for key, value in cell.swept.items() if key not in (KEY, CONTROL)}
         results, memory = results_of(cell, records, other), cell.resolved["memory"]
-        cells.append(LearningRow(results, int(memory["interactions"]), index // each, int(memory["shots"])))
+        size, control = int(memory["interactions"]), str(memory["control"])
+        cells.append(LearningRow(results, size, index // each, int(memory["shots"]), control=control))
     rows = learning_rows(cells, paper)
     swept = tuple(dict.fromkeys(key for row in rows for key in row.cell.swept))
     table = learning_table(rows, swept)

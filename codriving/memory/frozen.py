@@ -4,6 +4,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from codriving.errors import ConfigError, MemoryFileError
+from codriving.memory.altered import WORDS, Alteration, altered
 from codriving.memory.embedders import EmbeddingServer, make_embedder
 from codriving.memory.recall import RetrievalMemory
 from codriving.memory.snapshot import Snapshot, open_snapshot
@@ -26,6 +27,7 @@ class FrozenMemory(RetrievalMemory):
         embedding_api_base: str | None,
         embedding_key_env: str | None,
         embedding_deadline: float,
+        control: Alteration = "none",
     ) -> None:
         if file is None:
             raise ConfigError("file must name a file of memories, got null; make one with codriving memory build")
@@ -37,7 +39,7 @@ class FrozenMemory(RetrievalMemory):
         # Size and time of the last change tell, without reading a file, that it has changed.
         stat = path.stat() if path.exists() else None
         stamp = (stat.st_mtime_ns, stat.st_size) if stat is not None else None
-        found = self._snapshot = _opened(path, embedder, server, interactions, stamp)
+        found = self._snapshot = _opened(path, embedder, server, interactions, stamp, control)
         self.digest = found.digest
         if snapshot not in (AUTO, self.digest):
             raise MemoryFileError(
@@ -45,7 +47,8 @@ class FrozenMemory(RetrievalMemory):
                 "restore it, or set memory.snapshot=auto and another run=<name>"
             )
         self._path = path
-        self.label = f"frozen {self.digest[:8]}, {found.interactions} interactions"
+        words = f", {WORDS[control]}" if control != "none" else ""
+        self.label = f"frozen {self.digest[:8]}, {found.interactions} interactions{words}"
 
     def prepare(self) -> None:
         """Try the embedder, whose vectors have to be as long as those of the file."""
@@ -59,6 +62,8 @@ class FrozenMemory(RetrievalMemory):
 
 
 @lru_cache(maxsize=8)
-def _opened(path: Path, embedder: str, server: EmbeddingServer, interactions: int | None, stamp: object) -> Snapshot:
+def _opened(
+    path: Path, embedder: str, server: EmbeddingServer, interactions: int | None, stamp: object, control: Alteration
+) -> Snapshot:
     """Open a file; all cells and episodes of a process share what was read, as long as the file stays as it is."""
-    return open_snapshot(path, make_embedder(embedder, server), interactions)
+    return altered(open_snapshot(path, make_embedder(embedder, server), interactions), control)

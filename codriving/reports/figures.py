@@ -38,6 +38,9 @@ Style: TypeAlias = tuple[str, str, str]
 # For methods that have none of their own, in turn.
 OTHERS: Sequence[Style] = (("#7a7a7a", "X", "-"), ("#7a1f5c", "<", "--"), ("#5c4a00", ">", "-."), ("#3b5b92", "h", ":"))
 
+# For the controls of learning, beside the most interactions.
+CONTROL_MARKS = {"verdicts": "x", "situations": "+", "rule": "d"}
+
 # For the settings that are learnt in.
 LEVELS: Sequence[Style] = (
     ("#000000", "*", "-"),
@@ -113,6 +116,8 @@ def learning_figure(
 ) -> Mapping[str, bytes]:
     """Draw success against the number of past interactions, a panel a scenario (paper, learning figure).
 
+    Controls stand beside the most interactions, each with its own mark and in the colour of its setting.
+
     Returns:
         The content of ``learn.png`` and ``learn.svg``.
     """
@@ -122,6 +127,7 @@ def learning_figure(
     scenarios = list(dict.fromkeys(first.scenario for first in firsts))
     labels = _line_labels([(_level(row), row.cell, "") for row in rows])
     levels = list(dict.fromkeys(labels))
+    several = len(levels) > 1
     sizes = sorted({row.interactions for row in rows})
     figure = Figure(figsize=(max(5.0, 3.4 * len(scenarios)), 4.4), layout="constrained")
     axes = figure.subplots(1, len(scenarios), sharey=True, squeeze=False)[0]
@@ -132,9 +138,16 @@ def learning_figure(
             cells = [
                 (sizes.index(row.interactions) + shift, row.cell)
                 for row in members
-                if row.cell.first.scenario == scenario
+                if row.cell.first.scenario == scenario and not row.is_control
             ]
             _draw_rates(axis, cells, LEVELS[index % len(LEVELS)], level)
+            controls = [row for row in members if row.cell.first.scenario == scenario and row.is_control]
+            for k, row in enumerate(controls, 1):
+                style = (LEVELS[index % len(LEVELS)][0], CONTROL_MARKS[row.control], "none")
+                place = sizes.index(row.interactions) + shift + 0.25 * k
+                _draw_rates(
+                    axis, [(place, row.cell)], style, f"control, {row.words}" + (f", {level}" if several else "")
+                )
         claims = {row.claim for row in rows if row.cell.first.scenario == scenario}
         for s in paper:
             # Not in a panel of another setting than the paper's.

@@ -20,6 +20,19 @@ NOTES = (
 )
 
 
+# What was done to a memory, in words.
+CONTROLS = {
+    "verdicts": "shuffled verdicts",
+    "situations": "shuffled situations",
+    "rule": "one rule",
+}
+
+CONTROL_NOTE = (
+    "Controls are of the same memory. Shuffled: verdicts, or situations, are dealt out anew among its experiences. One "
+    "rule: the action that was a mistake most often (both lane changes count as one) is never done if another is safe."
+)
+
+
 @dataclass(frozen=True)
 class LearningRow:
     """One cell of the tests."""
@@ -31,6 +44,17 @@ class LearningRow:
     # The cell of the same setting with the fewest interactions; None for that one itself.
     fewest: CellResults | None = None
     claim: str | None = None  # What the paper says of its scenario after so many interactions
+    control: str = "none"  # What was done to the memory: ``verdicts``, ``situations`` or ``rule``
+
+    @property
+    def is_control(self) -> bool:
+        """Whether something was done to the memory, so that nothing that was learnt is left but what that leaves."""
+        return self.control != "none"
+
+    @property
+    def words(self) -> str:
+        """What was done to the memory, in words; empty if nothing was."""
+        return CONTROLS.get(self.control, "")
 
     @cached_property
     def pairs(self) -> PairedCells | None:
@@ -57,7 +81,7 @@ def learning_rows(cells: Sequence[LearningRow], paper: Sequence[LearningStatemen
             fewest=None if row.cell is fewest[row.setting] else fewest[row.setting],
             # The paper tests the full framework alone.
             claim=claims.get((row.cell.first.scenario, row.interactions))
-            if row.cell.first.variant == "full" and row.cell.papers_setting
+            if row.cell.first.variant == "full" and row.cell.papers_setting and not row.is_control
             else None,
         )
         for row in cells
@@ -82,6 +106,14 @@ def learning_table(rows: Sequence[LearningRow], swept: Sequence[str] = ()) -> Ta
             for column in (*labels([row.cell for row in rows], scenario=True), *swept_columns(swept))
         ),
         Column("interactions", lambda row: row.interactions, "interactions"),
+        Column(
+            "control",
+            lambda row: row.words,
+            "control",
+            words=True,
+            csv=any(row.is_control for row in rows),
+            sparse=True,
+        ),
         Column("shots", lambda row: row.shots),
         *(replace(column, head="") for column in cell("memory")),
         *cell("episodes", "completed", "count", "success_rate", "success_low", "success_high", "interval"),
@@ -108,7 +140,8 @@ def print_learning(rows: Sequence[LearningRow], metrics: str, swept: Sequence[st
     """Prepare the table for people."""
     firsts = [row.cell.first for row in rows]
     heading = title("learning", [first.scenario for first in firsts], [first.reasoner for first in firsts], metrics)
-    notes = (NOTE, *NOTES, _shown(rows, swept))
+    noted = [CONTROL_NOTE] if any(row.is_control for row in rows) else []
+    notes = (NOTE, *NOTES, *noted, _shown([row for row in rows if not row.is_control], swept))
     return printed(heading, learning_table(rows, swept), [_setting(row, swept) for row in rows], notes)
 
 

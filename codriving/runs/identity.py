@@ -42,6 +42,9 @@ HOW_A_MODEL_IS_ASKED = (
 _CAME_LATER: dict[str, Any] = {"label": None, "max_tokens_field": "max_tokens", "system_role": "system"}
 _CAME_LATER |= {"extra": {}, "headers": {}}
 
+# The same for ``memory``.
+_RECALLED: dict[str, Any] = {"control": "none"}
+
 # The same for ``executor``: with these values it minds human drivers as before.
 _MINDS: dict[str, Any] = {"humans": "planned", "human_margin": 1.5}
 
@@ -114,7 +117,7 @@ def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     for key, names in dropped.items():
         if isinstance(node := values.get(key), Mapping):
             values[key] = {name: value for name, value in node.items() if name not in names}
-    for key, later in (("llm", _CAME_LATER), ("scenario", _SCENES), ("executor", _MINDS)):
+    for key, later in (("llm", _CAME_LATER), ("scenario", _SCENES), ("executor", _MINDS), (MEMORY, _RECALLED)):
         if isinstance(node := values.get(key), Mapping):
             values[key] = {name: value for name, value in node.items() if (name, value) not in later.items()}
     return values

@@ -25,7 +25,9 @@ def test_all_scenarios_and_three_levels_unless_some_are_named() -> None:
 def test_what_is_learnt_on_is_never_what_is_tested_on() -> None:
     (point,) = settings_of(["scenario=merge", "cda=full", "episodes=30", "memory.shots=3"], None)
     built = compose(build_points([point], 20, "r")[0].overrides)
-    (tested,) = frozen_points([point], [Path("m.sqlite")], [5], "r")
+    tested, *controls = frozen_points([point], [Path("m.sqlite")], [2, 5], "r", ("verdicts", "rule"))[1:]
+    assert [compose(p.overrides)["memory"]["control"] for p in controls] == ["verdicts", "rule"]
+    assert {compose(p.overrides)["memory"]["interactions"] for p in controls} == {5}
     test = compose(tested.overrides)
     assert (built["seed"], built["episodes"], built["experiment"]) == (20_000, 20, "learn-memory")
     assert (test["seed"], test["episodes"], test["experiment"]) == (0, 30, "learn")
@@ -48,14 +50,17 @@ def test_the_table_the_figure_and_a_second_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    command = [*SHORT, "interactions=0,2", "episodes=2", "run=x", "launcher=serial"]
+    command = [*SHORT, "interactions=0,2", "episodes=1", "run=x", "launcher=serial"]
     assert run_learn(command) == 0
     printed = capsys.readouterr().out
     assert "learning - intersection - reasoner: rules (llm=offline)" in printed
     run = Path("outputs/learn/x")
     with (run / "learn.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert [row["interactions"] for row in rows] == ["0", "2"]
+    assert [row["interactions"] for row in rows] == ["0", "2", "2", "2", "2"]
+    assert [row["control"] for row in rows] == ["", "", "shuffled verdicts", "shuffled situations", "one rule"]
+    assert rows[2]["memory"].endswith(", 2 interactions, shuffled verdicts")
+    assert "Controls are of the same memory." in printed
     assert rows[0]["mcnemar_p"] == ""
     assert float(rows[1]["mcnemar_p"]) == 1.0
     assert rows[0]["memory"].endswith(", 0 interactions")
@@ -66,3 +71,13 @@ def test_the_table_the_figure_and_a_second_time(
     assert run_learn(command) == 0
     assert "Nothing to do" in capsys.readouterr().out
     assert {p: p.read_bytes() for p in before} == before
+
+
+def test_without_interactions_or_if_they_are_left_out_there_are_no_controls(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run_learn([*SHORT, "interactions=1", "episodes=1", "run=x", "launcher=serial", "controls=false"]) == 0
+    said = capsys.readouterr()
+    assert "Testing: 1 episodes in each of 1 cells." in said.err
+    assert "ontrol" not in said.out
