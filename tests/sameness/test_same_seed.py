@@ -5,9 +5,13 @@ from pathlib import Path
 import pytest
 from cells import LIMITS
 from driving import codriving
+from thorough import some
 
 SHORT = ("scenario.time_limit=3", "seed=11", "episodes=1", "run=x")
 TABLES = ("episodes.csv", "summary.csv", "summary.md")
+
+REST = [*zip(("cda=all", "method=all") * 2, LIMITS, strict=True)]
+"""What is left to thorough tests: each scenario is driven by all methods or in all classes anyway."""
 
 
 def drive(folder: Path, *overrides: str) -> tuple[dict[str, bytes], dict[str, bytes]]:
@@ -23,8 +27,9 @@ def drive(folder: Path, *overrides: str) -> tuple[dict[str, bytes], dict[str, by
     return files, {name: (run / name).read_bytes() for name in TABLES}
 
 
-@pytest.mark.parametrize("scenario", LIMITS)
-@pytest.mark.parametrize("what", ["method=all", "cda=all"])
+@pytest.mark.parametrize(
+    ("what", "scenario"), some(4, [*zip(("method=all", "cda=all") * 2, LIMITS, strict=True), *REST])
+)
 def test_the_same_seed_gives_the_same_bytes(what: str, scenario: str, tmp_path: Path) -> None:
     first, tables = drive(tmp_path / "first", what, f"scenario={scenario}", "launcher=serial")
     second, others = drive(tmp_path / "second", what, f"scenario={scenario}", "workers=2")
