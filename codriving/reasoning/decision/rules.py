@@ -139,7 +139,7 @@ def is_plain(situation: Situation, sees_conflicts: bool) -> bool:
     if any(scene.ego.id in (p.first, p.second) for p in situation.order.precedences):
         return False
     along = [a for a in situation.assessments if a.action in EAGERNESS]
-    if not all(a.safe and not a.reasons and a.progress is not None for a in along):
+    if not all(not a.reasons and a.progress is not None for a in along):
         return False
     # Progress is what a plan is worth behind all others, not how far the CAV would drive on its own.
     reach = HORIZON * max([scene.ego.speed, *(a.target or 0.0 for a in along)])

@@ -134,6 +134,13 @@ def test_of_two_that_can_start_at_once_the_rule_of_thumb_takes_the_one_that_has_
     assert "".join(coded.named(found.order)) == order
 
 
+def test_a_search_leaves_out_pairs_with_a_vehicle_that_is_not_to_be_ordered() -> None:
+    apart = {("a", "b"): 1.0, ("gone", "a"): 9.0, ("b", "gone"): 9.0}
+    coded = Coded(instance({"a": 1.0, "b": 1.5}, apart, [("a", "gone"), ("gone", "b")]), Objective())
+    found = coded.run(["a", "b"])
+    assert (coded.named(coded.candidates(coded.root())), coded.cost(found)) == (["a", "b"], 0.5)
+
+
 def test_objective_weighs_delay_and_evacuation() -> None:
     problem = instance({"a": 1.0, "b": 2.0}, both("a", "b", 3.0))
     times = {"a": 1.0, "b": 4.0}
