@@ -37,7 +37,9 @@ def compare(
     table: Annotated[
         str | None,
         typer.Argument(
-            metavar="TABLE", help="Which table: baselines, single-vehicle, all or load.", autocompletion=complete_table
+            metavar="TABLE",
+            help="Which table: baselines, single-vehicle, all, load, orders or filters.",
+            autocompletion=complete_table,
         ),
     ] = None,
     overrides: Overrides = None,
@@ -50,7 +52,10 @@ def compare(
     """Drive every method of the paper on the same seeds, into one table beside the paper's.
 
     baselines: each method against codriving. single-vehicle: those by which each CAV is on its own. all: both.
-    load: baselines with 4, 6, 8 and 12 CAVs. method=NAME adds a method of your own; controls=false leaves controls out.
+    load: baselines with 4, 6, 8 and 12 CAVs. orders: codriving with each passing order. filters: each method with and
+    without the safety check behind it.
+
+    method=NAME adds a method of your own; controls=false leaves controls out.
     """
     from codriving.experiment import comparison_command, run_command
 
