@@ -58,18 +58,19 @@ def sure_meetings(cavs: Sequence[Passing], road_map: RoadMap, step: float) -> It
     """Give the meetings of true bodies in which they overlap however they lie within their envelopes."""
     for i, j in combinations(range(len(cavs)), 2):
         one, other = cavs[i], cavs[j]
-        mask = sure_overlap(road_map, one.route.id, other.route.id, one.envelope, other.envelope, step)
+        jump = float(np.ceil(1000 * step * max(one.fastest, other.fastest))) / 1000
+        mask = sure_overlap(road_map, one.route.id, other.route.id, one.envelope, other.envelope, jump)
         spacings = tuple(road_map.paths[cav.route.id].spacing for cav in (one, other))
         yield from _of_mask(i, j, one, other, mask, spacings)
 
 
 @lru_cache(maxsize=1024)
 def sure_overlap(
-    road_map: RoadMap, route_i: str, route_j: str, envelope_i: Envelope, envelope_j: Envelope, step: float
+    road_map: RoadMap, route_i: str, route_j: str, envelope_i: Envelope, envelope_j: Envelope, jump: float
 ) -> BoolArray:
-    """Return at which pairs of path points bodies cannot be, nor pass between two looks of the environment."""
+    """Return at which pairs of path points bodies cannot be, nor pass between two looks, a jump apart at most [m]."""
     if route_i > route_j:
-        return sure_overlap(road_map, route_j, route_i, envelope_j, envelope_i, step).T
+        return sure_overlap(road_map, route_j, route_i, envelope_j, envelope_i, jump).T
     path_i, path_j = road_map.paths[route_i], road_map.paths[route_j]
     cells = collision_set(path_i, path_j, TRUE)
     mask = np.zeros((len(path_i.points), len(path_j.points)), dtype=np.bool_)
@@ -78,8 +79,7 @@ def sure_overlap(
         for lies_i, lies_j in product(_lies(envelope_i, path_i, cells.i), _lies(envelope_j, path_j, cells.j)):
             inside &= _overlaps(lies_i, lies_j)
         mask[cells.i[inside], cells.j[inside]] = True
-        most = step * max(float(envelope_i.pace.max()), float(envelope_j.pace.max()))
-        mask = between_looks(mask, most / path_i.spacing, most / path_j.spacing)
+        mask = between_looks(mask, jump / path_i.spacing, jump / path_j.spacing)
     mask.setflags(write=False)
     return mask
 

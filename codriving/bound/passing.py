@@ -27,14 +27,30 @@ class Passing:
             raise ScenarioError(
                 f"{self.start.id} does not arrive within the time limit even if it is alone on the road"
             )
-        # A CAV that starts faster than its highest target only slows down.
-        pace = self.envelope.pace * max(1.0, self.start.speed / self.top_speed)
-        object.__setattr__(self, "_elapsed", np.concatenate(([0.0], np.cumsum(BIN / pace))))
+        object.__setattr__(
+            self, "_elapsed", np.concatenate(([0.0], np.cumsum(BIN / (self.envelope.pace * self._faster))))
+        )
 
     @property
     def arrival(self) -> float:
         """When it arrives if it drives alone [s]; the environment looks once a step."""
         return round((len(self.alone) - 1) * self.step, 9)
+
+    @property
+    def least_arrival(self) -> float:
+        """When it arrives at the earliest [s]: the time alone, unless that is missed by less than the lead."""
+        ticks = np.ceil((float(self.earliest(np.array([self.route.goal]))[0]) - 1e-9) / self.step)
+        return round(float(ticks) * self.step, 9)
+
+    @property
+    def fastest(self) -> float:
+        """Highest progress along the route at any place [m/s]."""
+        return float(self.envelope.pace.max()) * self._faster
+
+    @property
+    def _faster(self) -> float:
+        # A CAV that starts faster than its highest target only slows down.
+        return max(1.0, self.start.speed / self.top_speed)
 
     def least_time(self, places: FloatArray) -> FloatArray:
         """Return how long it takes at least from the start of the route to places [m], at its highest pace [s]."""

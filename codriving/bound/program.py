@@ -69,7 +69,7 @@ def pose(table: Timetable, one_order: bool = False) -> Program:
     """
     columns, rows = _Columns(), _Rows()
     good = table.one_after_another()
-    alone = [cav.arrival for cav in table.cavs]
+    alone = [cav.least_arrival for cav in table.cavs]
     # In a best timetable no CAV is later by more than all together are in one that can be driven.
     late = 1e3 if good is None else sum(max(t[-1] + table.step - a, 0.0) for t, a in zip(good, alone, strict=True))
     for early, least, arrival in zip(table.earliest, table.least, alone, strict=True):

@@ -73,10 +73,11 @@ def solved(table: Timetable, problem: Program) -> Bound:
             options={"mip_rel_gap": 0.0, "node_limit": NODES},
         )
     alone = [cav.arrival for cav in table.cavs]
+    earliest = [cav.least_arrival for cav in table.cavs]
     proven = found.mip_dual_bound if problem.whole.any() else found.fun
     if proven is None or not math.isfinite(proven):
         raise ArithmeticError(f"HiGHS found no bound: {found.message}")
-    least = max(math.ceil((proven - SLACK) / table.step) * table.step, sum(alone))
+    least = max(math.ceil((proven - SLACK) / table.step) * table.step, sum(earliest))
     if found.x is None:
         return Bound(round(least, 6), round(sum(alone), 6), len(table.cavs), problem.binaries, False)
     firsts = {
@@ -84,7 +85,7 @@ def solved(table: Timetable, problem: Program) -> Bound:
         for number, meeting in enumerate(table.meetings)
     }
     times = table.with_firsts(firsts)
-    exact = [max(float(t[-1]), own) for t, own in zip(times, alone, strict=True)]
+    exact = [max(float(t[-1]), own) for t, own in zip(times, earliest, strict=True)]
     if proven > sum(exact) + table.step:
         raise ArithmeticError(
             f"HiGHS claims that CAVs need {proven:.4f} s, and its own order {sum(exact):.4f} s; please report this"

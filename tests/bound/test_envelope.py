@@ -31,6 +31,7 @@ def test_road_control_limits_and_actions_tell_worlds_apart_and_crowds_do_not() -
     ]
     hashes = [world_hash(environment(one)) for one in others]
     assert len({own, *hashes}) == 6
+    assert world_hash(environment("scenario.blind=8")) == own
     assert world_hash(environment("scenario.cavs=8", "drivers=rough", "environment.steady=false")) == own
 
 

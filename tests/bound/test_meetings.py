@@ -83,7 +83,7 @@ def test_drives_that_just_do_not_touch_are_not_inside(world: Callable[..., Bound
             start = Start("CAV1", Kind.CAV, route, 70.0, float(rng.uniform(3, 9)))
             drives.append(road.drive(start, random_actions(rng)))
         boxes = [_boxes(at, route, drive) for route, drive in zip(routes, drives, strict=True)]
-        mask = sure_overlap(at.environment.road_map, *routes, *(at.envelopes[r] for r in routes), 0.1)
+        mask = sure_overlap(at.environment.road_map, *routes, *(at.envelopes[r] for r in routes), 0.99)
         spacings = [at.environment.road_map.paths[r].spacing for r in routes]
         touched = [_touch(boxes, shift) for shift in range(-120, 121)]
         for shift, (now, after) in enumerate(itertools.pairwise(touched), start=-120):
