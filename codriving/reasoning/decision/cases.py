@@ -20,10 +20,9 @@ def reconsider(situation: Situation, decision: Decision) -> Decision:
     The cases in which an action was taken speak for it if it eased the conflict, and against it if it intensified the
     conflict or was too cautious. If they speak against what the rules decide, the CAV does something else that is safe
     and that they speak less against: something faster if it was too cautious, and otherwise what they speak most for,
-    or what gets it farthest if they are silent. If there is no such action, the decision stands.
+    or what gets it farthest if they are silent. If there is none, as when only the least dangerous action is left,
+    the decision stands.
     """
-    if not situation.memories or any(a.safe and a.reasons for a in situation.assessments):
-        return decision
     against = favour(situation.memories, decision.action)
     if against >= 0:
         return decision

@@ -50,6 +50,22 @@ def test_what_made_no_difference_speaks_neither_for_nor_against(alone: Situation
     assert decided(alone, neutral).action is F
 
 
+@pytest.mark.parametrize(("unsafe", "taken"), [((S,), I), ((I,), S), ((I, S), F)])
+def test_what_the_safety_check_removed_is_no_way_out_of_a_mistake(
+    alone: Situation, unsafe: tuple[Action, ...], taken: Action
+) -> None:
+    removed = [
+        replace(a, safe=False, reasons=("same lane: no",)) if a.action in unsafe else a for a in alone.assessments
+    ]
+    assert decided(replace(alone, assessments=tuple(removed)), memory(F, BAD)).action is taken
+
+
+def test_the_least_dangerous_action_is_taken_whatever_is_remembered(alone: Situation) -> None:
+    forced = [replace(a, safe=a.action is S, reasons=("same lane: no",)) for a in alone.assessments]
+    found = decided(replace(alone, assessments=tuple(forced)), memory(S, BAD), memory(F, GOOD))
+    assert (found.action, found.reason) == (S, "no action is safe, and SLOWER is the least dangerous")
+
+
 def test_nothing_unsafe_is_done_to_avoid_a_mistake(alone: Situation) -> None:
     only = replace(alone, assessments=tuple(replace(a, safe=a.action is F) for a in alone.assessments))
     assert decided(only, memory(F, BAD)).action is F
