@@ -53,6 +53,28 @@ def test_methods_are_ranked_by_clean_success_and_then_by_the_time_of_all(make: M
     assert [row.method for row in rows] == ["c", "b", "a", "codriving", "missing"]
 
 
+def test_controls_stand_below_the_methods_however_good_they_are(make: Make) -> None:
+    def control(name: str, variant: str, clean: int) -> CellResults:
+        records = [make(k, method=name, variant=variant, clean=k < clean, time=9.0) for k in range(4)]
+        return CellResults(records)
+
+    best, other = control("x", "control", 4), control("y", "control/no_negotiation", 3)
+    cells = [other, best, _cell(make, "a", 1, 4), _cell(make, "codriving", 2, 4), control("b", "controlled", 0)]
+    rows = comparison_rows(cells, ["a", "codriving", "missing"], Paper())
+    assert [row.method for row in rows] == ["codriving", "a", "b", "x", "y", "missing"]
+    shown = print_comparison(rows, "standard")
+    assert column_of(shown, "method")[3:5] == ["x control", "y control/no_negotiation"]
+    assert [row.last for row in shown.rows] == [False, False, True, False, True, False], "a group of their own"
+
+
+def test_controls_whose_clean_success_is_not_known_stand_below_the_methods_too(make: Make) -> None:
+    cells = [
+        CellResults([make(0, method=n, variant=v)]) for n, v in (("x", "control"), ("a", ""), ("codriving", "full"))
+    ]
+    rows = comparison_rows(cells, ["a", "codriving"], Paper())
+    assert [row.method for row in rows] == ["a", "codriving", "x"]
+
+
 def test_old_records_stay_in_the_order_of_the_table(make: Make) -> None:
     cells = [CellResults([make(0, method=name, variant="")]) for name in ("a", "b")]
     assert [row.method for row in comparison_rows(cells, ["b", "missing", "a"], Paper())] == ["b", "missing", "a"]
