@@ -20,6 +20,8 @@ from codriving.runs import CHOICES, CellEntry, NamedFile, fingerprint, redact, s
 
 LONGEST = 100  # Characters of a folder's name; Windows allows 260 for a whole path
 
+KNOWS = "which no vehicle can know."  # What ends the remark on a method that is told more than others
+
 _LABELS = {"scenario": "scenario", "method": "method"}
 # The label in which a group, or a key of it, may show.
 _LABELS_BELOW = {"cda": "variant", "order": "variant", "filter": "variant", "method": "variant", "llm": "reasoner"}
@@ -96,6 +98,9 @@ def make_cell(
     swept = swept_values(point.swept, resolved) if point else {}
     files, chosen = contents(resolved, method.files(scenario.road)), choices or {}
     remark = method.remark(scenario.road, {group: chosen[group] for group in ("limits", "drivers") if group in chosen})
+    if method.knows_drivers and not remark.endswith(KNOWS):
+        # Whatever a method says of itself.
+        remark = f"{remark} {method.name}: it is told how human drivers treat the right of way, {KNOWS}".strip()
     return Cell(folder_name(labels), labels, resolved, scorer.metric.name, swept, chosen, files, remark=remark)
 
 

@@ -40,7 +40,12 @@ def _stops(track: Track) -> int:
 
 
 def reversals(tracks: Sequence[Track], step: float) -> float | None:
-    """Return how often a minute of driving FASTER follows at once on SLOWER, or SLOWER on FASTER [1/min]."""
+    """Return how often a minute of driving FASTER follows at once on SLOWER, or SLOWER on FASTER [1/min].
+
+    None if no vehicle took actions.
+    """
+    if not any(any(track.action) for track in tracks):
+        return None
     flips = sum(
         {before, after} == {Action.FASTER, Action.SLOWER}
         for track in tracks

@@ -13,6 +13,7 @@ from codriving.datatypes.record import Outcome
 from codriving.datatypes.situation import ReasonedDeliberation
 from codriving.datatypes.world import Manner, WorldState
 from codriving.environment.environment import Environment
+from codriving.experiment.cells import make_cell
 from codriving.experiment.episode import Labels, run_episode
 from codriving.methods.control import Control
 from codriving.methods.oracle import Oracle
@@ -102,6 +103,16 @@ def test_a_world_state_holds_nothing_of_it(configured: Made) -> None:
 
 def test_no_other_file_of_the_methods_says_that_it_is_told() -> None:
     found = [
-        str(file) for file in files() if file.room == "methods" and "knows_drivers" in file.path.read_text("utf-8")
+        str(file)
+        for file in files()
+        if file.room == "methods" and "knows_drivers = True" in file.path.read_text("utf-8")
     ]
     assert [name.rpartition("/")[2] for name in found] == ["oracle.py"]
+
+
+def test_tables_say_of_whatever_method_is_told_that_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert make_cell(compose(["method=oracle"])).remark.count("which no vehicle can know.") == 1
+    monkeypatch.setattr(Control, "knows_drivers", True)
+    said = make_cell(compose(["method=fastest"])).remark
+    assert said.endswith(" fastest: it is told how human drivers treat the right of way, which no vehicle can know.")
+    assert said.startswith("fastest: a control and no method: ")

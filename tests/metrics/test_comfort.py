@@ -56,4 +56,5 @@ def test_reversals_are_flips_a_minute() -> None:
     actions = ("", *["FASTER"] * 3, *["SLOWER"] * 3, "FASTER", "FASTER", "SLOWER", "IDLE", "FASTER", "FASTER")
     assert reversals([_track([5] * 13, actions)], 0.5) == pytest.approx(30)
     assert reversals([_track([5] * 13, ("", *["IDLE"] * 12))], 0.5) == 0
+    assert reversals([_track([5] * 13, ("",) * 13)], 0.5) is None, "it takes no actions"
     assert reversals([], 0.5) is None
