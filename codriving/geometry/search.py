@@ -51,10 +51,7 @@ class Search:
         layers: list[tuple[Numbers, Numbers]] = []
         states = np.array([[self.place], [self.speed], [self.target]])
         decisions = -(-steps // self.model.substeps)
-        # From when on no stretch is left; then the fastest of those that are as far can be followed.
-        free = max(
-            (int(np.flatnonzero(np.isfinite(low))[-1]) + 1 for low in self.low if np.isfinite(low).any()), default=0
-        )
+        free = self._free()
         for k in range(decisions):
             parents, actions, states, arrived = self._step(states, k * self.model.substeps)
             if arrived is not None:
@@ -66,6 +63,16 @@ class Search:
             states = states[:, kept]
             layers.append((parents[kept], actions[kept]))
         return self._traced(layers, int(np.lexsort((states[1], states[0]))[-1]))
+
+    def _free(self) -> float:
+        """From which step on no stretch is left: then those that are ahead and as fast are no worse."""
+        last = -1.0
+        for low, high in zip(self.low, self.high, strict=True):
+            blocked = np.flatnonzero((low < high) & np.isfinite(np.minimum(np.abs(low), np.abs(high))))
+            if len(blocked):
+                # What stands at the end stands for ever.
+                last = max(last, np.inf if blocked[-1] == len(low) - 1 else float(blocked[-1]))
+        return last + 1
 
     def _step(self, states: Array, first: int) -> tuple[Numbers, Numbers, Array, int | None]:
         """Let each state take each action; gives the parent of each new state, its action, and who has arrived."""

@@ -48,7 +48,7 @@ def test_stored_bounds_are_those_of_this_version(world: Callable[..., BoundedWor
         assert at.solve(int(row["seed"])).total == pytest.approx(float(row["bound"]), abs=1e-6), row
 
 
-@pytest.mark.parametrize(("scenario", "method"), [("intersection", "mcts"), ("roundabout", "fcfs")])
+@pytest.mark.parametrize(("scenario", "method"), [("intersection", "mcts"), ("roundabout", "idfst")])
 def test_what_is_driven_now_does_not_lie_below(world: Callable[..., BoundedWorld], scenario: str, method: str) -> None:
     settings = overrides(scenario, "default", 4, False)
     at, objects = world(*settings), make_objects(compose([*settings, f"method={method}"]))

@@ -67,6 +67,14 @@ def _within(places: np.ndarray, low: np.ndarray, high: np.ndarray) -> bool:
     return bool(np.any((places > low[:n]) & (places < high[:n])))
 
 
+def test_what_stands_at_the_end_stands_for_ever(search: Search) -> None:
+    # Past the four steps that are given the wall stays, 8 m ahead.
+    found = replace(search, speed=3.0, target=3.0, low=(np.full(4, 78.0),), high=(np.full(4, np.inf),)).drive(60)
+    assert found is not None
+    assert found.arrives is None
+    assert 76.0 < found.places[-1] <= 78.0
+
+
 def test_who_cannot_keep_clear_finds_nothing(search: Search) -> None:
     assert replace(search, low=(np.full(400, 72.0),), high=(FAR,)).drive(400) is None
 
