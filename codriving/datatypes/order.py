@@ -112,6 +112,9 @@ class Instance:
     separation: Mapping[Pair, float]
     before: Set[Pair]
     approaches: Mapping[Pair, Approach] = field(default_factory=dict)  # Of the first of each pair to their zone
+    # Of pairs of which either may be first, zone by zone, by (one, other): for how long before and after the one passes
+    # its reference point the other one must not pass its own, a pair of times for each zone [s].
+    zones: Mapping[Pair, tuple[tuple[float, float], ...]] = field(default_factory=dict)
 
     def approach(self, one: str, other: str) -> Approach:
         """Return how a vehicle comes to the zone that it shares with another one; its first one if they share none."""

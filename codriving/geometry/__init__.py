@@ -15,6 +15,7 @@ from codriving.geometry.clearance import (
 from codriving.geometry.collision_set import collision_set
 from codriving.geometry.curve import FloatArray
 from codriving.geometry.lane_path import lane_path, lane_starts
+from codriving.geometry.limited import Along, accelerated, driven, limited
 from codriving.geometry.path import Path, progress
 from codriving.geometry.road_map import RoadMap, road_map
 from codriving.geometry.search import Search, SearchedDrive
@@ -22,8 +23,8 @@ from codriving.geometry.speed_profile import SpeedProfile
 from codriving.geometry.zone import ConflictZone, FollowingBand
 
 __all__ = [
-    "PLANNING", "TRUE", "Array", "ConflictZone", "Flags", "FloatArray", "FollowingBand", "Footprint", "Path",
-    "RoadMap", "Search", "SearchedDrive", "SpeedProfile", "Steps", "collision_set", "corners", "first_overlap",
-    "first_true", "halts_behind", "lane_path", "lane_starts", "overlap", "overlaps", "progress", "reacts",
-    "road_map", "separation", "stays_ahead", "stays_behind",
+    "PLANNING", "TRUE", "Along", "Array", "ConflictZone", "Flags", "FloatArray", "FollowingBand", "Footprint",
+    "Path", "RoadMap", "Search", "SearchedDrive", "SpeedProfile", "Steps", "accelerated", "collision_set",
+    "corners", "driven", "first_overlap", "first_true", "halts_behind", "lane_path", "lane_starts", "limited",
+    "overlap", "overlaps", "progress", "reacts", "road_map", "separation", "stays_ahead", "stays_behind",
 ]  # fmt: skip

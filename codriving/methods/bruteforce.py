@@ -42,7 +42,7 @@ class BruteForce(SearchedOrder):
                 problem.place(longer, k)
                 bound = problem.bound(longer)
                 if bound < least - LESS:
-                    options.append((problem.start(prefix, k), problem.eta[k], k, bound, longer))
+                    options.append((prefix.earliest[k], problem.eta[k], k, bound, longer))
             for *_, bound, longer in sorted(options, key=lambda o: o[:3]):
                 if bound < least - LESS:
                     descend(longer)

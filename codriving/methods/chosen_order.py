@@ -7,8 +7,7 @@ from codriving.reasoning import HEADWAY, PAD, Coordinator, JointPlans, Moment, O
 class ChosenOrder(Coordinator):
     """Hands a rule the problem that the negotiation solves, and writes its order down as the negotiation does.
 
-    What a rule grants or holds back beyond an order, lane changes and earliest times, is left to the rest of the
-    pipeline.
+    What a rule grants or holds back beyond an order, lane changes and earliest times, is left to the pipeline.
     """
 
     def __init__(self, rule: OrderRule, binding: bool, margin: float) -> None:

@@ -49,7 +49,13 @@ class CoDriving(ModelMethod):
     name, reflects = "codriving", "reflect"
 
     def __init__(
-        self, cda: CdaLevel, llm: Model, memory: CaseMemory | None, margin: float, order: OrderRule | None = None
+        self,
+        cda: CdaLevel,
+        llm: Model,
+        memory: CaseMemory | None,
+        margin: float,
+        order: OrderRule | None = None,
+        by_zone: bool = True,
     ) -> None:
         require_range("margin", margin, 0, 5, " s")
         require(
@@ -60,7 +66,7 @@ class CoDriving(ModelMethod):
         super().__init__(llm, memory)
         self.cda, self.margin, self.variant = cda, margin, order_variant(cda.variant, order)
         self.order, self.most_cavs = order, order.most_cavs if order is not None else None
-        self.is_checked = cda.safety_check
+        self.is_checked, self.by_zone = cda.safety_check, by_zone and not cda.binding
         self.asked = ("negotiate", "decide") if order is None else ("decide",)
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
@@ -70,7 +76,7 @@ class CoDriving(ModelMethod):
         if self.order is not None:
             self.order.reset(seed)
             coordinator = ChosenOrder(self.order, self.cda.binding, self.margin)
-        perception = perception_at(self.cda, road_map, model)
+        perception = perception_at(self.cda, road_map, model, self.by_zone)
         negotiation = AgreedOrder(coordinator) if self.cda.negotiation else OwnOrders(self.cda.own_order, seed)
         safety = ThreeLayers() if self.cda.safety_check else NoCheck()
         ledger = self._model.ledger if self._model is not None else None
@@ -102,12 +108,12 @@ class CoDriving(ModelMethod):
         return {**account[0], **learnt}, account[1]
 
 
-def perception_at(cda: CdaLevel, road_map: RoadMap, model: DrivingModel) -> Perception:
+def perception_at(cda: CdaLevel, road_map: RoadMap, model: DrivingModel, by_zone: bool = False) -> Perception:
     """Return what CAVs perceive that cooperate so far."""
     forecast = Forecast(model, (*CONTINUATIONS, *plan_library(model)), road_map)
     states = SharedStates() if cda.state_sharing else SensedStates()
     intents = SHARED_INTENTS if cda.intent_sharing else HIDDEN_INTENTS
-    return Perception(road_map, forecast, Tracking(road_map), states, intents)
+    return Perception(road_map, forecast, Tracking(road_map), states, intents, by_zone=by_zone)
 
 
 class _ForOne(Decider):

@@ -46,7 +46,8 @@ class Ordered(Method):
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
         forecast = Forecast(model, (*CONTINUATIONS, *plan_library(model), *self.executor.library), road_map)
-        self._perception = Perception(road_map, forecast, Tracking(road_map), SharedStates(), SHARED_INTENTS)
+        known = Tracking(road_map), SharedStates(), SHARED_INTENTS
+        self._perception = Perception(road_map, forecast, *known, by_zone=self.executor.by_zone)
         self._requests, self._lag = LaneRequests(), round(self.executor.margin / forecast.sample)
         self.rule.reset(seed)
         self.executor.reset()

@@ -26,6 +26,9 @@ class Moment:
     forecast: Forecast
     sees_conflicts: bool = True  # Whether conflicts can be told at all, which takes routes that are shared or guessed
     gives_way: GivesWay = gives_way  # Says why a human driver is expected to let the CAV pass first
+    by_zone: bool = (
+        False  # Whether a CAV may pass a zone before one that precedes it, where it is out of its way in time
+    )
 
 
 @dataclass(slots=True)
@@ -39,6 +42,7 @@ class Perception:
     intent_sharing: IntentSharing
     may_hold: bool = True  # Whether those who decide know HOLD
     gives_way: GivesWay = gives_way  # Says why a human driver is expected to let the CAV pass first
+    by_zone: bool = False  # Whether CAVs may go first zone by zone, whatever their order
 
     def perceive(self, world: WorldState) -> Moment:
         """Return what every CAV knows, and begin the predictions of this step."""
@@ -55,7 +59,7 @@ class Perception:
         if not self.may_hold:
             available = {name: tuple(a for a in known if a is not Action.HOLD) for name, known in available.items()}
         known = (scenes, conflicts, vehicles, available, self.road_map, self.forecast, finds_conflicts)
-        return Moment(world.time, *known, self.gives_way)
+        return Moment(world.time, *known, self.gives_way, self.by_zone)
 
 
 def states(world: WorldState, road_map: RoadMap, model: DrivingModel) -> list[State]:

@@ -1,5 +1,6 @@
 """What a comparison consists of: every method that there is, on the same seeds."""
 
+import csv
 from importlib import import_module
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from codriving.environment.scenarios.roundabout import Roundabout
 from codriving.errors import ConfigError
 from codriving.experiment.compare import EXPERIMENT, comparison, comparison_command, setting
 from codriving.experiment.plan import make_plan
-from codriving.experiment.run import resume_command
+from codriving.experiment.run import resume_command, run_command
 from codriving.reports.paper import read_paper
 
 YAML = "# Mine.\n_target_: my_methods.Mine\nplugins: [my_methods]\n"
@@ -184,3 +185,23 @@ def test_as_many_cavs_as_load_asks_for_can_start(scenario: str) -> None:
     made = build(compose([f"scenario={scenario}", "scenario.cavs=12"])["scenario"], object)
     assert isinstance(made, Intersection | Roundabout)
     assert all(sum(start.kind is Kind.CAV for start in made.scene(seed).starts) == 12 for seed in range(10000, 10010))
+
+
+def test_several_suites_are_a_table_each_and_a_figure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(import_module("codriving.experiment.compare"), "taking_part", lambda _: ("fcfs", "codriving"))
+    tokens = ["suite=honest,standoff", "episodes=1", "seed=12000", "controls=false", "launcher=serial", "run=x"]
+    assert run_command(comparison_command("baselines"), [*tokens, f"output={tmp_path}"]) == 0
+    printed = capsys.readouterr().out
+    titles = ["honest: comparison of methods", "honest: against codriving", "standoff: comparison", "standoff: against"]
+    places = [printed.index(title) for title in titles]
+    assert places == sorted(places)
+    assert printed.count("Each difference is the method minus codriving") == 1
+    assert "a control in which every method should succeed" in printed
+    folder = tmp_path / "compare" / "x"
+    assert (folder / "comparison.md").read_text().count("against codriving on the same seeds") == 2
+    assert (folder / "figures" / "profile.png").stat().st_size > 10_000
+    rows = list(csv.DictReader((folder / "comparison.csv").read_text().splitlines()))
+    assert [(row["suite"], row["method"]) for row in rows if row["pairs"]] == [("honest", "fcfs"), ("standoff", "fcfs")]
+    assert all(row["mcnemar_p_holm"] for row in rows if row["pairs"])

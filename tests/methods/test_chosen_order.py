@@ -85,19 +85,19 @@ GOLDEN = {
         "CAV1 CAV4 CAV2 CAV3",
     ),
     "mcts": (
-        "HDV1 CAV4 CAV3 CAV2 CAV1",
+        "HDV1 CAV4 CAV1 CAV3 CAV2",
         "CAV4 CAV3 CAV2 CAV1",
     ),
     "coop_game": (
         "HDV1 CAV4 CAV3 CAV2 CAV1",
-        "CAV1 CAV2 CAV4 CAV3",
+        "CAV1 CAV2 CAV3 CAV4",
     ),
     "random": (
         "HDV1 CAV3 CAV1 CAV2 CAV4",
         "CAV3 CAV1 CAV2 CAV4",
     ),
     "optimal": (
-        "HDV1 CAV4 CAV3 CAV2 CAV1",
+        "HDV1 CAV4 CAV1 CAV3 CAV2",
         "CAV4 CAV3 CAV2 CAV1",
     ),
 }

@@ -62,7 +62,7 @@ class CheckedHumans:
             # A lane that it is leaving is minded until its body is off it.
             places = place + travels[:, : moment.forecast.clears if k else n]
             known = self._expected[name]
-            for zone, other, after, halts in bounds_of(
+            for zone, other, after, halts, _ in bounds_of(
                 moment, name, name, route, place, known, order, self._lag, k == 0
             ):
                 steps = passes_too_early(zone, places, other[: places.shape[1]], after, 0.0)

@@ -1,6 +1,6 @@
 """Plans all CAVs one after another in an order; what two plans mean for one another is worked out once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +21,15 @@ from codriving.reasoning.safety.same_lane import LANE_END_GAP
 
 
 @dataclass(frozen=True, slots=True)
+class EarlyPassing:
+    """A zone that a CAV passes before one that precedes it in the order: it is out of that one's way in time."""
+
+    first: str  # Who passes the zone first, which comes later in the order
+    second: str
+    entries: tuple[float, float]  # Where the zone begins on the route of each [m]
+
+
+@dataclass(frozen=True, slots=True)
 class Joint:
     """What all CAVs do in one order."""
 
@@ -35,7 +44,8 @@ class JointPlans(JointPlanner):
     """The plans of one moment.
 
     Args:
-        checked: How human drivers are minded; None for where they are likely to be (`minds_humans`).
+        humans: How human drivers are minded; None for where they are likely to be (`minds_humans`).
+        kept: Who means to pass which zone before one that precedes it, since a step ago.
 
     Attributes:
         plans: Every plan that a CAV may follow, before the one that it planned a step ago.
@@ -51,8 +61,9 @@ class JointPlans(JointPlanner):
         pad: float,
         headway: float,
         humans: CheckedHumans | None = None,
+        kept: Collection[EarlyPassing] = (),
     ) -> None:
-        self.moment, self.pad, self.humans = moment, pad, humans
+        self.moment, self.pad, self.humans, self._kept = moment, pad, humans, kept
         self.vehicles = {name: known[name] for name, known in sorted(moment.vehicles.items())}
         sample = moment.forecast.sample
         self._lag, self._following = round(margin / sample), round(min(margin, headway) / sample)
@@ -71,6 +82,7 @@ class JointPlans(JointPlanner):
         if moment.forecast.model.steady:
             self.gains = {name: gained - self._price(name) for name, gained in self.gains.items()}
         self._met: dict[tuple[str, str], list[Meeting]] = {}
+        self._open: dict[tuple[str, str], list[Meeting]] = {}
         self._pairs: dict[tuple[str, int, str], Steps] = {}
         self._joint: dict[tuple[object, ...], Joint] = {}
         self._towards: dict[tuple[object, ...], Steps] = {}
@@ -113,6 +125,19 @@ class JointPlans(JointPlanner):
             self._joint[order, held, firsts] = self._plan(order, dict(held), agreed)
         return self._joint[order, held, firsts]
 
+    def rescued(
+        self, sequence: Sequence[str], not_before: Mapping[str, float] | None = None, times: Mapping[str, float] = {}
+    ) -> Joint:
+        """Plan all CAVs as `joint` does; those for which no plan is left go first where that leaves fewer of them."""
+        best = joint = self.joint(sequence, not_before, times)
+        raised: list[str] = []
+        while joint.stuck and len(raised) < len(joint.chosen):
+            others = [name for name in best.chosen if name not in raised]
+            raised += [name for name in joint.stuck if name in others] or others[:1]
+            joint = self.joint([*raised, *(name for name in others if name not in raised)], not_before, times)
+            best = min(best, joint, key=lambda found: len(found.stuck))
+        return best
+
     def _plan(self, order: Sequence[str], held: Mapping[str, float], agreed: PassingOrder | None) -> Joint:
         chosen: dict[str, int] = {}
         works: dict[str, Flags] = {}
@@ -120,7 +145,7 @@ class JointPlans(JointPlanner):
         gains: dict[str, Array] = {}
         stuck = []
         for name in order:
-            steps = self._violations_alone(name)
+            steps = np.minimum(self._violations_alone(name), self._lets_pass(name, chosen))
             if name in held:
                 steps = np.minimum(steps, self._too_early(name, held[name]))
             for other, k in chosen.items():
@@ -135,6 +160,17 @@ class JointPlans(JointPlanner):
             if not works[name].any():
                 stuck.append(name)
         return Joint(chosen, works, tuple(stuck), until, gains)
+
+    def _lets_pass(self, name: str, planned: Collection[str]) -> Steps:
+        """When each plan of a CAV first comes too close to one that means to pass before it and is planned later."""
+        found: Steps = np.full(len(self.travels[name]), self.travels[name].shape[1])
+        for passage in self._kept:
+            if passage.second == name and passage.first in self._continued and passage.first not in planned:
+                for meeting in self.open_meetings(passage.first, name):
+                    if meeting.is_at(passage.entries):
+                        goes_on = self.travels[passage.first][-1]
+                        found = np.minimum(found, meeting.steps(self.travels[name], goes_on))
+        return found
 
     def _choose(self, name: str, steps: Steps, gains: Array) -> int:
         """Return the plan that is worth most of those that work."""
@@ -219,29 +255,54 @@ class JointPlans(JointPlanner):
         if key not in self._pairs:
             found: Steps = np.full(len(self.travels[second]), self.travels[second].shape[1])
             for meeting in meetings:
-                found = np.minimum(found, meeting.steps(self.travels[second], self.travels[first][k]))
+                steps = meeting.steps(self.travels[second], self.travels[first][k])
+                if self.moment.by_zone and meeting in self.open_meetings(first, second):
+                    steps = np.maximum(steps, meeting.steps_ahead(self.travels[second], self.travels[first][k]))
+                found = np.minimum(found, steps)
             self._pairs[key] = found
         return self._pairs[key]
 
     def meetings(self, first: str, second: str) -> list[Meeting]:
         """Where one CAV has to mind another one that has been planned before it."""
         if (first, second) not in self._met:
-            ego, other, zones = self.vehicles[second], self.vehicles[first], self.moment.road_map.zones
+            ego, other = self.vehicles[second], self.vehicles[first]
             found = meetings_behind(self.moment, ego, other, self._lag, self._following, self.pad)
+            self._met[first, second] = found + self.open_meetings(first, second)
+        return self._met[first, second]
+
+    def open_meetings(self, first: str, second: str) -> list[Meeting]:
+        """Where it is open which of two CAVs goes first."""
+        if (first, second) not in self._open:
+            ego, other, zones = self.vehicles[second], self.vehicles[first], self.moment.road_map.zones
             n, (route, place) = self.moment.forecast.steps + 1, ego.routes[0]
+            found = self._open[first, second] = []
             for way, there in other.routes:
                 for zone in zones(route, way):
                     if is_open(zone, place, there) and not is_behind(zone, place, there):
                         sizes = ((zone,), *(zones(route, way, size) for size in SIZES[1:]))
                         found.append(Meeting(sizes, place, there, n, self._lag, self.pad))
-            self._met[first, second] = found
-        return self._met[first, second]
+        return self._open[first, second]
+
+    def passages(self, joint: Joint) -> list[EarlyPassing]:
+        """Return every zone that a CAV passes before one that was planned before it."""
+        found, names = list[EarlyPassing](), list(joint.chosen)
+        for k, name in enumerate(names):
+            mine = self.travels[name][joint.chosen[name]]
+            for other in names[:k]:
+                theirs = self.travels[other][joint.chosen[other]]
+                found += [
+                    EarlyPassing(name, other, meeting.entries)
+                    for meeting in self.open_meetings(other, name)
+                    if meeting.steps(mine[None], theirs)[0] < len(mine) <= meeting.steps_ahead(mine[None], theirs)[0]
+                ]
+        return found
 
     def plan(self, order: Sequence[str]) -> JointPlan:
         """Return what all CAVs would do."""
         joint = self.joint(order)
         travels = {name: self.travels[name][k] for name, k in joint.chosen.items()}
-        return JointPlan(not joint.stuck, travels, self.moment.forecast.sample, len(joint.stuck))
+        worth = sum(float(joint.gains[name][k]) for name, k in joint.chosen.items())
+        return JointPlan(not joint.stuck, travels, self.moment.forecast.sample, len(joint.stuck), worth)
 
     def gap_time(self, plan: JointPlan, one: str, other: str) -> float:
         """Return the least time between one vehicle's leaving a shared zone and the other's entering it."""

@@ -8,7 +8,7 @@ from typing import Literal, get_args
 from codriving.datatypes import Action, OrderExecutor
 from codriving.errors import require, require_range
 from codriving.reasoning.execution.checked_humans import CheckedHumans
-from codriving.reasoning.execution.joint_planner import Joint, JointPlans
+from codriving.reasoning.execution.joint_planner import EarlyPassing, Joint, JointPlans
 from codriving.reasoning.ordering.problem import pose
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
 from codriving.reasoning.perception import Moment
@@ -40,6 +40,7 @@ class Executor(OrderExecutor, ABC):
     variant: str = ""  # What tells it from its default settings, in tables
     gap: float  # Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s]
     margin: float  # The same for motions, and for the gap test of lane changes [s]
+    by_zone: bool = False  # Whether a CAV may pass a zone before one that precedes it in the order
     library: tuple[Plan, ...] = ()  # Plans that it uses besides those that all methods predict
 
     def reset(self) -> None:
@@ -67,8 +68,9 @@ def humans_expected(moment: Moment) -> dict[str, tuple[Expected, ...]]:
 class Planned(Executor):
     """Prioritised planning over a library of plans, in passing order.
 
-    The motions of those that go first are known exactly, so that the others enter gaps at speed. What each planned a
-    step ago is among its plans of the next step, so that CAVs alone never lose a plan that works.
+    The motions of those that are planned first are known exactly, so that the others enter gaps at speed: by zone, each
+    passes after them or, where it is out of their way in time, before them. What each planned a step ago is among its
+    plans of the next step; those that meant to be passed let pass.
     """
 
     name = "planned"
@@ -81,39 +83,45 @@ class Planned(Executor):
         headway: float,
         humans: Humans = "planned",
         human_margin: float = 1.5,
+        by_zone: bool = True,
     ) -> None:
         settings = {"gap": gap, "margin": margin, "pad": pad, "headway": headway, "human_margin": human_margin}
         for key, value in settings.items():
             require_range(key, value, 0, 5)
         require(humans in get_args(Humans), f"humans must be planned or checked, got {humans}")
         self.gap, self.margin, self.pad, self.headway = gap, margin, pad, headway
-        self.humans, self.human_margin = humans, human_margin
-        self.variant = "" if humans == "planned" else f"humans={humans}"
+        self.humans, self.human_margin, self.by_zone = humans, human_margin, by_zone
+        told = [f"humans={humans}"] * (humans != "planned") + ["by_zone=false"] * (not by_zone)
+        self.variant = ",".join(told)
         self.reset()
 
     def reset(self) -> None:
         """Begin an episode; nothing is remembered from the one before."""
         self._before: dict[str, Plan] = {}
         self._plans: JointPlans | None = None
+        self._kept: list[EarlyPassing] = []
 
     def planner(self, moment: Moment) -> JointPlans:
         """Return what plans all CAVs in an order."""
         if self._plans is None or self._plans.moment is not moment:
             checked = self.humans == "checked"
             humans = CheckedHumans(moment, pose(moment, self.gap), self.human_margin) if checked else None
-            self._plans = JointPlans(moment, self._before, self.margin, self.pad, self.headway, humans)
+            margins = self.margin, self.pad, self.headway
+            self._plans = JointPlans(moment, self._before, *margins, humans, self._kept)
         return self._plans
 
     def drive(self, moment: Moment, ordering: Ordering) -> Drive:
         """Return the first action of each CAV's plan."""
         plans = self.planner(moment)
-        joint = plans.joint(ordering.sequence, ordering.not_before, ordering.times)
+        plan = plans.rescued if self.by_zone else plans.joint
+        joint = plan(ordering.sequence, ordering.not_before, ordering.times)
         decided = {}
         if plans.humans is not None:
             agreed = plans.humans.order(ordering.sequence, ordering.times)
             decided = plans.humans.decide(agreed, plans.expected(joint), round(self.margin / moment.forecast.sample))
             joint = plans.beginning(joint, {name: decision.action for name, (decision, _) in decided.items()})
         self._before = {name: plans.plan_of(name, k)[1:] or plans.plan_of(name, k) for name, k in joint.chosen.items()}
+        self._kept = plans.passages(joint) if self.by_zone else []
         drive = drive_of(moment, plans, joint, ordering)
         reasons = {name: decision.reason for name, (decision, _) in decided.items()}
         removed = {name: {a.action: a.reasons for a in each if not a.safe} for name, (_, each) in decided.items()}

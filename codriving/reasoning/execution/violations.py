@@ -17,6 +17,8 @@ from codriving.reasoning.safety.conflict_lane import BODY
 # Sizes of vehicles for planning; a smaller one is taken where vehicles are already closer together than the larger.
 SIZES: tuple[Footprint, ...] = (PLANNING, BODY, TRUE)
 
+SAME = 0.5  # Zones that begin no farther apart than this are the same, seen from either route [m]
+
 ROOM = 0.5  # Room that a driver who gives way leaves to the zone [m]
 
 
@@ -62,6 +64,22 @@ class Meeting:
             halted = halts_behind(zones[0], self.place + travels, self.there + first, self.halts)
             found = np.where(halted, found, np.minimum(found, n - 1))
         return found
+
+    @property
+    def entries(self) -> tuple[float, float]:
+        """Where it begins on the route of the one that goes second, and on that of the one that goes first [m]."""
+        return self.zones[0][0].entry_i, self.zones[0][0].entry_j
+
+    def is_at(self, entries: tuple[float, float]) -> bool:
+        """Whether it is the stretch that begins there, seen from the other vehicle: first its own route [m]."""
+        return all(abs(mine - theirs) < SAME for mine, theirs in zip(self.entries, entries[::-1], strict=True))
+
+    def steps_ahead(self, travels: Array, first: Array) -> Steps:
+        """Return when each plan (plans, n) [m] is first in the way of the other one (n,) [m] if it goes before it."""
+        zone, lag = self.zones[0][0], self.lag
+        mine = self.place + travels
+        earlier = np.concatenate([np.repeat(mine[:, :1], lag, axis=1), mine[:, : mine.shape[1] - lag]], axis=1)
+        return first_true(earlier <= zone.front(self.there + first) + self.pad)
 
 
 def meetings_behind(

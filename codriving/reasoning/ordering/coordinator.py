@@ -63,7 +63,7 @@ class RuleCoordinator(Coordinator):
             held = {second for first, second in instance.before if first in waiting}
             options = []
             for vehicle in [s for s in waiting.values() if s.id not in held] or list(waiting.values()):
-                time = start_time(vehicle, times, instance.separation)
+                time = start_time(instance, vehicle.id, times)
                 rivals = [k for k in waiting if (k, vehicle.id) in instance.separation]
                 handicap = TURN_YIELDS if vehicle.turning else 0.0
                 if self.previous is not None and any(self.previous.first_of(k, vehicle.id) == k for k in rivals):

@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import isfinite
 
 from codriving.datatypes import Instance
 from codriving.errors import require_range
@@ -20,6 +20,8 @@ from codriving.reasoning.ordering.schedule import (
     timed,
 )
 from codriving.reasoning.ordering.tickets import TicketBook, reasons
+
+PACE = 5.0  # What a second of hysteresis counts as in plans [m/s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +68,11 @@ class SearchedOrder(OrderRule):
         problem = Coded(instance, self.objective)
         found = self.search(problem, seeds)
         order, keeps = found.order, False
-        if kept is not None and problem.cost(problem.run(kept)) <= found.cost + self.hysteresis:
+        if instance.zones:
+            # The schedule is a model: here, of the orders that it leads to, the plans say which one is the best.
+            order = self._best_driven(planner, [order, *map(tuple, seeds)], kept)
+            keeps = kept is not None and order == tuple(kept) and order != found.order
+        elif kept is not None and problem.cost(problem.run(kept)) <= found.cost + self.hysteresis:
             order, keeps = tuple(kept), tuple(kept) != found.order
         self.previous = order
         times = timed(instance, order)
@@ -74,12 +80,24 @@ class SearchedOrder(OrderRule):
         def reason(one: str, other: str) -> str:
             passes = f"{one} passes in {times[one]:.1f} s and {other} in {times[other]:.1f} s"
             if keeps:
-                return f"{passes} in the order kept from before, since no other one saves enough time"
+                return f"{passes} in the order kept from before, since no other one is enough better"
             which = "of all orders" if found.complete else f"of {found.tried} orders tried"
             return f"{passes} in the one that costs all together least time {which}"
 
         counts = {"orders_tried": found.tried, "all_orders_tried": int(found.complete), "order_kept": int(keeps)}
         return Ordering(order, times, reasons(instance, order, reason), counts)
+
+    def _best_driven(
+        self, planner: JointPlanner, orders: Sequence[tuple[str, ...]], kept: Sequence[str] | None
+    ) -> tuple[str, ...]:
+        """Return the order with which CAVs get farthest by the plans that the executor makes of it."""
+
+        def standing(order: tuple[str, ...]) -> tuple[int, float]:
+            plan = planner.plan(order)
+            is_kept = kept is not None and order == tuple(kept)
+            return -plan.stuck, plan.worth + (PACE * self.hysteresis if is_kept else 0.0)
+
+        return max(dict.fromkeys(orders), key=standing)
 
     @abstractmethod
     def search(self, problem: "Coded", seeds: Sequence[Sequence[str]]) -> Found:
@@ -93,13 +111,15 @@ class Prefix:
     order: list[int]
     waiting: list[int]
     mask: int
-    earliest: list[float]  # When each vehicle can pass at the earliest after those placed, by number [s]
+    earliest: list[float]  # When each vehicle can pass at the earliest given those placed, by number [s]
     delay: float  # Weighted delay of those placed [s]
     finish: float  # When the last of those placed has left its zones [s]
+    shut: list[list[tuple[float, float]]]  # When each vehicle must not pass, by number [s]
 
     def copy(self) -> "Prefix":
         """Return a prefix of its own."""
-        return Prefix(self.order[:], self.waiting[:], self.mask, self.earliest[:], self.delay, self.finish)
+        shut = [spans[:] for spans in self.shut]
+        return Prefix(self.order[:], self.waiting[:], self.mask, self.earliest[:], self.delay, self.finish, shut)
 
 
 class Coded:
@@ -120,31 +140,33 @@ class Coded:
         self._share = objective.evacuation_weight
         self._held = [0] * len(self.names)
         self._followers: list[list[tuple[int, float]]] = [[] for _ in self.names]
+        self._either: list[list[tuple[int, tuple[tuple[float, float], ...]]]] = [[] for _ in self.names]
         for first, second in instance.before:
             if first in self._number and second in self._number:
                 self._held[self._number[second]] |= 1 << self._number[first]
         for (first, second), apart in instance.separation.items():
             if first in self._number and second in self._number:
-                self._followers[self._number[first]].append((self._number[second], apart))
+                k, j = self._number[first], self._number[second]
+                if (first, second) in instance.zones:
+                    self._either[k].append((j, instance.zones[first, second]))
+                else:
+                    self._followers[k].append((j, apart))
 
     def root(self) -> Prefix:
         """Return the empty prefix."""
         finish = max((left(e, e.eta) for e in self._entrants), default=0.0)
-        return Prefix([], list(range(len(self.names))), (1 << len(self.names)) - 1, list(self.eta), 0.0, finish)
+        earliest = [after_windows(eta, spans) for eta, spans in zip(self.eta, self._windows, strict=True)]
+        count, shut = len(self.names), [list(spans) for spans in self._windows]
+        return Prefix([], list(range(count)), (1 << count) - 1, earliest, 0.0, finish, shut)
 
     def candidates(self, prefix: Prefix) -> list[int]:
         """Return the vehicles that can be next: those that no waiting one precedes, and all if there are none."""
         held, mask = self._held, prefix.mask
         return [k for k in prefix.waiting if not held[k] & mask] or prefix.waiting[:]
 
-    def start(self, prefix: Prefix, number: int) -> float:
-        """Return when a vehicle can pass at the earliest after those placed [s]."""
-        windows = self._windows[number]
-        return after_windows(prefix.earliest[number], windows) if windows else prefix.earliest[number]
-
     def place(self, prefix: Prefix, number: int) -> None:
         """Let a vehicle be the next one of an order."""
-        earliest, time = prefix.earliest, self.start(prefix, number)
+        earliest, shut, time = prefix.earliest, prefix.shut, prefix.earliest[number]
         prefix.order.append(number)
         prefix.waiting.remove(number)
         prefix.mask ^= 1 << number
@@ -153,41 +175,36 @@ class Coded:
         if self._share:
             prefix.finish = max(prefix.finish, left(self._entrants[number], time))
         for other, apart in self._followers[number]:
-            if time + apart > earliest[other]:
-                earliest[other] = time + apart
+            if time + apart > earliest[other] and prefix.mask >> other & 1:
+                earliest[other] = after_windows(time + apart, shut[other])
+        for other, spans in self._either[number]:
+            if prefix.mask >> other & 1:
+                closed, now = shut[other], earliest[other]
+                hit = False
+                for before, after in spans:
+                    closed.append((time - before, time + after))
+                    hit = hit or time - before < now < time + after
+                if hit:
+                    earliest[other] = after_windows(now, closed)
 
     def complete(self, prefix: Prefix, heuristic: float, draw: Callable[[], float]) -> tuple[Prefix, list[int]]:
         """Complete an order by chance and rule of thumb; most of the time of a search is spent here."""
-        held, followers, windows, eta = self._held, self._followers, self._windows, self.eta
-        base, weights, share = self._base, self._weights, self._share
-        earliest, order, waiting, mask = prefix.earliest[:], prefix.order[:], prefix.waiting[:], prefix.mask
-        delay, finish, chosen = prefix.delay, prefix.finish, []
+        whole, held, eta = prefix.copy(), self._held, self.eta
+        earliest, waiting, place, chosen = whole.earliest, whole.waiting, self.place, list[int]()
         while waiting:
+            mask = whole.mask
             options = [k for k in waiting if not held[k] & mask] or waiting
             number = options[0]
             if len(options) > 1:
                 if draw() < heuristic:
-                    first = inf
                     for k in options:
-                        time = after_windows(earliest[k], windows[k]) if windows[k] else earliest[k]
-                        if time < first or (time == first and eta[k] < eta[number]):
-                            number, first = k, time
+                        if earliest[k] < earliest[number] or (earliest[k] == earliest[number] and eta[k] < eta[number]):
+                            number = k
                 else:
                     number = options[int(draw() * len(options))]
                 chosen.append(number)
-            time = after_windows(earliest[number], windows[number]) if windows[number] else earliest[number]
-            order.append(number)
-            waiting.remove(number)
-            mask ^= 1 << number
-            late = time - base[number]
-            if late > 0:
-                delay += weights[number] * (late if late < LONGEST_WAIT else LONGEST_WAIT)
-            if share:
-                finish = max(finish, left(self._entrants[number], time))
-            for other, apart in followers[number]:
-                if time + apart > earliest[other]:
-                    earliest[other] = time + apart
-        return Prefix(order, waiting, mask, earliest, delay, finish), chosen
+            place(whole, number)
+        return whole, chosen
 
     def cost(self, prefix: Prefix) -> float:
         """Return J of those placed [s]; it only grows with the order."""

@@ -53,11 +53,13 @@ def pose(moment: Moment, gap: float = GAP) -> Problem:
         gap: Time between one vehicle's leaving a zone and the next one's entering it [s].
     """
     vehicles = {ego: _approaching(moment, ego) for ego in sorted(moment.scenes) if moment.conflicts[ego]}
-    separation = _separations(moment, vehicles, gap)
+    separation, each = _separations(moment, vehicles, gap)
     _add_leaders(moment, vehicles, separation)
     passages = {ego: _add_windows(moment, vehicle) for ego, vehicle in vehicles.items()}
     before, approaches = frozenset(_fixed(moment, vehicles)), _approaches(moment, vehicles)
-    return Problem(Instance(moment.time, vehicles, separation, before, approaches), passages)
+    bound = {pair for one, other in before for pair in ((one, other), (other, one))}
+    zones = {pair: spans for pair, spans in each.items() if pair not in bound} if moment.by_zone else {}
+    return Problem(Instance(moment.time, vehicles, separation, before, approaches, zones), passages)
 
 
 def _approaching(moment: Moment, ego: str) -> ApproachingVehicle:
@@ -101,19 +103,27 @@ def _approaches(moment: Moment, vehicles: Mapping[str, ApproachingVehicle]) -> d
     return found
 
 
-def _separations(moment: Moment, vehicles: Mapping[str, ApproachingVehicle], gap: float) -> dict[Pair, float]:
+def _separations(
+    moment: Moment, vehicles: Mapping[str, ApproachingVehicle], gap: float
+) -> tuple[dict[Pair, float], dict[Pair, tuple[tuple[float, float], ...]]]:
+    """Return the times between the vehicles of each pair: the longest of all zones, and those of each zone [s]."""
     found: dict[Pair, float] = {}
+    each: dict[Pair, tuple[tuple[float, float], ...]] = {}
     for ego in vehicles:
         for c in moment.conflicts[ego]:
             if c.other not in vehicles:
                 continue
             zone = moment.road_map.zones(*c.routes)[c.zone]
+            both = []
             for pair, first in (((ego, c.other), True), ((c.other, ego), False)):
                 shift = vehicles[pair[1]].reference - vehicles[pair[0]].reference
                 way = (c.routes[0], zone.entry_i) if first else (c.routes[1], zone.entry_j)
                 needed = moment.forecast.duration(way, lag_length(zone, first) + shift) + gap
                 found[pair] = max(needed, found.get(pair, needed))
-    return found
+                both.append(needed)
+            after, before = both
+            each[ego, c.other] = (*each.get((ego, c.other), ()), (before, after))
+    return found, each
 
 
 @lru_cache(maxsize=4096)

@@ -71,6 +71,7 @@ class JointPlan:
     travels: Mapping[str, NDArray[np.float64]]  # Distance of each CAV over time, by id; each (steps + 1,) [m]
     sample: float  # Time between two samples [s]
     stuck: int = 0
+    worth: float = 0.0  # What the plans are worth together: roughly the distance within the horizon [m]
 
     def speed(self, name: str) -> NDArray[np.float64]:
         """Return the speed of a CAV over time (steps + 1,) [m/s]."""

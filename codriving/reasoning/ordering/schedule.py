@@ -4,17 +4,21 @@ from collections.abc import Mapping, Sequence
 from itertools import combinations
 from math import isfinite
 
-from codriving.datatypes import ApproachingVehicle, Instance, Pair
+from codriving.datatypes import ApproachingVehicle, Instance
 from codriving.errors import require_range
 
 Times = Mapping[str, float]  # When each vehicle passes its reference point, in the order in which they go [s]
 
 
-def start_time(vehicle: ApproachingVehicle, earlier: Times, separation: Mapping[Pair, float]) -> float:
-    """Return the earliest time at which a vehicle can pass its reference point after those already scheduled [s]."""
-    name = vehicle.id
-    time = max([vehicle.eta] + [t + separation[k, name] for k, t in earlier.items() if (k, name) in separation])
-    return after_windows(time, vehicle.windows)
+def start_time(instance: Instance, name: str, earlier: Times) -> float:
+    """Return the earliest time at which a vehicle can pass its reference point, given those already scheduled [s].
+
+    It passes after them, or before them where the instance leaves it open at each zone who is first.
+    """
+    vehicle, separation, zones = instance.vehicles[name], instance.separation, instance.zones
+    after = [t + separation[k, name] for k, t in earlier.items() if (k, name) in separation and (k, name) not in zones]
+    shut = [(t - b, t + a) for k, t in earlier.items() for b, a in zones.get((k, name), ())]
+    return after_windows(max([vehicle.eta, *after]), [*vehicle.windows, *shut])
 
 
 def after_windows(time: float, windows: Sequence[tuple[float, float]]) -> float:
@@ -73,7 +77,7 @@ def timed(instance: Instance, order: Sequence[str]) -> dict[str, float]:
     """
     times: dict[str, float] = {}
     for name in order:
-        times[name] = start_time(instance.vehicles[name], times, instance.separation)
+        times[name] = start_time(instance, name, times)
     return times
 
 
@@ -138,6 +142,8 @@ def earliest_slot(instance: Instance, name: str, scheduled: Times) -> float:
             continue
         if (other, name) in instance.before:
             time = max(time, at + apart)
+        elif (other, name) in instance.zones:
+            shut += [(at - before, at + after) for before, after in instance.zones[other, name]]
         else:
             shut.append((at - separation.get((name, other), 0.0), at + apart))
     return after_windows(time, shut)

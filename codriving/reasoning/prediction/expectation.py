@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from codriving.datatypes import Action, PassingOrder, TrackedVehicle
-from codriving.geometry import Array, ConflictZone, Flags, halts_behind, stays_behind
+from codriving.geometry import Array, ConflictZone, Flags, halts_behind, stays_ahead, stays_behind
 from codriving.reasoning.conflicts import has_joined, is_behind, is_open
 from codriving.reasoning.exits import full_exit
 from codriving.reasoning.perception import Moment
@@ -18,9 +18,9 @@ from codriving.reasoning.prediction.rollout import Plan, plan_library, starts_wi
 HEADWAY = 0.8
 
 
-# What a motion has to stay behind: the zone in which both meet, the places of the other one, the lag in samples, and
-# the time between two samples if it must be able to stop there, too [s].
-Bound = tuple[ConflictZone, Array, int, float]
+# What a motion has to stay behind: the zone in which both meet, the places of the other one, the lag in samples, the
+# time between two samples if it must be able to stop there, too [s], and whether it may as well be past before.
+Bound = tuple[ConflictZone, Array, int, float, bool]
 
 EARLY = 0.3  # Weight of the mean distance within the horizon against the distance at its end
 
@@ -207,8 +207,11 @@ def keeps_order(
 def _keeps(places: Array, bounds: Iterable[Bound]) -> Flags:
     """Whether motions stay behind others."""
     keeps: Flags = np.ones(len(places), dtype=np.bool_)
-    for zone, other, after, halts in bounds:
-        keeps &= stays_behind(zone, places, other[: places.shape[1]], after, 0.0)
+    for zone, other, after, halts, leads in bounds:
+        behind = stays_behind(zone, places, other[: places.shape[1]], after, 0.0)
+        if leads and not behind.all():
+            behind |= stays_ahead(zone, places, other[: places.shape[1]], after, 0.0)
+        keeps &= behind
         if halts:
             keeps &= halts_behind(zone, places, other[: places.shape[1]], halts)
     return keeps
@@ -242,7 +245,8 @@ def bounds_of(
                     keeps_lane = following and has_joined(zone, place)
                     after = min(lag, round(HEADWAY / forecast.sample)) if keeps_lane else lag
                     halts = forecast.sample if following and forecast.model.steady else 0.0
-                    yield zone, motion.places, after, halts
+                    leads = moment.by_zone and not following and vehicles[other].is_cav
+                    yield zone, motion.places, after, halts, leads
 
 
 def valued(moment: Moment, vehicle: TrackedVehicle, travels: Array) -> Array:

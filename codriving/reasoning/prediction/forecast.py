@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.datatypes import Action, DrivingModel
-from codriving.geometry import Array, RoadMap
-from codriving.reasoning.prediction.limited import Along, driven, fastest
+from codriving.geometry import Along, Array, RoadMap, accelerated, driven
 from codriving.reasoning.prediction.rollout import Plan, canonical, travelled
 
 HORIZON = 10.0  # How far ahead each vehicle is predicted [s]; a stop from top speed and a crossing both fit in
@@ -198,7 +197,7 @@ class Forecast:
             if self._limited:
                 most = driven((self._profiles[where[0]], where[1]), speed, legal, pedal, self.times)
             else:
-                most = fastest(speed, self.times, legal, pedal)
+                most = accelerated(speed, self.times, legal, pedal)
         if self.model.limits is None:
             return Reach(least, steady, most)
         astray = self._strays(least) + (self._across(least) if self._may_change else 0.0)

@@ -8,8 +8,7 @@ from math import nan
 import numpy as np
 
 from codriving.datatypes import Action, DrivingModel
-from codriving.geometry import Array
-from codriving.reasoning.prediction.limited import Along, limited
+from codriving.geometry import Along, Array, limited
 
 Plan = tuple[Action, ...]  # Actions, one a decision; the last one is repeated for ever
 

@@ -1,13 +1,16 @@
 """In which order each vehicle is planned."""
 
+from dataclasses import replace
+
+import pytest
 from driven import moment_of
 from hypothesis import given
 from hypothesis import strategies as st
-from worlds import Junction, car
+from worlds import Car, Junction, car
 
 from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import Kind
-from codriving.reasoning.execution.joint_planner import drives_ahead
+from codriving.datatypes.world import Action, Kind
+from codriving.reasoning.execution.joint_planner import EarlyPassing, Joint, JointPlans, drives_ahead
 from codriving.reasoning.prediction.expectation import planning_order
 
 NAMES = [f"CAV{k}" for k in range(1, 8)]
@@ -94,3 +97,59 @@ def test_who_drives_ahead(junction: Junction) -> None:
         {("CAV2", "CAV1")},
         {("CAV1", "CAV2")},
     ), "behind the junction they are"
+
+
+# The first of the order is far away, the second near: it is out of the way in time.
+FAR, NEAR = car("CAV1", "south-north", 30.0, 8.0), car("CAV2", "west-east", 85.0, 8.0)
+ORDER = ("CAV1", "CAV2")
+
+
+def plans(junction: Junction, *cars: Car, by_zone: bool, kept: tuple[EarlyPassing, ...] = ()) -> JointPlans:
+    """Plans of a moment in which CAV2 has planned to keep its speed."""
+    moment = replace(moment_of(junction.thoughts(*cars)), by_zone=by_zone)
+    return JointPlans(moment, {"CAV2": (Action.IDLE,)}, 0.6, 1.0, 0.8, None, kept)
+
+
+def first_actions(made: JointPlans, joint: Joint) -> list[Action]:
+    return [made.plan_of(name, joint.chosen[name])[0] for name in ORDER]
+
+
+def test_by_zone_a_cav_passes_before_one_that_precedes_it_if_it_is_out_of_its_way_in_time(junction: Junction) -> None:
+    one_order, by_zone = (plans(junction, FAR, NEAR, by_zone=by_zone) for by_zone in (False, True))
+    assert first_actions(one_order, one_order.joint(ORDER)) == [Action.FASTER, Action.SLOWER]
+    assert one_order.passages(one_order.joint(ORDER)) == []
+    joint = by_zone.joint(ORDER)
+    assert [by_zone.plan_of(name, joint.chosen[name]) for name in ORDER] == [(Action.FASTER,) * 2] * 2
+    assert joint.stuck == ()
+    (passage,) = by_zone.passages(joint)
+    assert (passage.first, passage.second) == ("CAV2", "CAV1")
+    assert passage.entries == pytest.approx((108.4, 104.4), abs=0.1)
+
+
+def test_by_zone_a_cav_that_is_not_out_of_the_way_in_time_waits_all_the_same(junction: Junction) -> None:
+    cars = car("CAV1", "south-north", 70.0, 8.0), car("CAV2", "west-east", 70.0, 8.0)
+    chosen = [plans(junction, *cars, by_zone=by_zone).joint(ORDER).chosen for by_zone in (False, True)]
+    assert chosen[0] == chosen[1]
+    assert chosen[1]["CAV2"] > 0
+
+
+def test_a_cav_that_precedes_lets_one_pass_that_means_to_pass_before_it(junction: Junction) -> None:
+    """CAV2 rolls on at 6 m/s, as it has planned: CAV1 could be there before it, and does not go."""
+    cars = car("CAV1", "south-north", 70.0, 8.0), car("CAV2", "west-east", 88.0, 6.0)
+    passage = EarlyPassing("CAV2", "CAV1", (108.4, 104.4))
+    free, bound = (plans(junction, *cars, by_zone=True, kept=kept) for kept in ((), (passage,)))
+    assert first_actions(free, free.joint(ORDER)) == [Action.FASTER, Action.SLOWER]
+    joint = bound.joint(ORDER)
+    assert first_actions(bound, joint) == [Action.SLOWER, Action.FASTER]
+    assert [(p.first, p.second) for p in bound.passages(joint)] == [("CAV2", "CAV1")]
+    assert joint.stuck == ()
+
+
+def test_a_cav_without_a_plan_goes_first_if_that_leaves_it_one(junction: Junction) -> None:
+    """CAV2 can no longer stop, so with CAV1 planned before it there is nothing that it could do."""
+    cars = car("CAV1", "south-north", 80.0, 8.0), car("CAV2", "west-east", 103.0, 8.0)
+    made = plans(junction, *cars, by_zone=False)
+    assert made.joint(ORDER).stuck == ("CAV2",)
+    assert made.rescued(ORDER).stuck == ()
+    lost = plans(junction, car("CAV1", "south-north", 96.0, 8.0), cars[1], by_zone=False)
+    assert lost.rescued(ORDER).stuck == ("CAV2",)

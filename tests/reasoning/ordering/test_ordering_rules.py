@@ -1,4 +1,4 @@
-"""The YAML of each ordering method builds its rule, with the values that the class itself has."""
+"""The YAML of each order builds its rule, with the values that the class itself has."""
 
 import inspect
 
@@ -8,12 +8,12 @@ import yaml
 from codriving.config.build import build
 from codriving.config.locate import conf_dir
 
-NAMES = ("fcfs", "idfst", "mcts", "bruteforce")
+NAMES = {"fcfs": "fcfs", "idfst": "idfst", "mcts": "mcts", "optimal": "bruteforce"}
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_yaml_builds_the_rule_of_its_name(name: str) -> None:
-    node = yaml.safe_load((conf_dir() / "method" / f"{name}.yaml").read_text(encoding="utf-8"))["rule"]
+@pytest.mark.parametrize(("file", "name"), NAMES.items())
+def test_yaml_builds_the_rule_of_its_name(file: str, name: str) -> None:
+    node = yaml.safe_load((conf_dir() / "order" / f"{file}.yaml").read_text(encoding="utf-8"))
     rule = build(node, object, "rule")
     assert rule.name == name
     assert rule.variant == ""

@@ -40,7 +40,7 @@ def problems(draw: st.DrawFn) -> tuple[dict[str, ApproachingVehicle], Separation
 def schedule(order: tuple[str, ...], slots: dict[str, ApproachingVehicle], separation: Separation) -> dict[str, float]:
     times: dict[str, float] = {}
     for name in order:
-        times[name] = start_time(slots[name], times, separation)
+        times[name] = start_time(Instance(0.0, slots, separation, set()), name, times)
     return times
 
 
@@ -51,7 +51,8 @@ def first(
     times: dict[str, float] = {}
     while len(times) < len(slots):
         ready = [n for n in slots if n not in times and all(a in times for a, b in fixed if b == n)]
-        time, name = min((start_time(slots[n], times, separation), n) for n in ready)
+        instance = Instance(0.0, slots, separation, set())
+        time, name = min((start_time(instance, n, times), n) for n in ready)
         times[name] = time
     return times
 

@@ -1,9 +1,11 @@
 """Slots between vehicles that are scheduled, as small tables with both sides of each bound."""
 
+from dataclasses import replace
+
 import pytest
 from instances import instance
 
-from codriving.reasoning.ordering.schedule import carried_over, earliest_slot, sequence
+from codriving.reasoning.ordering.schedule import carried_over, earliest_slot, sequence, start_time
 from codriving.reasoning.ordering.tickets import Ticket, in_turn
 
 Pairs = dict[tuple[str, str], float]
@@ -117,3 +119,23 @@ def test_an_order_is_brought_up_to_date(
 )
 def test_equal_tickets_are_told_apart_by_rank_and_name(tickets: list[tuple[float, int, str]], turn: str) -> None:
     assert "".join(t.id for t in in_turn([Ticket(*t) for t in tickets])) == turn
+
+
+@pytest.mark.parametrize(
+    ("eta", "time"),
+    [
+        # Zones that A and B share: at the first A must not pass from 3 to 4 s, at the second from 7 to 9 s.
+        (2.0, 2.0),  # A is first at both
+        (3.5, 4.0),
+        (5.0, 5.0),  # A is second at the first one, and first at the second one
+        (7.0, 7.0),
+        (7.5, 9.0),
+        (9.5, 9.5),  # A is second at both
+    ],
+)
+def test_zone_by_zone_either_may_be_first(eta: float, time: float) -> None:
+    separation = {AFTER: 4.0, BEFORE: 2.0}
+    problem = replace(instance({"A": eta, "B": 5.0}, separation), zones={AFTER: ((2.0, -1.0), (-2.0, 4.0))})
+    assert start_time(problem, "A", {"B": 5.0}) == time
+    assert earliest_slot(problem, "A", {"B": 5.0}) == time
+    assert start_time(instance({"A": eta, "B": 5.0}, separation), "A", {"B": 5.0}) == max(eta, 9.0)

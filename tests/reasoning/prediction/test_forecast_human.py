@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from codriving.geometry.limited import accelerated
 from codriving.reasoning.prediction.forecast import likely_distances, slowest
-from codriving.reasoning.prediction.limited import fastest
 
 DRIFT = (1.0, 0.75, 6.0)
 HARD_ACCELERATION = 1.5
@@ -18,14 +18,14 @@ SPEEDS = st.floats(0.0, 30.0)
 
 @given(SPEEDS, SPEEDS)
 def test_constant_speed_lies_between_the_bounds(speed: float, limit: float) -> None:
-    least, most = slowest(speed, TIMES, 6.0), fastest(speed, TIMES, limit, 1.5)
+    least, most = slowest(speed, TIMES, 6.0), accelerated(speed, TIMES, limit, 1.5)
     assert (least <= speed * TIMES + 1e-9).all()
     assert (most >= speed * TIMES - 1e-9).all()
 
 
 @given(SPEEDS, SPEEDS)
 def test_no_vehicle_drives_backwards_or_beyond_the_limit(speed: float, limit: float) -> None:
-    least, most = slowest(speed, TIMES, 6.0), fastest(speed, TIMES, limit, 1.5)
+    least, most = slowest(speed, TIMES, 6.0), accelerated(speed, TIMES, limit, 1.5)
     assert least[0] == most[0] == 0.0
     assert (np.diff(least) >= -1e-9).all()
     assert (np.diff(most) <= max(speed, limit) * np.diff(TIMES) + 1e-9).all()
@@ -42,7 +42,7 @@ def test_no_way_to_drive_leaves_the_bounds(speed: float, limit: float, pedals: l
         places.append(places[-1] + mean * dt)
         v = after
     assert (slowest(speed, TIMES, 6.0) <= np.array(places) + 1e-6).all()
-    assert (np.array(places) <= fastest(speed, TIMES, limit, 1.5) + 1e-6).all()
+    assert (np.array(places) <= accelerated(speed, TIMES, limit, 1.5) + 1e-6).all()
 
 
 @given(SPEEDS)
@@ -64,7 +64,7 @@ def test_what_is_likely_lies_within_what_is_possible_at_speed() -> None:
     least, most = likely_distances(15.0 * TIMES, TIMES)
     late = TIMES >= 2.0
     assert (slowest(15.0, TIMES, 6.0)[late] <= least[late]).all()
-    assert (most[late] <= fastest(15.0, TIMES, 21.0, 1.5)[late]).all()
+    assert (most[late] <= accelerated(15.0, TIMES, 21.0, 1.5)[late]).all()
 
 
 def test_braking_ends_at_rest() -> None:

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.road import Arc, Lane, Road, Route, Straight, Turn
 from codriving.datatypes.world import Action, DrivingModel
+from codriving.geometry.limited import accelerated, driven
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.prediction.forecast import Forecast
-from codriving.reasoning.prediction.limited import driven, fastest
 from codriving.reasoning.prediction.rollout import PLANS, rollout
 
 LIMITS = VehicleLimits(4.0, 8.0, 4.0, 3.0, 2.4)
@@ -126,7 +126,7 @@ def test_a_driver_is_expected_to_slow_down_for_the_curve() -> None:
 
 def test_a_free_road_is_driven_as_without_a_profile() -> None:
     times = np.linspace(0.0, 10.0, 51)
-    assert np.array_equal(driven((PROFILE, 180.0), 5.0, 16.0, 3.0, times), fastest(5.0, times, 16.0, 3.0))
+    assert np.array_equal(driven((PROFILE, 180.0), 5.0, 16.0, 3.0, times), accelerated(5.0, times, 16.0, 3.0))
 
 
 def test_samples_until_a_lane_is_left_follow_from_the_limits() -> None:

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from codriving.datatypes import DrivingModel, VehicleLimits
-from codriving.geometry import Array, SpeedProfile
+from codriving.geometry.clearance import Array
+from codriving.geometry.speed_profile import SpeedProfile
 
 Along = tuple[SpeedProfile, float]  # The speed profile of a route, and the arc length of a vehicle there [m]
 
@@ -131,7 +132,7 @@ def driven(along: Along, speed: float, most: float, pedal: float, times: Array) 
     wanted = max(speed, most)
     distance = wanted * float(times[-1])
     if profile.allows(wanted, place, distance):
-        return fastest(speed, times, most, pedal)
+        return accelerated(speed, times, most, pedal)
     count = int(distance / profile.spacing) + 3
     ahead = profile.spacing * np.arange(count)
     allowed = profile.kept(place, count)
@@ -147,7 +148,7 @@ def driven(along: Along, speed: float, most: float, pedal: float, times: Array) 
     return np.asarray(np.interp(times, elapsed, ahead))
 
 
-def fastest(speed: float, times: Array, limit: float, pedal: float) -> Array:
+def accelerated(speed: float, times: Array, limit: float, pedal: float) -> Array:
     """Distance of a driver who accelerates up to a limit on a straight road."""
     rising = np.minimum(times, max(limit - speed, 0.0) / pedal)
     return np.asarray(speed * times + pedal * rising**2 / 2 + pedal * rising * (times - rising))
