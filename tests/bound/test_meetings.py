@@ -56,6 +56,21 @@ def test_start_inside_a_zone_goes_first(world: Callable[..., BoundedWorld]) -> N
     assert found == [[None], [0], []]
 
 
+def test_goal_inside_a_zone_ends_it_since_who_has_arrived_is_gone(world: Callable[..., BoundedWorld]) -> None:
+    at = world("scenario=intersection")
+    cavs = [_passing(at, "CAV1", "south-north", 60), _passing(at, "CAV2", "east-north", 60)]
+    goals = [cav.route.goal for cav in cavs]
+    for meetings in (
+        list(sure_meetings(cavs, at.environment.road_map, 0.1)),
+        list(kept_meetings(cavs, at.environment.road_map, Margins())),
+    ):
+        rows = [row for meeting in meetings for row in meeting.rows_i]
+        # The second is still behind the first when that one is at its goal, and not told to be where that is gone.
+        assert max(a for _, a in rows) == pytest.approx(goals[0], abs=0.5)
+        assert max(a for _, a in rows) <= goals[0]
+        assert goals[1] - 8.0 < max(b for b, _ in rows) <= goals[1]
+
+
 def test_margins_are_kept_at_crossings_and_less_on_common_ways(world: Callable[..., BoundedWorld]) -> None:
     at = world("scenario=intersection")
     cavs = [_passing(at, "CAV1", "south-north", 60), _passing(at, "CAV2", "west-east", 60)]
