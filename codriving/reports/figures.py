@@ -38,6 +38,8 @@ Style: TypeAlias = tuple[str, str, str]
 # For methods that have none of their own, in turn.
 OTHERS: Sequence[Style] = (("#7a7a7a", "X", "-"), ("#7a1f5c", "<", "--"), ("#5c4a00", ">", "-."), ("#3b5b92", "h", ":"))
 
+ENTRY = 2.2  # Width of an entry of a legend [inches]
+
 # For the controls of learning, beside the most interactions.
 CONTROL_MARKS = {"verdicts": "x", "situations": "+", "rule": "d"}
 
@@ -163,7 +165,9 @@ def learning_figure(
 
 def saved(figure: "Figure", handles: Mapping[str, "Artist"], heading: str, name: str) -> Mapping[str, bytes]:
     """Give a figure with its legend and heading as PNG and SVG, by file name."""
-    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=min(4, len(handles) or 1))
+    # A narrow figure has no room for four names in a row.
+    columns = min(4, max(int(figure.get_figwidth() // ENTRY), 1), len(handles) or 1)
+    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=columns)
     figure.suptitle(heading, fontsize=11)
     kinds: dict[str, dict[str, str | None]] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
     found = {}
