@@ -52,8 +52,10 @@ def witness(world: BoundedWorld, seed: int, bound: Bound) -> Witness | None:
     """Look for a drive in the orders of a bound's timetable; human drivers are left out.
 
     Returns:
-        None if none was found: CAVs touch, wait for one another, or do not settle.
+        None if none was found: CAVs touch, wait for one another, or do not settle; or the bound has no timetable.
     """
+    if not bound.times:
+        return None
     road = LoneRoad(world.environment)
     starts = [cav.start for cav in world.cavs(seed)]
     searches = [_search(world, road, start) for start in starts]
