@@ -44,7 +44,7 @@ def test_the_error_keeps_its_class_and_cause() -> None:
 
 
 def test_an_ablated_cell_is_named_by_what_was_removed() -> None:
-    full, *_, unchecked = ablation_points(["scenario.cavs=4,8"])[7:]
+    full, *_, unchecked = ablation_points(["scenario.cavs=4,8", "controls=false"])[7:]
     assert cell_name(full) == "scenario.cavs=8"
     assert cell_name(unchecked) == "scenario.cavs=8 cda.safety_check=false"
     assert cell_name(ablation_points([])[0]) == "with nothing removed"
