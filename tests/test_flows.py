@@ -70,7 +70,7 @@ def test_stored_flows_are_scored_by_another_metric() -> None:
 
 def test_methods_are_compared_without_pairs(capsys: pytest.CaptureFixture[str]) -> None:
     tokens = [token for token in SHORT if not token.startswith("method")]
-    given = codriving.compare("single-vehicle", *tokens, "episodes=1", "launcher=serial", "run=c")
+    given = codriving.compare("single-vehicle", *tokens, "controls=false", "episodes=1", "launcher=serial", "run=c")
     assert list(given.table["method"]) == ["pidm", "noncoop_game", "ppo", "tell", "dilu-rule", "codriving"]
     assert (given.table["demand"] == given.table["demand"][0]).all(), "all are asked for the same"
     page = Path("outputs/compare-single-vehicle/c/comparison.md").read_text(encoding="utf-8")
