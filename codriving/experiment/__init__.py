@@ -4,6 +4,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from codriving.experiment.ablation import ABLATE
     from codriving.experiment.bounds import BoundOptions, run_bound
     from codriving.experiment.check import run_check
     from codriving.experiment.compare import Comparison, compare_frames, comparison_command
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
     from codriving.experiment.memory_build import BUILD
     from codriving.experiment.memory_pages import merge_page, search_page, show_page
     from codriving.experiment.replay import ReplayOptions, run_replay
-    from codriving.experiment.run import ABLATE, RUN, Results, run_command, run_frames
+    from codriving.experiment.run import RUN, Results, run_command, run_frames
 
 __all__ = [
     "ABLATE", "BUILD", "RUN", "BoundOptions", "Comparison", "ReplayOptions", "Results", "compare_frames",
@@ -20,6 +21,7 @@ __all__ = [
 ]  # fmt: skip
 
 _FILES = {
+    "ablation": ("ABLATE",),
     "bounds": ("BoundOptions", "run_bound"),
     "check": ("run_check",),
     "compare": ("Comparison", "compare_frames", "comparison_command"),
@@ -27,7 +29,7 @@ _FILES = {
     "memory_build": ("BUILD",),
     "memory_pages": ("merge_page", "search_page", "show_page"),
     "replay": ("ReplayOptions", "run_replay"),
-    "run": ("ABLATE", "RUN", "Results", "run_command", "run_frames"),
+    "run": ("RUN", "Results", "run_command", "run_frames"),
 }
 
 

@@ -192,7 +192,7 @@ def make_comparison(table: str, driven: Driven, bounded: bool = False) -> Output
     whole = comparison_table(rows, swept)
     pages, printed = [], []
     rows = as_orders(rows) if varied else rows
-    conditions = _conditions(rows, subject_of(rows) if varied else METHODS)
+    conditions = conditions_of(rows, subject_of(rows) if varied else METHODS)
     for condition, members in conditions:
         # One table a suite, which its title names.
         keys = tuple(key for key in swept if not condition.name or key != SUITE)
@@ -210,7 +210,7 @@ def make_comparison(table: str, driven: Driven, bounded: bool = False) -> Output
     return Outputs(files, tuple(printed), (whole,))
 
 
-def _conditions(rows: Sequence[Compared], subject: Subject) -> list[tuple[Condition, list[Compared]]]:
+def conditions_of(rows: Sequence[Compared], subject: Subject) -> list[tuple[Condition, list[Compared]]]:
     """Part the rows of a comparison by suite, if several were driven."""
     groups: dict[str, list[Compared]] = {}
     for row in rows:

@@ -106,6 +106,7 @@ class Outputs:
     files: Mapping[str, bytes] = field(default_factory=dict)  # Content by path below the run folder
     printed: tuple[PrintedTable, ...] = ()  # What is printed in place of the summary
     tables: tuple[Table, ...] = ()
+    below: bool = False  # Whether that is printed below the summary
 
     def write(self, folder: Path) -> None:
         """Write the files, each whole or not at all."""
@@ -134,7 +135,8 @@ class Finished:
     @property
     def printed(self) -> tuple[PrintedTable, ...]:
         """What is printed."""
-        return self.outputs.printed or (self.tables.printed,)
+        own = self.outputs.printed
+        return (self.tables.printed, *own) if self.outputs.below or not own else own
 
 
 def drive(

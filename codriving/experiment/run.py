@@ -2,38 +2,22 @@
 
 import shlex
 import sys
-from collections import defaultdict
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from codriving.config import Point, config_folder, expand, show
-from codriving.errors import ConfigError, ModelError
-from codriving.experiment.cells import Cell
-from codriving.experiment.controls import ablation_controls, split_controls
+from codriving.errors import ModelError
 from codriving.experiment.drive import Driven, Finished, HaltedError, Interrupted, Outputs, drive
 from codriving.experiment.plan import Plan, cell_name, composed, make_plan, validated
-from codriving.reports import REFERENCE, print_table
+from codriving.reports import print_table
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 STOPPED = 128  # Exit code of a process that a signal stopped, less the number of the signal
-
-# The readings of "each CAV generates its expected passing order"; all are reported, none is chosen afterwards.
-OWN_ORDERS = ("own_view", "same_rule", "independent")
-
-# What each cell of the ablation changes (paper, ablation study).
-REMOVALS: tuple[tuple[str, ...], ...] = (
-    (),
-    ("cda.state_sharing=false",),
-    ("cda.intent_sharing=false",),
-    # An order that was not negotiated cannot bind.
-    *(("cda.negotiation=false", "cda.binding=false", f"cda.own_order={order}") for order in OWN_ORDERS),
-    ("cda.safety_check=false",),
-)
 
 
 @dataclass(frozen=True)
@@ -105,33 +89,7 @@ def run_frames(*overrides: str, config_dir: str | Path | None = None) -> Results
     return Results(finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
 
 
-def ablation_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
-    """Take the sub-modules of the reasoning module out of each config in turn; then come the controls."""
-    wanted, overrides = split_controls(overrides, usual=True)
-    points = expand(overrides, config_dir)
-    base = () if any(token.lstrip("+").startswith("experiment=") for token in overrides) else ("experiment=ablate",)
-    rows = []
-    for p in points:
-        rows += [Point((*p.overrides, *removal), p.swept, removal) for removal in REMOVALS]
-        rows += ablation_controls(p, REFERENCE, config_dir) if wanted else []
-    return [replace(row, overrides=(*base, *row.overrides)) for row in rows]
-
-
-def _refuse_alike(plan: Plan) -> None:
-    """A method that does not reason has nothing to remove; its ablation would be one row many times over."""
-    together: defaultdict[tuple[str, ...], list[Cell]] = defaultdict(list)
-    for cell in plan.cells:
-        together[cell.labels.scenario, cell.labels.method, *cell.swept.values()].append(cell)
-    for cells in together.values():
-        if len(cells) > 1 and len({cell.labels for cell in cells}) == 1:
-            raise ConfigError(
-                f"method {cells[0].labels.method!r} has no reasoning sub-modules to remove; choose one that has, "
-                "method=codriving"
-            )
-
-
 RUN = Command("run", expand)
-ABLATE = Command("ablate", ablation_points, _refuse_alike)
 
 
 def print_configs(points: Sequence[Point], config_dir: Path | None = None) -> None:

@@ -178,6 +178,27 @@ def comparison_rows(block: Sequence[CellResults], methods: Sequence[str], paper:
     return _ranked(rows + [driven(cell) for cell in block if takes_place_of(cell) not in methods])
 
 
+def ablation_rows(block: Sequence[CellResults]) -> list[Compared]:
+    """Set each cell of one setting against the first one, which is the full method, in the order in which they come."""
+    full, *others = block
+    rows = [(full, None), *((cell, PairedCells(cell, full)) for cell in others)]
+    return [
+        Compared(cell.first.scenario, cell.first.method, DRIVEN, cell, None, cell.swept, pairs) for cell, pairs in rows
+    ]
+
+
+def ablation_table(rows: Sequence[Compared], swept: Sequence[str], subject: Subject) -> Table:
+    """Make the table of what is lost by each removal."""
+    columns: list[Column[Any]] = [
+        *status_columns(len({row.scenario for row in rows}) > 1),
+        *swept_columns(swept),
+        *(column.of(lambda row: row.cell) for column in CLEAN),
+        BY_KEY["success_rate"].of(lambda row: row.cell),
+        *(column.of(lambda row: row.pairs) for column in paired_columns(subject.reference, "") if column.csv),
+    ]
+    return table(columns, rows)
+
+
 def with_corrected(rows: Sequence[Compared]) -> list[Compared]:
     """Correct the tests of all rows of a comparison for their number."""
     found = iter(corrected([row.pairs for row in rows if row.pairs]))
@@ -312,7 +333,7 @@ def _level_notes(rows: Sequence[Compared], swept: Sequence[str], subject: Subjec
         for measure, known in rates.items():
             row, best = max(known, key=lambda pair: pair[1].difference or 0.0)
             where = _where(row, swept) if len(blocks) > 1 else ""
-            if not any(rate.pairs for _, rate in known):
+            if best.pairs < FEWEST:
                 continue
             if not best.difference or best.difference < 0:
                 notes.append(f"{measure}{where}: no row is above {subject.reference}.")

@@ -4,8 +4,8 @@ import pytest
 
 from codriving.config.sweep import Point, expand
 from codriving.errors import ConfigError
+from codriving.experiment.ablation import ablation_points
 from codriving.experiment.plan import cell_name, composed, make_plan, validated
-from codriving.experiment.run import ablation_points
 
 
 def refused(*tokens: str) -> str:

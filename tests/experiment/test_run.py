@@ -6,14 +6,13 @@ from pathlib import Path
 import pytest
 from toy_drive import LABELS
 from toy_plan import toy as toy_objects
-from toy_plan import toy_cell, toy_plan
+from toy_plan import toy_plan
 
 from codriving.errors import ConfigError
 from codriving.experiment import drive, run
 from codriving.experiment.cells import folder_name, make_cell
 from codriving.experiment.episode import Labels
 from codriving.experiment.objects import modules_to_preload
-from codriving.experiment.run import ablation_points
 
 
 @pytest.fixture
@@ -70,45 +69,6 @@ def test_python_gets_frames(toy: Callable[..., None], capsys: pytest.CaptureFixt
 def test_the_command_to_go_on_replaces_the_name_and_is_quoted(tmp_path: Path) -> None:
     command = run.resume_command("ablate", ["run=null", "a='x y'"], tmp_path, "2026-01-02_030405")
     assert command == f"""codriving ablate 'a='"'"'x y'"'"'' run=2026-01-02_030405 --config-dir {tmp_path}"""
-
-
-def test_the_ablation_removes_one_thing_at_a_time_under_three_readings() -> None:
-    variations = [point.overrides for point in ablation_points(["episodes=5", "controls=false"])]
-    assert variations[0] == ("experiment=ablate", "episodes=5")
-    assert [v[2] for v in variations[1:]] == [
-        "cda.state_sharing=false",
-        "cda.intent_sharing=false",
-        *["cda.negotiation=false"] * 3,
-        "cda.safety_check=false",
-    ]
-    assert [v[-1] for v in variations[3:6]] == [f"cda.own_order={o}" for o in ("own_view", "same_rule", "independent")]
-    assert ablation_points(["experiment=mine"])[0].overrides == ("experiment=mine",)
-
-
-def test_an_ablation_of_several_keeps_the_rows_of_each_together() -> None:
-    points = ablation_points(["scenario=intersection,merge"])
-    assert [point.swept["scenario"] for point in points] == ["intersection"] * 11 + ["merge"] * 11
-    assert points[11].removed == ()
-    assert points[12].removed == ("cda.state_sharing=false",)
-
-
-def test_an_ablation_ends_with_the_controls_of_codriving_in_its_settings() -> None:
-    given = ["method=codriving", "method.margin=1.2", "cda=agreement_seeking", "episodes=5"]
-    found = [point.overrides for point in ablation_points(given)][7:]
-    margin = ("method.margin=1.2",)
-    assert found == [
-        ("experiment=ablate", *kept, "cda=agreement_seeking", "episodes=5", f"method={name}")
-        for name, kept in (("fastest", margin), ("random_action", margin), ("random_order", margin), ("idm", ()))
-    ]
-    assert len(ablation_points(["method=fcfs"])) == 7, "they are controls of no other method"
-    assert len(ablation_points(["controls=false"])) == 7
-
-
-def test_a_method_without_sub_modules_cannot_be_ablated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    plan = toy_plan(tmp_path, cells=(toy_cell(a=1), toy_cell(a=2)))
-    monkeypatch.setattr(run, "make_plan", lambda points, config_dir: plan)
-    with pytest.raises(ConfigError, match="method 'steady' has no reasoning sub-modules"):
-        run.run_command(run.ABLATE, [])
 
 
 def test_folders_are_readable() -> None:
