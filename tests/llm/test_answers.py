@@ -166,7 +166,8 @@ assert all(answer.value for answer in chat.ask([question(k) for k in odd]))
 
 
 def test_odd_places_are_read_without_a_word_on_the_screen(server: Loopback) -> None:
-    path = os.pathsep.join((str(Path(__file__).parent), os.environ.get("PYTHONPATH", ""), str(ROOT)))
+    folders = Path(__file__).parent, ROOT / "tests", ROOT
+    path = os.pathsep.join((*map(str, folders), os.environ.get("PYTHONPATH", "")))
     command = [sys.executable, "-c", _ASKED_ALONE, server.url]
     done = subprocess.run(command, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
