@@ -1,15 +1,17 @@
 """``figures/profile.*``: success and clean success of every method in every suite of a comparison."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from codriving.reports.comparison import Compared
+from codriving.reports.comparison import Compared, setting_of
 from codriving.reports.figures import plain_settings, saved
 from codriving.reports.results import CellResults
 from codriving.reports.wording import title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+SUITE_KEY = "suite"  # Of what was swept, what the panels are named after
 
 _APART = 0.16  # By how much the marks of success and clean success stand apart, as a share of a row
 
@@ -19,7 +21,7 @@ _MARKS = (("success", "#000000", "o", True, -1), ("clean success", "#d55e00", "D
 
 @plain_settings()
 def profile_figure(suites: Sequence[tuple[str, Sequence[Compared]]], metrics: str) -> Mapping[str, bytes]:
-    """Draw a panel a suite, in it a row a method, with success and clean success and their Wilson 95 % intervals.
+    """Draw a panel a suite and setting, in it a row a method: success and clean success, Wilson 95 % intervals.
 
     Args:
         suites: Name of each suite, and the rows of its comparison.
@@ -29,7 +31,7 @@ def profile_figure(suites: Sequence[tuple[str, Sequence[Compared]]], metrics: st
     """
     from matplotlib.figure import Figure
 
-    driven = [(name, [row for row in rows if row.cell]) for name, rows in suites]
+    driven = list(_panels(suites))
     methods = list(dict.fromkeys(row.name for _, rows in driven for row in rows))
     figure = Figure(figsize=(1.9 + 1.5 * len(driven), 1.5 + 0.3 * len(methods)), layout="constrained")
     axes = figure.subplots(1, len(driven), sharey=True, squeeze=False)[0]
@@ -41,10 +43,26 @@ def profile_figure(suites: Sequence[tuple[str, Sequence[Compared]]], metrics: st
         axis.title.set_fontsize(9)
     axes[0].set_yticks(range(len(methods)), methods)
     axes[0].set_ylim(len(methods) - 0.5, -0.5)
-    figure.supxlabel("share of episodes [%], 95 % interval", fontsize=9)
     handles = {str(h.get_label()): h for axis in axes for h in axis.get_legend_handles_labels()[0]}
     reasoners = [row.cell.first.reasoner for _, rows in driven for row in rows if row.cell]
-    return saved(figure, handles, title("profile", (), reasoners, metrics), "profile")
+    # Below the panels it would lie under the legend.
+    heading = f"{title('profile', (), reasoners, metrics)}\nshare of episodes [%], 95 % interval"
+    return saved(figure, handles, heading, "profile")
+
+
+def _panels(suites: Sequence[tuple[str, Sequence[Compared]]]) -> Iterator[tuple[str, list[Compared]]]:
+    """Give the name and the driven rows of each panel: a block of a suite, of which there may be several."""
+    for name, rows in suites:
+        blocks: dict[tuple[object, ...], list[Compared]] = {}
+        for row in rows:
+            if row.cell:
+                blocks.setdefault(row.block, []).append(row)
+        scenarios = {row.scenario for row in rows}
+        for members in blocks.values():
+            first = members[0]
+            told = [first.scenario] if len(scenarios) > 1 else []
+            told += [f"{key}={value}" for key, value in setting_of(first.swept).items() if key != SUITE_KEY]
+            yield "\n".join([name, *(told if len(blocks) > 1 else [])]), members
 
 
 def _draw(axis: "Axes", place: int, cell: CellResults) -> None:

@@ -1,11 +1,16 @@
 """The figure of success and clean success of every method in every suite."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
+
+import pytest
+from matplotlib.figure import Figure
 
 from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.comparison import Compared
+from codriving.reports.figures import saved
 from codriving.reports.profile import profile_figure
 from codriving.reports.results import CellResults
 
@@ -38,3 +43,39 @@ def test_a_panel_a_suite_and_a_row_a_method_the_same_to_the_byte(make: Make) -> 
 def test_other_rates_make_another_figure(make: Make) -> None:
     one, two = (profile_figure([("a", [row(make, "fcfs", won, True)])], "standard")["profile.svg"] for won in (3, 2))
     assert one != two
+
+
+def drawn(monkeypatch: pytest.MonkeyPatch, suites: list[tuple[str, list[Compared]]]) -> Figure:
+    """Draw a profile and keep the figure."""
+    made: list[Figure] = []
+
+    def kept(figure: Figure, *others: Any) -> Mapping[str, bytes]:
+        made.append(figure)
+        return saved(figure, *others)
+
+    monkeypatch.setattr("codriving.reports.profile.saved", kept)
+    profile_figure(suites, "standard")
+    return made[0]
+
+
+def test_settings_of_a_suite_have_panels_of_their_own(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    one = row(make, "fcfs", 3, True)
+    loads = [replace(one, swept={"suite": "crowd", "scenario.cavs": n, "method_choice": "fcfs"}) for n in ("4", "8")]
+    roads = [replace(one, scenario=name, swept={"suite": "paper"}) for name in ("merge", "highway")]
+    figure = drawn(monkeypatch, [("blind", [one]), ("crowd", loads), ("paper", roads)])
+    panels = [axis.get_title() for axis in figure.axes]
+    assert panels == ["blind", "crowd\nscenario.cavs=4", "crowd\nscenario.cavs=8", "paper\nmerge", "paper\nhighway"]
+
+
+@pytest.mark.parametrize("suites", [2, 6])
+def test_nothing_lies_under_the_legend_and_nothing_is_cut(
+    make: Make, monkeypatch: pytest.MonkeyPatch, suites: int
+) -> None:
+    rows = [row(make, name, 3, True) for name in ("fcfs", "random_action control")]
+    figure = drawn(monkeypatch, [(f"suite {k}", rows) for k in range(suites)])
+    legend = figure.legends[0].get_window_extent()
+    texts = [text.get_window_extent() for text in figure.texts if text.get_text()]
+    boxes = [*texts, *(axis.get_tightbbox() for axis in figure.axes)]
+    assert not any(legend.overlaps(box) for box in boxes)
+    width, height = figure.bbox.size + 1
+    assert all(b.x0 >= -1 and b.y0 >= -1 and b.x1 <= width and b.y1 <= height for b in (legend, *boxes))
