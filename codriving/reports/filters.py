@@ -1,6 +1,6 @@
 """``filters.*``: each method with and without the safety check behind it, on the same seeds."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -29,6 +29,11 @@ class FilterRow:
     plain: CellResults
     filtered: CellResults | None = None  # None for a method that has the check itself, or gives no actions
     pairs: PairedCells | None = None
+
+    @property
+    def swept(self) -> Mapping[str, str]:
+        """What both cells were driven with."""
+        return self.plain.swept
 
     @property
     def check(self) -> str:
