@@ -7,7 +7,7 @@ from typing import Any
 from codriving.metrics import FEWEST, RESAMPLES
 from codriving.reports.columns import Column, Table, swept_columns, table
 from codriving.reports.episodes import number_columns
-from codriving.reports.pairs import PAIRED, PairedCells, corrected, p_text, paired_columns, points
+from codriving.reports.pairs import PAIRED, PairedCells, PairedRate, corrected, p_text, paired_columns, points
 from codriving.reports.paper import Paper, PaperRow
 from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.regret import HEAD, Above, above_columns, above_notes
@@ -56,7 +56,8 @@ def paired_notes(subject: Subject) -> tuple[str, ...]:
         f"{RESAMPLES} resamples, where there are {FEWEST} pairs or more.",
         "Better or worse: p (Holm) below 0.05, or an interval without 0. Holm: corrected for the number of rows of the "
         "whole comparison, success and clean success each by itself; intervals are not corrected.",
-        "Level: at most 3 points below the other, and not shown to be worse.",
+        "Level: at most 3 points below the best that is no control, and not shown to be worse; of fewer than "
+        f"{FEWEST} pairs nothing is said.",
     )
 
 
@@ -319,29 +320,45 @@ def print_pairs(
 
 
 def _level_notes(rows: Sequence[Compared], swept: Sequence[str], subject: Subject) -> list[str]:
-    """Say of each block whether the reference is level with the best row in success and in clean success."""
+    """Say of each block whether the reference is level with the best method, and which controls are above it.
+
+    A control is not what the reference has to be level with: one of them is told what no vehicle can know.
+    """
     blocks: dict[tuple[object, ...], list[tuple[Compared, PairedCells]]] = {}
     for row in rows:
         if row.pairs:
             blocks.setdefault(row.block, []).append((row, row.pairs))
     notes = []
     for found in blocks.values():
-        rates = {
-            "Success": [(row, pairs.success) for row, pairs in found],
-            "Clean success": [(row, pairs.clean) for row, pairs in found],
-        }
-        for measure, known in rates.items():
-            row, best = max(known, key=lambda pair: pair[1].difference or 0.0)
-            where = _where(row, swept) if len(blocks) > 1 else ""
-            if best.pairs < FEWEST:
-                continue
-            if not best.difference or best.difference < 0:
-                notes.append(f"{measure}{where}: no row is above {subject.reference}.")
-                continue
-            is_level = "level" if best.level else "not level"
-            by = f"{points(best.difference)} points, p (Holm) = {p_text(best.corrected)}"
-            notes.append(f"{measure}{where}: {subject.reference} is {is_level} with the best row, {row.name} ({by}).")
+        where = _where(found[0][0], swept) if len(blocks) > 1 else ""
+        for measure in ("success", "clean"):
+            rates = [(row, getattr(pairs, measure)) for row, pairs in found]
+            name = "Success" if measure == "success" else "Clean success"
+            known = [(row, rate) for row, rate in rates if rate.pairs >= FEWEST]
+            said = (_best_method(known, subject), _better_controls(known, subject))
+            if any(said):
+                notes.append(f"{name}{where}: {' '.join(filter(None, said))}")
     return notes
+
+
+def _best_method(rates: Sequence[tuple[Compared, PairedRate]], subject: Subject) -> str:
+    methods = [(row, rate) for row, rate in rates if not row.is_control]
+    if not methods:
+        return ""
+    row, best = max(methods, key=lambda pair: pair[1].difference or 0.0)
+    if (best.difference or 0.0) <= 0:
+        return f"no {subject.row} is above {subject.reference}."
+    level = "level" if best.level else "not level"
+    return f"{subject.reference} is {level} with the best {subject.row}, {_by(row, best)}."
+
+
+def _better_controls(rates: Sequence[tuple[Compared, PairedRate]], subject: Subject) -> str:
+    above = [_by(row, rate) for row, rate in rates if row.is_control and (rate.difference or 0.0) > 0]
+    return f"Controls above {subject.reference}: {', '.join(above)}." if above else ""
+
+
+def _by(row: Compared, rate: PairedRate) -> str:
+    return f"{row.name} ({points(rate.difference)} points, p (Holm) = {p_text(rate.corrected)})"
 
 
 def _where(row: Compared, swept: Sequence[str]) -> str:

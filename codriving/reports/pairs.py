@@ -66,8 +66,11 @@ class PairedRate:
 
     @property
     def level(self) -> bool:
-        """Whether the reference is level with the method: at most 3 points lower, and not shown to be worse."""
-        return self.pairs > 0 and self.gained - self.lost <= LEVEL * self.pairs + 1e-9 and not self.shown(1)
+        """Whether the reference is level with the method: at most 3 points lower, and not shown to be worse.
+
+        Of few pairs it is not said.
+        """
+        return self.pairs >= FEWEST and self.gained - self.lost <= LEVEL * self.pairs + 1e-9 and not self.shown(1)
 
 
 @dataclass(frozen=True)

@@ -103,7 +103,7 @@ def test_who_beats_codriving_is_said_in_the_row_and_below_the_table(block: list[
     assert column_of(table, "success [points]") == ["0.0", "-8.3"]
     assert column_of(table, "alone: it / codriving") == ["0 / 0", "0 / 1"]
     assert table.notes[:3] == (
-        "Success: no row is above codriving.",
+        "Success: no method is above codriving.",
         "Better than codriving: fcfs in PET by +2.00 (+2.00 to +2.00) s - intersection.",
         PAIRED_NOTES[0],
     )

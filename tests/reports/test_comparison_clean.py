@@ -6,7 +6,7 @@ import pytest
 
 from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.columns import table
-from codriving.reports.comparison import Compared, comparison_rows, print_comparison, print_pairs
+from codriving.reports.comparison import Compared, comparison_rows, print_comparison, print_pairs, with_corrected
 from codriving.reports.load import load_rows, print_each_load
 from codriving.reports.pairs import PAIRED, PairedCells
 from codriving.reports.paper import Paper
@@ -65,6 +65,29 @@ def test_controls_stand_below_the_methods_however_good_they_are(make: Make) -> N
     shown = print_comparison(rows, "standard")
     assert column_of(shown, "method")[3:5] == ["x control", "y control/no_negotiation"]
     assert [row.last for row in shown.rows] == [False, False, True, False, True, False], "a group of their own"
+
+
+def test_codriving_has_to_be_level_with_methods_and_not_with_controls(make: Make) -> None:
+    def cell(name: str, variant: str, clean: int, driven: int = 40) -> CellResults:
+        return CellResults([make(k, method=name, variant=variant, clean=k < clean) for k in range(driven)])
+
+    gone = CellResults([make(k, Ending.ERROR, method="gone", variant="") for k in range(40)])
+    cells = [cell("codriving", "full", 30), cell("a", "", 31), cell("oracle", "control", 40), gone]
+    cells += [cell("idm", "control", 20), cell("fastest", "control", 34)]
+
+    def notes(cells: list[CellResults]) -> tuple[str, ...]:
+        shown = print_pairs(with_corrected(comparison_rows(cells, (), Paper())), "standard")
+        assert shown is not None
+        return shown.notes
+
+    above = (
+        "Controls above codriving: oracle control (+25.0 points, p (Holm) = 0.0078), "
+        "fastest control (+10.0 points, p (Holm) = 0.25)."
+    )
+    level = "codriving is level with the best method, a (+2.5 points, p (Holm) = 1)."
+    assert f"Clean success: {level} {above}" in notes(cells)
+    assert f"Clean success: no method is above codriving. {above}" in notes([*cells[:1], cell("a", "", 29), *cells[2:]])
+    assert f"Clean success: {above}" in notes([*cells[:1], cell("a", "", 9, 9), *cells[2:]]), "nine pairs are too few"
 
 
 def test_controls_whose_clean_success_is_not_known_stand_below_the_methods_too(make: Make) -> None:

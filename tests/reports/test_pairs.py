@@ -114,6 +114,8 @@ def test_level_is_at_most_three_points_lower_and_not_shown_to_be_worse() -> None
     assert level(1000, 9, 0, 0.05)
     assert not level(1000, 9, 0, 0.049)
     assert level(100, 0, 50, 0.001)
+    assert level(10, 0, 0)
+    assert not level(9, 0, 0), "of few pairs nothing is said"
     assert not level(0, 0, 0)
 
 
