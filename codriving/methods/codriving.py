@@ -46,7 +46,7 @@ from codriving.reasoning import (
 class CoDriving(ModelMethod):
     """The framework of the paper."""
 
-    name, reflects = "codriving", "reflect"
+    name, reflects, orders = "codriving", "reflect", True
 
     def __init__(
         self,

@@ -1,7 +1,6 @@
 """Controls: codriving with one part taken for something plain, so that a table tells what that part is worth."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from codriving.datatypes import DrivingModel, Road, RuleModel
 from codriving.geometry import RoadMap
@@ -22,12 +21,12 @@ class Control(CoDriving):
         margin: float,
         order: OrderRule | None = None,
         decider: Decider | None = None,
+        by_zone: bool = True,
     ) -> None:
-        # An order that is common by nature needs no negotiation.
-        cda = cda if order is None or cda.negotiation else replace(cda, negotiation=True)
-        super().__init__(cda, RuleModel(), None, margin, order)
+        super().__init__(cda, RuleModel(), None, margin, order, by_zone)
         self.name, self.said, self.decider = name, said, decider
-        own = self.variant if decider is not None else cda.variant
+        # The name of a control of the order says which one it has.
+        own = self.variant if decider is not None or self.knows_drivers else cda.variant
         self.variant = CONTROL if own == "full" else f"{CONTROL}/{own}"
 
     def remark(self, road: Road, world: Mapping[str, str]) -> str:

@@ -1,7 +1,7 @@
 """The safety check behind any method: an action that it removes gives way to the nearest one that it allows."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -95,6 +95,7 @@ class Filtered(Method):
         self.name, self.variant, self.is_checked = method.name, f"{method.variant} filtered".strip(), True
         self.reasoner, self.remembers, self.most_cavs = method.reasoner, method.remembers, method.most_cavs
         self.knows_drivers = method.knows_drivers
+        self._ordering = method if isinstance(method, Ordered | CoDriving) and method.orders else None
         self._safety = ThreeLayers()
 
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
@@ -109,7 +110,8 @@ class Filtered(Method):
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode."""
         self.method.reset(road_map, model, seed)
-        self._perception = perception_at(self.cda, road_map, model)
+        by_zone = self._ordering.by_zone if self._ordering is not None else not self.cda.binding
+        self._perception = perception_at(self.cda, road_map, model, by_zone)
         agreed = AgreedOrder(RuleCoordinator(self.cda.binding)) if self.cda.negotiation else None
         self._negotiation = agreed or OwnOrders(self.cda.own_order, seed)
 
@@ -140,12 +142,17 @@ class Filtered(Method):
             near = nearest(actions[ego], assessed, scene.ego.speed, scene.intent.target_speed)
             taken = near[0] if len(near) == 1 else least_dangerous(given, near)
             found[ego] = FilteredAction(actions[ego], taken, assessed)
-        replaced = sum(action.taken is not action.wanted for action in found.values())
-        counts = {**deliberation.counts, "checked": len(found), "replaced": replaced}
+        replaced = [ego for ego, action in found.items() if action.taken is not action.wanted]
+        if isinstance(self.method, Ordered):
+            self.method.executor.not_driven(replaced)
+        counts = {**deliberation.counts, "checked": len(found), "replaced": len(replaced)}
         return FilteredDeliberation(deliberation, found, counts, deliberation.transcript)
 
     def _orders(self, moment: Moment, deliberation: Deliberation) -> Mapping[str, PassingOrder]:
         """Return the order that each CAV goes by: that of the method if it orders, else that of ``codriving``."""
-        if isinstance(self.method, Ordered | CoDriving) and isinstance(deliberation, ReasonedDeliberation):
-            return {situation.scene.ego.id: situation.order for situation in deliberation.situations}
-        return self._negotiation.orders(moment)
+        if self._ordering is None or not isinstance(deliberation, ReasonedDeliberation):
+            return self._negotiation.orders(moment)
+        # Who may pass a zone before one that precedes it is not bound by the order.
+        binds = not self._ordering.by_zone
+        orders = {situation.scene.ego.id: situation.order for situation in deliberation.situations}
+        return {ego: replace(order, binding=order.binding and binds) for ego, order in orders.items()}

@@ -21,15 +21,9 @@ class Undecided(Deliberation):
         return {}
 
     def as_dict(self) -> dict[str, Any]:
-        cavs = [
-            {
-                "id": cav.id,
-                "action": "",
-                "reason": "drives as a human driver does, by IDM and the right of way",
-                "scene": {"intent": {"route": self.world.intents[cav.id].route}},
-            }
-            for cav in self.world.cavs
-        ]
+        why = "drives as a human driver does, by IDM and the right of way"
+        scenes = {cav.id: {"intent": {"route": self.world.intents[cav.id].route}} for cav in self.world.cavs}
+        cavs = [{"id": name, "action": "", "reason": why, "scene": scene} for name, scene in scenes.items()]
         return {"time": self.world.time, "step": self.world.step, "cavs": cavs}
 
 

@@ -39,7 +39,7 @@ class Ordered(Method):
 
     def __init__(self, rule: OrderRule, executor: Executor) -> None:
         self.rule, self.executor, self.name = rule, executor, rule.name
-        self.most_cavs = rule.most_cavs
+        self.most_cavs, self.orders, self.by_zone = rule.most_cavs, executor.orders, executor.by_zone
         driven = "" if executor.name == "planned" else executor.name
         self.variant = "/".join(word for word in (rule.variant, driven, executor.variant) if word)
 
@@ -89,10 +89,8 @@ def _situation(moment: Moment, name: str, agreed: PassingOrder, drive: Drive, ch
 
 
 def _assessment(action: Action, gain: float | None, taken: Action, why: tuple[str, ...]) -> ActionAssessment:
-    if why:
-        return ActionAssessment(action, action is taken, why, (), gain)
-    if action not in LONGITUDINAL and action is not taken:
+    if not why and action not in LONGITUDINAL and action is not taken:
         why = ("not asked for, not safe, or granted to another vehicle",)
-    elif action in LONGITUDINAL and gain is None:
+    elif not why and action in LONGITUDINAL and gain is None:
         why = ("no plan of the library that begins with it keeps the order and clear of all vehicles",)
     return ActionAssessment(action, not why or action is taken, why, (), gain)

@@ -6,6 +6,7 @@ from worlds import Junction, car
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.parts import CaseMemory, Model, RuleModel
+from codriving.errors import UserError
 from codriving.methods.codriving import CoDriving
 from codriving.methods.control import Control
 
@@ -61,4 +62,17 @@ def test_random_order_is_codriving_with_the_order_of_that_name(junction: Junctio
 def test_a_random_order_is_common_without_negotiation_too() -> None:
     assert built("method=random_order", "cda.negotiation=false").variant == "control"
     assert built("method=random_order", "cda=status_sharing").cda.negotiation
-    assert built("method=fastest", "order=fcfs").variant == "control/order=fcfs"
+
+
+@pytest.mark.parametrize("name", ["fastest", "random_action", "oracle"])
+def test_other_controls_order_as_codriving_does(name: str) -> None:
+    assert built(f"method={name}", "order=fcfs").variant == "control/order=fcfs"
+    with pytest.raises(UserError, match="no place for order="):
+        built(f"method={name}", "order=fcfs", "cda=status_sharing")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_control_orders_by_zone_where_codriving_does(name: str) -> None:
+    assert built(f"method={name}").by_zone
+    assert not built(f"method={name}", "method.by_zone=false").by_zone
+    assert not built(f"method={name}", "cda=prescriptive").by_zone

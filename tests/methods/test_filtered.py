@@ -1,27 +1,32 @@
 """The safety check behind any method: what becomes of its actions, and what is kept of that."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
-from driven import planned
+from driven import configured_executor, drive, planned
 from worlds import FULL, Junction, car
 
+from codriving.config.build import build
+from codriving.config.compose import compose
 from codriving.config.locate import conf_dir
 from codriving.datatypes.order import PassingOrder
 from codriving.datatypes.parts import Account, Method, RuleModel
-from codriving.datatypes.record import Outcome
+from codriving.datatypes.record import Ending, Outcome
 from codriving.datatypes.road import Road
 from codriving.datatypes.situation import Decision, Deliberation, ReasonedDeliberation
 from codriving.datatypes.world import Action, Manner, WorldState
+from codriving.environment.environment import Environment
 from codriving.methods.codriving import CoDriving
+from codriving.methods.coop_game_fuzzy.coop_game_fuzzy import JointActions
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.filtered import Filtered, FilteredDeliberation, SafetyFilter
 from codriving.methods.idm import Idm
 from codriving.methods.ordered import Ordered
+from codriving.reasoning.execution.planned import Planned
 from codriving.reasoning.sharing.sharing import CdaLevel
 
 FILTER = SafetyFilter(CdaLevel(**FULL), 1.5)
@@ -143,12 +148,36 @@ class Backwards(Ordered):
         return replace(found, situations=tuple(replace(s, order=against) for s in found.situations))
 
 
+class BesideOrder(Planned):
+    """Drives by no order, although one is shown."""
+
+    orders = False
+
+
 def test_a_method_that_orders_is_checked_by_its_own_order(junction: Junction) -> None:
     cars = car("CAV1", "south-north", 92.0, 8.0, 9.0), car("CAV2", "west-east", 70.0, 8.0, 9.0)
-    plain = checked(junction, Ordered(FirstComeFirstServed(), planned()), *cars)
-    turned = checked(junction, Backwards(FirstComeFirstServed(), planned()), *cars)
-    safe = [{str(a.action) for a in d.filtered["CAV1"].assessments if a.safe} for d in (plain, turned)]
-    assert safe == [{"SLOWER", "IDLE", "FASTER"}, {"SLOWER"}]
+
+    def safe(method: Method) -> set[str]:
+        return {str(a.action) for a in checked(junction, method, *cars).filtered["CAV1"].assessments if a.safe}
+
+    one_order, by_zone = planned(by_zone=False), planned(by_zone=True)
+    assert safe(Ordered(FirstComeFirstServed(), one_order)) == {"SLOWER", "IDLE", "FASTER"}
+    assert safe(Backwards(FirstComeFirstServed(), one_order)) == {"SLOWER"}
+    # By zone it may pass before the one that precedes it, out of whose way it is in time.
+    assert safe(Backwards(FirstComeFirstServed(), by_zone)) == {"SLOWER", "IDLE", "FASTER"}
+    # An order by which no CAV drives is none: they are checked by the one that is negotiated.
+    unused = BesideOrder(**{**configured_executor("planned"), "by_zone": False})
+    assert safe(Backwards(FirstComeFirstServed(), unused)) == {"SLOWER", "IDLE", "FASTER"}
+    assert not JointActions.orders
+
+
+def test_cavs_do_not_wait_for_one_that_the_check_holds_back(configured: Callable[..., Environment]) -> None:
+    """By zone, who is earlier in the order lets pass who meant to go before it; if that one may not go, all wait."""
+    environment = configured("suite=default", "scenario=roundabout", "scenario.cavs=4", "scenario.hdvs=[0,0]")
+    method = build(compose(["method=fcfs"])["method"], Ordered)
+    driven = drive(environment, FILTER.around(method), 15004)
+    assert driven.outcome is not None
+    assert driven.outcome.ending is Ending.SUCCESS
 
 
 def test_codriving_behind_the_filter_may_do_what_its_own_check_allows(junction: Junction) -> None:

@@ -73,7 +73,7 @@ class Arrival(FirstComeFirstServed):
 class JointActions(Executor):
     """The joint action that costs least, by risk, loss of speed and acceleration, whatever the order."""
 
-    name = "fuzzy_coalition"
+    name, orders = "fuzzy_coalition", False
     library = LIBRARY
 
     def __init__(

@@ -1,7 +1,7 @@
 """What an executor is, and the planned one: all CAVs are planned in passing order with the exact vehicle model."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, get_args
 
@@ -40,6 +40,7 @@ class Executor(OrderExecutor, ABC):
     variant: str = ""  # What tells it from its default settings, in tables
     gap: float  # Time between one vehicle's leaving a zone and the next one's entering it, for schedules [s]
     margin: float  # The same for motions, and for the gap test of lane changes [s]
+    orders: bool = True  # Whether CAVs drive by the order at all
     by_zone: bool = False  # Whether a CAV may pass a zone before one that precedes it in the order
     library: tuple[Plan, ...] = ()  # Plans that it uses besides those that all methods predict
 
@@ -53,6 +54,9 @@ class Executor(OrderExecutor, ABC):
     @abstractmethod
     def drive(self, moment: Moment, ordering: Ordering) -> Drive:
         """Return what every CAV does now."""
+
+    def not_driven(self, names: Collection[str]) -> None:
+        """Hear which CAVs did something else than it said."""
 
 
 def humans_expected(moment: Moment) -> dict[str, tuple[Expected, ...]]:
@@ -100,6 +104,10 @@ class Planned(Executor):
         self._before: dict[str, Plan] = {}
         self._plans: JointPlans | None = None
         self._kept: list[EarlyPassing] = []
+
+    def not_driven(self, names: Collection[str]) -> None:
+        """Forget whom the others were to let pass: a CAV that was held back is not waited for."""
+        self._kept = [passage for passage in self._kept if passage.first not in names]
 
     def planner(self, moment: Moment) -> JointPlans:
         """Return what plans all CAVs in an order."""

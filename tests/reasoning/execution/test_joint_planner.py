@@ -1,9 +1,10 @@
 """In which order each vehicle is planned."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
-from driven import moment_of
+from driven import moment_of, ordering_of, planned
 from hypothesis import given
 from hypothesis import strategies as st
 from worlds import Car, Junction, car
@@ -153,3 +154,16 @@ def test_a_cav_without_a_plan_goes_first_if_that_leaves_it_one(junction: Junctio
     assert made.rescued(ORDER).stuck == ()
     lost = plans(junction, car("CAV1", "south-north", 96.0, 8.0), cars[1], by_zone=False)
     assert lost.rescued(ORDER).stuck == ("CAV2",)
+
+
+def test_a_cav_that_was_held_back_is_not_let_pass(junction: Junction) -> None:
+    def then(*held_back: str) -> Mapping[str, Action]:
+        executor = planned()
+        steps = (FAR, NEAR), (car("CAV1", "south-north", 70.0, 8.0), car("CAV2", "west-east", 88.0, 6.0))
+        first, second = (replace(moment_of(junction.thoughts(*cars)), by_zone=True) for cars in steps)
+        executor.drive(first, ordering_of(*ORDER))
+        executor.not_driven(held_back)
+        return executor.drive(second, ordering_of(*ORDER)).actions
+
+    assert then() == {"CAV1": Action.IDLE, "CAV2": Action.FASTER}
+    assert then("CAV2") == {"CAV1": Action.FASTER, "CAV2": Action.SLOWER}
