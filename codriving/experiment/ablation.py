@@ -77,7 +77,7 @@ def make_ablation(driven: Driven) -> Outputs:
         settings.setdefault(setting, []).append(results_of(cell, records, cell.swept))
     rows = with_corrected([row for block in settings.values() for row in ablation_rows(block)])
     swept = tuple(dict.fromkeys(key for row in rows for key in row.swept))
-    conditions = conditions_of(rows, SUBJECT)
+    conditions = conditions_of(rows, SUBJECT, driven.config_dir)
     printed = []
     for condition, members in conditions:
         keys = tuple(key for key in swept if not condition.name or key != SUITE)

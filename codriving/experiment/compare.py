@@ -192,13 +192,13 @@ def make_comparison(table: str, driven: Driven, bounded: bool = False) -> Output
     whole = comparison_table(rows, swept)
     pages, printed = [], []
     rows = as_orders(rows) if varied else rows
-    conditions = conditions_of(rows, subject_of(rows) if varied else METHODS)
+    conditions = conditions_of(rows, subject_of(rows) if varied else METHODS, driven.config_dir)
+    further = (*(bounds.notes if bounds else ()), *driven.notes)
     for condition, members in conditions:
         # One table a suite, which its title names.
         keys = tuple(key for key in swept if not condition.name or key != SUITE)
         kept, screen = (
-            print_comparison(members, metrics, keys, screen, condition, bounds.notes if bounds else ())
-            for screen in (False, True)
+            print_comparison(members, metrics, keys, screen, condition, further) for screen in (False, True)
         )
         against = print_pairs(members, metrics, keys, condition)
         pages += [markdown_text(kept), *([markdown_text(against, level=2)] if against else [])]
@@ -210,12 +210,14 @@ def make_comparison(table: str, driven: Driven, bounded: bool = False) -> Output
     return Outputs(files, tuple(printed), (whole,))
 
 
-def conditions_of(rows: Sequence[Compared], subject: Subject) -> list[tuple[Condition, list[Compared]]]:
+def conditions_of(
+    rows: Sequence[Compared], subject: Subject, config_dir: Path | None = None
+) -> list[tuple[Condition, list[Compared]]]:
     """Part the rows of a comparison by suite, if several were driven."""
     groups: dict[str, list[Compared]] = {}
     for row in rows:
         groups.setdefault(row.swept.get(SUITE, ""), []).append(row)
-    last, files = next(reversed(groups), ""), choices(SUITE)
+    last, files = next(reversed(groups), ""), choices(SUITE, config_dir)
     return [
         (Condition(name, describe(files[name]) if name in files else "", name == last, subject), members)
         for name, members in groups.items()
@@ -228,6 +230,7 @@ def _compared_flows(table: str, driven: Driven) -> Outputs:
     swept = tuple(dict.fromkeys(key for results in cells for key in results.swept))
     rows = [Compared(cell.first.scenario, cell.first.method, cell=cell) for cell in cells]
     notes = (f"{REFERENCE} full goes by the negotiated order.", *subject_of(rows).notes) if table == ORDERS else ()
+    notes = (*notes, *driven.notes)
     kept, printed = (print_flows(cells, driven.metrics, swept, notes, screen) for screen in (False, True))
     whole = flow_table(cells, swept)
     files = {"comparison.csv": whole.csv().encode(), "comparison.md": markdown_text(kept).encode()}
@@ -254,11 +257,12 @@ def make_loads(driven: Driven) -> Outputs:
     rows = load_rows(cells, taking_part(LOAD))
     swept = tuple(dict.fromkeys(key for _, results in cells for key in results.swept))
     table = load_table(rows, loads, swept)
-    kept, printed = print_loads(rows, loads, driven.metrics, swept), print_each_load(rows, loads, driven.metrics, swept)
+    kept = print_loads(rows, loads, driven.metrics, swept).with_notes(driven.notes)
+    *first, last = print_each_load(rows, loads, driven.metrics, swept)
     files = {"load.csv": table.csv().encode(), "load.md": markdown_text(kept).encode()}
     figures = load_figure(rows, loads, driven.metrics, styles())
     files |= {f"figures/{name}": content for name, content in figures.items()}
-    return Outputs(files, printed, (table,))
+    return Outputs(files, (*first, last.with_notes(driven.notes)), (table,))
 
 
 def _results(driven: Driven, without: str = "") -> Iterator[tuple[Cell, CellResults]]:

@@ -51,7 +51,7 @@ def make_filters(driven: Driven) -> Outputs:
     """Make the table of methods with and without the safety check."""
     rows = filter_rows(_pairs(driven))
     swept = tuple(dict.fromkeys(key for row in rows for key in row.plain.swept))
-    table, display = filter_table(rows, swept), print_filters(rows, driven.metrics, swept)
+    table, display = filter_table(rows, swept), print_filters(rows, driven.metrics, swept).with_notes(driven.notes)
     files = {"filters.csv": table.csv().encode(), "filters.md": markdown_text(display).encode()}
     return Outputs(files, (display,), (table,))
 

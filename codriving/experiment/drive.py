@@ -87,6 +87,8 @@ class Driven:
     records: Sequence[Sequence[EpisodeRecord]]
     timings: Sequence[Sequence[Timing | None]]  # What each of them cost, None where that is lost
     folder: Path = Path()
+    notes: Sequence[str] = ()  # What has to be said of the cells below any table
+    config_dir: Path | None = None  # Folder with YAMLs of the user
 
     @property
     def metrics(self) -> str:
@@ -221,7 +223,7 @@ def drive(
             [read_timing(folder.episode(cell.folder, record.seed)) for record in row]
             for cell, row in zip(shown, rows, strict=True)
         ]
-        driven = Driven(shown, rows, timings, folder.path)
+        driven = Driven(shown, rows, timings, folder.path, plan.notes, plan.config_dir)
         outputs = make_outputs(driven)
         tables = _write(plan, driven, outputs)
         kept = len(units) - len(missing)

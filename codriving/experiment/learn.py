@@ -129,7 +129,7 @@ def learned(driven: Driven, settings: int) -> Outputs:
     rows = learning_rows(cells, paper)
     swept = tuple(dict.fromkeys(key for row in rows for key in row.cell.swept))
     table = learning_table(rows, swept)
-    display = print_learning(rows, driven.metrics, swept)
+    display = print_learning(rows, driven.metrics, swept).with_notes(driven.notes)
     figures = {f"figures/{name}": content for name, content in learning_figure(rows, paper, driven.metrics).items()}
     files = {"learn.csv": table.csv().encode(), "learn.md": markdown_text(display).encode(), **figures}
     return Outputs(files, (display,), (table,))

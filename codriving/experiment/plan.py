@@ -36,6 +36,7 @@ class Plan:
     run: str | None  # Name of the run, or None for its time
     notes: tuple[str, ...] = ()
     render: bool = False
+    config_dir: Path | None = None  # Folder with YAMLs of the user
 
     @property
     def seeds(self) -> range:
@@ -76,6 +77,7 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
         run=first["run"],
         notes=(*repeated(cells), *changed_worlds([suite_of(point) for point in points], configs, config_dir)),
         render=first["render"],
+        config_dir=config_dir,
     )
 
 

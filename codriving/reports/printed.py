@@ -38,6 +38,10 @@ class PrintedTable:
     ranks: tuple[int, ...]  # When each column gives way on a narrow terminal
     briefs: tuple[tuple[str, str] | None, ...]  # The short form of each there
 
+    def with_notes(self, notes: Iterable[str]) -> "PrintedTable":
+        """Say more below it."""
+        return replace(self, notes=(*self.notes, *notes))
+
     @property
     def shapes(self) -> tuple[Drawn, ...]:
         """The columns as a terminal draws them."""

@@ -191,17 +191,24 @@ def test_several_suites_are_a_table_each_and_a_figure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(import_module("codriving.experiment.compare"), "taking_part", lambda _: ("fcfs", "codriving"))
-    tokens = ["suite=honest,standoff", "episodes=1", "seed=12000", "controls=false", "launcher=serial", "run=x"]
-    assert run_command(comparison_command("baselines"), [*tokens, f"output={tmp_path}"]) == 0
+    own = tmp_path / "conf" / "suite"
+    own.mkdir(parents=True)
+    (own / "calm.yaml").write_text("# @package _global_\n# Calm: a world of mine.\nscenario:\n  cavs: 2\n")
+    (own / "own.csv").write_text("suite,fixed,sha256\ncalm,2026-11-30,0\nstandoff,2026-11-30,0\n")
+    tokens = ["suite=own", "episodes=1", "seed=12000", "controls=false", "launcher=serial", "run=x"]
+    assert run_command(comparison_command("baselines"), [*tokens, f"output={tmp_path}"], tmp_path / "conf") == 0
     printed = capsys.readouterr().out
-    titles = ["honest: comparison of methods", "honest: against codriving", "standoff: comparison", "standoff: against"]
+    titles = ["calm: comparison of methods", "calm: against codriving", "standoff: comparison", "standoff: against"]
     places = [printed.index(title) for title in titles]
     assert places == sorted(places)
     assert printed.count("Each difference is the method minus codriving") == 1
-    assert "a control in which every method should succeed" in printed
+    assert "\nCalm: a world of mine.\n" in printed
     folder = tmp_path / "compare" / "x"
-    assert (folder / "comparison.md").read_text().count("against codriving on the same seeds") == 2
+    page = (folder / "comparison.md").read_text()
+    assert page.count("against codriving on the same seeds") == 2
+    changed = "suite=calm is not the world that was fixed for suite=own on 2026-11-30"
+    assert (printed.count(changed), page.count(changed)) == (1, 1), "what was not fixed is said"
     assert (folder / "figures" / "profile.png").stat().st_size > 10_000
     rows = list(csv.DictReader((folder / "comparison.csv").read_text().splitlines()))
-    assert [(row["suite"], row["method"]) for row in rows if row["pairs"]] == [("honest", "fcfs"), ("standoff", "fcfs")]
+    assert [(row["suite"], row["method"]) for row in rows if row["pairs"]] == [("calm", "fcfs"), ("standoff", "fcfs")]
     assert all(row["mcnemar_p_holm"] for row in rows if row["pairs"])
