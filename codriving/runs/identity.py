@@ -177,10 +177,13 @@ def fingerprint(
         names: What its objects call themselves: scenario, method, variant, reasoner.
         choices: Name of the YAML of each group.
     """
+    values = driving_values(resolved)
+    # Where an order or a filter is chosen its name stands for a class, too: a plug-in may have no settings.
+    groups = (*CHOICES, *(group for group in (ORDER, FILTER) if group in values))
     told = {
         "names": list(names),
-        "choices": {group: choices[group] for group in CHOICES if group in choices},
-        "values": driving_values(resolved),
+        "choices": {group: choices[group] for group in groups if group in choices},
+        "values": values,
         "files": {file.name: file.sha256 for file in files},
     }
     text = json.dumps(told, sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False)

@@ -93,6 +93,14 @@ def test_a_config_that_does_not_know_orders_is_one_whose_order_is_negotiated() -
     assert told() == told("order=negotiated") != told("order=fcfs") != told("order=fcfs", "order.control_radius=50")
 
 
+def test_an_order_or_a_filter_without_settings_is_told_by_its_name() -> None:
+    plain, ordered = compose([]), compose(["order=random"])
+    assert fingerprint(NAMES, {"order": "negotiated"}, plain, ()) == fingerprint(NAMES, {}, plain, ())
+    assert fingerprint(NAMES, {"order": "random"}, ordered, ()) != fingerprint(NAMES, {"order": "mine"}, ordered, ())
+    filtered = {**plain, "filter": {"_target_": "mine.Filter"}}
+    assert fingerprint(NAMES, {"filter": "mine"}, filtered, ()) != fingerprint(NAMES, {"filter": "yours"}, filtered, ())
+
+
 def test_a_config_that_does_not_know_how_human_drivers_are_minded_is_one_that_plans() -> None:
     resolved = compose(["method=fcfs"])
     executor = {k: v for k, v in resolved["executor"].items() if k not in ("humans", "human_margin")}
