@@ -6,7 +6,7 @@ from pathlib import Path
 from codriving.errors import ConfigError
 from codriving.experiment.bounds import ENVELOPES, KeptBounds, world_of
 from codriving.experiment.cells import Cell
-from codriving.reports import CellResults, Compared, SceneBounds, with_bounds
+from codriving.reports import METHOD_CHOICE, CellResults, Compared, SceneBounds, with_bounds
 
 
 class BoundsOfRun:
@@ -28,7 +28,9 @@ class BoundsOfRun:
             world, mark = world_of(resolved, Path(resolved["output"]) / ENVELOPES)
             solved = {seed: self._kept.row(world, mark, seed) for seed in seeds}
         except ConfigError as refusal:
-            self.notes = tuple(dict.fromkeys((*self.notes, f"Above bound is empty: {refusal}.")))
+            told = [f"{key}={value}" for key, value in block[0][1].swept.items() if key != METHOD_CHOICE]
+            where = f" at {', '.join(told)}" if told else ""
+            self.notes = tuple(dict.fromkeys((*self.notes, f"Above bound is empty{where}: {refusal}.")))
             return list(rows)
         totals = {seed: float(row["bound"]) for seed, row in solved.items()}
         cavs = int(next(iter(solved.values()))["cavs"])

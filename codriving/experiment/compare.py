@@ -219,7 +219,7 @@ def conditions_of(
         groups.setdefault(row.swept.get(SUITE, ""), []).append(row)
     last, files = next(reversed(groups), ""), choices(SUITE, config_dir)
     return [
-        (Condition(name, describe(files[name]) if name in files else "", name == last, subject), members)
+        (Condition(name, describe(files[name]) if name in files else "", name == last, subject, tuple(rows)), members)
         for name, members in groups.items()
     ]
 

@@ -230,6 +230,7 @@ class Condition:
     sentence: str  # What its YAML says of it
     last: bool = True  # Whether notes that hold for every condition stand below its tables
     subject: Subject = METHODS
+    noted: tuple[Compared, ...] = ()  # The rows of all conditions, of which the notes below the last one speak
 
 
 WHOLE = Condition("", "")  # A comparison in one table
@@ -254,16 +255,16 @@ def print_comparison(
     what = f"{condition.name}: " if condition.name else ""
     what += f"comparison of {condition.subject.rows}"
     heading = title(what, [row.scenario for row in rows], reasoners, metrics)
-    bounded = above_notes(rows)
-    heading += f" - {HEAD}" if bounded else ""
+    heading += f" - {HEAD}" if any(row.above for row in rows) else ""
+    noted = condition.noted or rows
     general = (
-        *bounded,
+        *above_notes(noted),
         *further,
         *condition.subject.notes,
         NOTE,
-        *clean_notes(_cells(rows)),
-        *number_notes(_cells(rows)),
-        *notes_of([(row.method, row.status, row.cell) for row in rows], screen),
+        *clean_notes(_cells(noted)),
+        *number_notes(_cells(noted)),
+        *notes_of([(row.method, row.status, row.cell) for row in noted], screen),
     )
     notes = (*([condition.sentence] if condition.sentence else []), *(general if condition.last else ()))
     return printed(

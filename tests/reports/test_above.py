@@ -7,7 +7,7 @@ import pytest
 
 from codriving.datatypes.record import Ending, EpisodeRecord
 from codriving.reports.above import SceneBounds, with_bounds
-from codriving.reports.comparison import comparison_rows, comparison_table, print_comparison
+from codriving.reports.comparison import Condition, comparison_rows, comparison_table, print_comparison
 from codriving.reports.paper import Paper
 from codriving.reports.results import CellResults
 
@@ -66,3 +66,16 @@ def test_without_bounds_there_are_no_such_columns(cells: list[CellResults]) -> N
     assert "above_bound" not in comparison_table(rows).keys
     assert "bound" not in print_comparison(rows, "standard", further=("why",)).title
     assert print_comparison(rows, "standard", further=("why",)).notes[0] == "why"
+
+
+def test_notes_below_the_last_suite_speak_of_all(cells: list[CellResults]) -> None:
+    told = [replace(cell, remark=f"{cell.first.method}: {where}.") for cell, where in zip(cells, "ab", strict=True)]
+    plain = comparison_rows(cells, ("fcfs", "codriving"), Paper())
+    found = with_bounds(comparison_rows(told, ("fcfs", "codriving"), Paper()), SceneBounds({0: 20.0, 1: 25.0}, 2, True))
+    first = print_comparison(found, "standard", condition=Condition("merge", "", False, noted=(*found, *plain)))
+    last = print_comparison(plain, "standard", condition=Condition("blocked", "", True, noted=(*found, *plain)))
+    assert not first.notes
+    assert "in which human drivers are left out" in last.notes[0]
+    assert {"codriving: a.", "fcfs: b."} <= set(last.notes)
+    assert first.title.endswith("bound without human drivers")
+    assert not last.title.endswith("bound without human drivers")
