@@ -45,8 +45,11 @@ _CAME_LATER |= {"extra": {}, "headers": {}}
 # The same for ``memory``.
 _RECALLED: dict[str, Any] = {"control": "none"}
 
+# How orders hold came later, too; that they hold otherwise than before is what the behaviour number says.
+_HOLDS: dict[str, Any] = {"by_zone": True}
+
 # The same for ``executor``: with these values it minds human drivers as before.
-_MINDS: dict[str, Any] = {"humans": "planned", "human_margin": 1.5}
+_MINDS: dict[str, Any] = {"humans": "planned", "human_margin": 1.5, **_HOLDS}
 
 # The same for ``scenario``: with these values it is the scene of before.
 _SCENES: dict[str, Any] = {"pattern": "random", "row_gap": 14.0, "turns": ["left", "straight", "right"]}
@@ -117,7 +120,8 @@ def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     for key, names in dropped.items():
         if isinstance(node := values.get(key), Mapping):
             values[key] = {name: value for name, value in node.items() if name not in names}
-    for key, later in (("llm", _CAME_LATER), ("scenario", _SCENES), ("executor", _MINDS), (MEMORY, _RECALLED)):
+    came_later = {"llm": _CAME_LATER, "scenario": _SCENES, "executor": _MINDS, "method": _HOLDS, MEMORY: _RECALLED}
+    for key, later in came_later.items():
         if isinstance(node := values.get(key), Mapping):
             values[key] = {name: value for name, value in node.items() if (name, value) not in later.items()}
     return values

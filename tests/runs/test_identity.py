@@ -93,6 +93,14 @@ def test_a_config_that_does_not_know_orders_is_one_whose_order_is_negotiated() -
     assert told() == told("order=negotiated") != told("order=fcfs") != told("order=fcfs", "order.control_radius=50")
 
 
+def test_a_config_that_does_not_know_how_orders_hold_is_one_by_zone() -> None:
+    resolved = compose(["method=codriving"])
+    before = {**resolved, "method": {k: v for k, v in resolved["method"].items() if k != "by_zone"}}
+    before["executor"] = {k: v for k, v in resolved["executor"].items() if k != "by_zone"}
+    assert settings_of(before) == settings_of(resolved)
+    assert len({told(), told("method.by_zone=false"), told("executor.by_zone=false")}) == 3
+
+
 def test_an_order_or_a_filter_without_settings_is_told_by_its_name() -> None:
     plain, ordered = compose([]), compose(["order=random"])
     assert fingerprint(NAMES, {"order": "negotiated"}, plain, ()) == fingerprint(NAMES, {}, plain, ())
@@ -103,7 +111,7 @@ def test_an_order_or_a_filter_without_settings_is_told_by_its_name() -> None:
 
 def test_a_config_that_does_not_know_how_human_drivers_are_minded_is_one_that_plans() -> None:
     resolved = compose(["method=fcfs"])
-    executor = {k: v for k, v in resolved["executor"].items() if k not in ("humans", "human_margin")}
+    executor = {k: v for k, v in resolved["executor"].items() if k not in ("humans", "human_margin", "by_zone")}
     before = {**resolved, "executor": executor, "method": {**resolved["method"], "executor": executor}}
     assert fingerprint(NAMES, {}, resolved, ()) == fingerprint(NAMES, {}, before, ())
     assert settings_of(resolved) == settings_of(before)
