@@ -82,7 +82,9 @@ def make_ablation(driven: Driven) -> Outputs:
     for condition, members in conditions:
         keys = tuple(key for key in swept if not condition.name or key != SUITE)
         against = print_pairs(members, driven.metrics, keys, condition)
-        printed += [against] if against else []
+        if against:
+            sentence = [condition.sentence] if condition.sentence else []
+            printed.append(replace(against, notes=(*sentence, *against.notes)))
     table = ablation_table(rows, swept, SUBJECT)
     pages = "\n".join(markdown_text(page, level=1 if page is printed[0] else 2) for page in printed)
     files = {"ablation.csv": table.csv().encode(), "ablation.md": pages.encode()}

@@ -19,7 +19,7 @@ def check_flow(resolved: Mapping[str, Any], method: Method, metric: Metric, memo
     if method.most_cavs is not None:
         raise ConfigError(
             f"method {method.name!r} decides for {method.most_cavs} CAVs at most, and in a flow there may be any "
-            "number; choose another method, or flow=none"
+            "number; choose another method or order, or flow=none"
         )
     if not metric.flows:
         raise ConfigError(

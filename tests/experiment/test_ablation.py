@@ -61,6 +61,7 @@ def test_each_row_is_set_against_the_full_method_of_its_suite(
     places = [printed.index(title) for title in titles]
     assert places == sorted(places), "the summary first"
     assert "Each difference is the row minus full on the same seeds." in printed
+    assert printed.count("Standoff: one CAV on each leg at once") == 1, "what each suite is"
     assert "level" not in printed.partition("Each difference")[0], "one pair tells nothing"
     folder = tmp_path / "ablate" / "x"
     rows = list(csv.DictReader((folder / "ablation.csv").read_text().splitlines()))

@@ -10,6 +10,7 @@ from codriving.experiment.memory_build import build_points
 from codriving.experiment.plan import make_plan
 
 REFUSED = [
+    ("order=optimal", "choose another method or order, or flow=none"),
     ("method=bruteforce", "method 'bruteforce' decides for 10 CAVs at most, and in a flow there may be any number"),
     ("metrics=authors", "metrics 'authors' measures episodes and no flows"),
     ("memory=online", "a flow neither succeeds nor fails, so that nothing is learnt in it"),
