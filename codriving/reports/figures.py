@@ -38,6 +38,8 @@ Style: TypeAlias = tuple[str, str, str]
 # For methods that have none of their own, in turn.
 OTHERS: Sequence[Style] = (("#7a7a7a", "X", "-"), ("#7a1f5c", "<", "--"), ("#5c4a00", ">", "-."), ("#3b5b92", "h", ":"))
 
+SUITE_KEY = "suite"  # Of what was swept, what has panels of its own
+
 ENTRY = 2.2  # Width of an entry of a legend [inches]
 
 # For the controls of learning, beside the most interactions.
@@ -116,7 +118,7 @@ def load_figure(
 def learning_figure(
     rows: Sequence[LearningRow], paper: Sequence[LearningStatement], metrics: str
 ) -> Mapping[str, bytes]:
-    """Draw success against the number of past interactions, a panel a scenario (paper, learning figure).
+    """Draw success against the number of past interactions, a panel a scenario and suite (paper, learning figure).
 
     Controls stand beside the most interactions, each with its own mark and in the colour of its setting.
 
@@ -124,42 +126,45 @@ def learning_figure(
         The content of ``learn.png`` and ``learn.svg``.
     """
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
     firsts = [row.cell.first for row in rows]
-    scenarios = list(dict.fromkeys(first.scenario for first in firsts))
+    panels = list(dict.fromkeys(map(_panel, rows)))
     labels = _line_labels([(_level(row), row.cell, "") for row in rows])
     levels = list(dict.fromkeys(labels))
-    several = len(levels) > 1
     sizes = sorted({row.interactions for row in rows})
-    figure = Figure(figsize=(max(5.0, 3.4 * len(scenarios)), 4.4), layout="constrained")
-    axes = figure.subplots(1, len(scenarios), sharey=True, squeeze=False)[0]
-    for axis, scenario in zip(axes, scenarios, strict=True):
+    figure = Figure(figsize=(max(5.0, 3.4 * len(panels)), 4.4), layout="constrained")
+    axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    for axis, panel in zip(axes, panels, strict=True):
         for index, level in enumerate(levels):
             shift = 0.08 * (index - (len(levels) - 1) / 2)
             members = [row for row, label in zip(rows, labels, strict=True) if label == level]
             cells = [
                 (sizes.index(row.interactions) + shift, row.cell)
                 for row in members
-                if row.cell.first.scenario == scenario and not row.is_control
+                if _panel(row) == panel and not row.is_control
             ]
             _draw_rates(axis, cells, LEVELS[index % len(LEVELS)], level)
-            controls = [row for row in members if row.cell.first.scenario == scenario and row.is_control]
+            controls = [row for row in members if _panel(row) == panel and row.is_control]
             for k, row in enumerate(controls, 1):
                 style = (LEVELS[index % len(LEVELS)][0], CONTROL_MARKS[row.control], "none")
                 place = sizes.index(row.interactions) + shift + 0.25 * k
-                _draw_rates(
-                    axis, [(place, row.cell)], style, f"control, {row.words}" + (f", {level}" if several else "")
-                )
-        claims = {row.claim for row in rows if row.cell.first.scenario == scenario}
+                _draw_rates(axis, [(place, row.cell)], style, f"control, {row.words}")
+        claims = {row.claim for row in rows if _panel(row) == panel}
         for s in paper:
             # Not in a panel of another setting than the paper's.
-            if s.scenario == scenario and s.success is not None and s.interactions in sizes and s.statement in claims:
+            if s.scenario == panel[0] and s.success is not None and s.interactions in sizes and s.statement in claims:
                 place, label = sizes.index(s.interactions), "the paper (GPT-4o mini)"
                 axis.plot([place], [100 * s.success], "x", color="#7a7a7a", markersize=9, label=label)
         axis.set_xticks(range(len(sizes)), [str(size) for size in sizes])
-        axis.set(title=scenario, xlabel="past interactions", ylim=(-3, 105))
+        axis.set(title="\n".join(filter(None, panel)), xlabel="past interactions", ylim=(-3, 105))
     axes[0].set_ylabel("success [%], 95 % interval")
     handles = {str(h.get_label()): h for axis in axes for h in axis.get_legend_handles_labels()[0]}
+    if len(levels) > 1:
+        # A mark in the colour of one setting stands for those of all.
+        for row in rows:
+            if (label := f"control, {row.words}") in handles:
+                handles[label] = Line2D([], [], **_look(("#7a7a7a", CONTROL_MARKS[row.control], "none"), label))  # type: ignore[arg-type]
     return saved(figure, handles, title("learning", (), [first.reasoner for first in firsts], metrics), "learn")
 
 
@@ -199,8 +204,13 @@ def _look(style: Style, label: str) -> dict[str, str | float]:
     return {"color": colour, "marker": marker, "linestyle": stroke, "linewidth": 1.6, "markersize": 6.5, "label": label}
 
 
+def _panel(row: LearningRow) -> tuple[str, str]:
+    return row.cell.first.scenario, row.cell.swept.get(SUITE_KEY, "")
+
+
 def _level(row: LearningRow) -> str:
-    return " ".join([row.cell.name, *(f"{key}={value}" for key, value in row.cell.swept.items())])
+    swept = [f"{key}={value}" for key, value in row.cell.swept.items() if key != SUITE_KEY]
+    return " ".join([row.cell.name, *swept])
 
 
 def _line_labels(lines: Sequence[tuple[str, CellResults, str]]) -> list[str]:

@@ -4,14 +4,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from codriving.reports.comparison import Compared, setting_of
-from codriving.reports.figures import plain_settings, saved
+from codriving.reports.figures import SUITE_KEY, plain_settings, saved
 from codriving.reports.results import CellResults
 from codriving.reports.wording import title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-SUITE_KEY = "suite"  # Of what was swept, what the panels are named after
 
 _APART = 0.16  # By how much the marks of success and clean success stand apart, as a share of a row
 

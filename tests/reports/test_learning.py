@@ -1,10 +1,12 @@
 """The learning table and figure: gains on the same seeds, what is shown and what is not, and the paper beside."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
+from matplotlib.figure import Figure
 
 from codriving.config.locate import experiments_dir
 from codriving.datatypes.record import Ending, EpisodeRecord
@@ -102,3 +104,27 @@ def test_two_models_are_told_apart_in_table_notes_and_figure(make: Make) -> None
     svg = learning_figure(rows, (), "standard")["learn.svg"]
     assert b"codriving full, one" in svg
     assert b"codriving full, two" in svg
+
+
+def test_suites_have_panels_and_controls_one_mark_each_in_the_figure(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[tuple[list[str], list[str]]] = []
+
+    def kept(figure: Figure, handles: Mapping[str, Any], *_: str) -> Mapping[str, bytes]:
+        made.append(([axis.get_title() for axis in figure.axes], list(handles)))
+        return {}
+
+    monkeypatch.setattr("codriving.reports.figures.saved", kept)
+    rows = [
+        LearningRow(CellResults([make(0, variant=variant)], {"suite": suite}), size, 0, 5, control=control)
+        for suite in ("honest", "crowd")
+        for variant in ("full", "status_sharing")
+        for size, control in ((0, "none"), (5, "none"), (5, "verdicts"), (5, "rule"))
+    ]
+    learning_figure(rows, (), "standard")
+    panels, legend = made[0]
+    assert panels == ["intersection\nhonest", "intersection\ncrowd"]
+    assert sorted(legend) == [
+        "codriving full", "codriving status_sharing", "control, one rule", "control, shuffled verdicts",
+    ]  # fmt: skip
