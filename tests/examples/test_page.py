@@ -53,7 +53,7 @@ def test_commands_run_as_they_stand_there(folder: Path) -> None:
     assert re.search(r"^t_junction +A T-junction: .*\.$", listed, flags=re.MULTILINE)
     assert re.search(r"^codriving full +1 ", run, flags=re.MULTILINE)
     assert len(re.findall(r"^(?:intersection|t_junction) +codriving full +[46] ", swept, flags=re.MULTILINE)) == 4
-    assert len(re.findall(r"^codriving ", ablated, flags=re.MULTILINE)) == 7
+    assert len(re.findall(r"^codriving ", ablated, flags=re.MULTILINE)) == 7 + 6
     assert film.startswith("Wrote outputs/run/t_junction/")
     assert len(list((folder / "outputs" / "run" / "t_junction").rglob("replay.gif"))) == 1
 

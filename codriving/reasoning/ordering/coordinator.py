@@ -9,7 +9,7 @@ from math import inf
 
 from codriving.datatypes import Instance, Pair, PassingOrder, Precedence
 from codriving.reasoning.ordering.problem import Problem, pose
-from codriving.reasoning.ordering.schedule import schedule, start_time
+from codriving.reasoning.ordering.schedule import schedule, sequence, start_time
 from codriving.reasoning.perception import Moment
 
 TURN_YIELDS = 1.0  # A turning vehicle goes before one that goes straight only if it can do so this much earlier [s]
@@ -47,6 +47,9 @@ class RuleCoordinator(Coordinator):
         """Return an order without cycles in which some pairs are given, each with its reason."""
         instance = replace(problem.instance, before=problem.instance.before | given.keys())
         times = improve(self._list_schedule(instance), instance, self.previous)
+        if instance.zones:
+            # Who comes later in the order may be scheduled before: then it is told to go first.
+            times = {name: times[name] for name in sequence(instance, times)}
 
         def reason(first: str, second: str) -> str:
             known = given.get((first, second))
