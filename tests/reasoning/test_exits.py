@@ -15,6 +15,7 @@ from codriving.methods.codriving import CoDriving
 from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.ordered import Ordered
 from codriving.reasoning.exits import boxes, full_exit, gets_out
+from codriving.reasoning.safety.conflict_lane import check_exit
 from codriving.reasoning.sharing.sharing import CdaLevel
 from codriving.reasoning.sharing.tracking import Tracking
 
@@ -94,6 +95,24 @@ def test_when_an_exit_is_full(
     found = exit_of(steady, ("CAV1", "south-north", place, 6.0), *others)
     assert found == (("HDV1", pytest.approx(101.2, abs=0.05)) if full else None)
     assert exit_of(junction, ("CAV1", "south-north", place, 6.0), *others) is None
+
+
+@pytest.mark.parametrize(
+    ("place", "removed"),
+    [
+        (80.0, ""),
+        (90.0, "FASTER"),
+        (94.0, "FASTER HOLD IDLE"),
+        (97.0, ""),  # It cannot stop any more
+    ],
+)
+def test_actions_after_which_it_could_not_stop_before_the_junction_are_removed(
+    place: float, removed: str, junction: Junction, steady: Junction
+) -> None:
+    cars = car("CAV1", "south-north", place, 6.0), car("HDV1", "south-north", 127.0, 0.0)
+    found = check_exit(steady.safety_input(*cars))
+    assert " ".join(sorted(found)) == removed
+    assert check_exit(junction.safety_input(*cars)) == {}
 
 
 def test_only_those_who_cross_others_are_in_the_way(steady: Junction) -> None:
