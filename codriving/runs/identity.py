@@ -14,8 +14,9 @@ from codriving.runs.redaction import flat, redact
 
 # The behaviour number: raised by every commit that changes a hash in tests/sameness/golden. A run folder of another
 # number is replayed, scored and reported, but not extended. Release 0.1 drives behaviour 1; since 2 a lane change looks
-# for vehicles on the far side by how fast they close in. With 3 the default world is another one.
-BEHAVIOUR = 4
+# for vehicles on the far side by how fast they close in. With 3 the default world is another one,
+# with 4 passing orders hold zone by zone, and with 5 the negotiated order tells first who is scheduled first.
+BEHAVIOUR = 5
 
 NEW_WORLD = 3  # The first number whose default world is not ``suite=paper``
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from codriving.runs.identity import CellEntry
+from codriving.runs.identity import BEHAVIOUR, CellEntry
 from codriving.runs.manifest import Manifest
 from codriving.runs.provenance import commit, machine, versions
 
@@ -17,7 +17,9 @@ def cell(fingerprint: str = "f1", **settings: str) -> CellEntry:
 def manifest(*cells: CellEntry) -> Manifest:
     held = cells or (cell(),)
     rows = tuple(entry.folder for entry in held)
-    return Manifest(3, 4, "run", "2026-01-01T00:00:00+00:00", 0, 20, rows, held, versions(), commit(), machine())
+    return Manifest(
+        3, BEHAVIOUR, "run", "2026-01-01T00:00:00+00:00", 0, 20, rows, held, versions(), commit(), machine()
+    )
 
 
 def files(folder: Path) -> dict[str, bytes]:

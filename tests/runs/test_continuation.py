@@ -127,7 +127,7 @@ def test_a_folder_of_release_0_1_is_read_and_not_extended(tmp_path: Path, record
     assert (found.rows, found.behaviour, found.cells[0].choices) == (("a-cell",), 1, {})
     assert found.cells[0].settings == {"seed": "0", "method.margin": "1.5"}
     before = path.read_bytes()
-    with pytest.raises(RunFolderError, match=r"\(behaviour 1, here 4\).* not extended"):
+    with pytest.raises(RunFolderError, match=r"\(behaviour 1, here 5\).* not extended"):
         RunFolder(tmp_path, here, CONFIGS)
     assert path.read_bytes() == before
 
@@ -160,10 +160,10 @@ def test_a_changed_file_is_refused_and_named(tmp_path: Path) -> None:
 def test_of_a_version_between_releases_the_commit_is_named(tmp_path: Path) -> None:
     versions = {"codriving": "0.2.0.dev0"}
     here = dataclasses.replace(manifest(), behaviour=2, versions=versions, commit="0123456789abcdef")
-    with RunFolder(tmp_path, dataclasses.replace(here, behaviour=4), CONFIGS):
+    with RunFolder(tmp_path, dataclasses.replace(here, behaviour=5), CONFIGS):
         pass
     path = tmp_path / "manifest.json"
-    path.write_text(path.read_text().replace('"behaviour": 4', '"behaviour": 2'))
+    path.write_text(path.read_text().replace('"behaviour": 5', '"behaviour": 2'))
     with pytest.raises(RunFolderError, match=r"extend it with codriving 0\.2\.0\.dev0 of commit 0123456789, or choose"):
         RunFolder(tmp_path, dataclasses.replace(here, episodes=21), CONFIGS)
 
@@ -182,13 +182,13 @@ def test_a_folder_of_another_behaviour_is_reported_and_not_extended(tmp_path: Pa
     with RunFolder(tmp_path, here, CONFIGS) as folder:
         write_episode(folder.episode("a-cell", 7), record, None, [], timing_of(1.0, []))
     path = tmp_path / "manifest.json"
-    path.write_text(path.read_text().replace('"behaviour": 4', '"behaviour": 7'))
+    path.write_text(path.read_text().replace('"behaviour": 5', '"behaviour": 7'))
     before = files(tmp_path)
     now = dataclasses.replace(here, versions={"codriving": "0.2"})
     with RunFolder(tmp_path, now, CONFIGS) as folder:
         assert folder.record(cell(), 7) == record
     for more in (dataclasses.replace(now, episodes=2), asked(cell(), named("b", "f2"), episodes=1)):
-        with pytest.raises(RunFolderError, match=r"by codriving 0\.9 \(behaviour 7, here 4\).* not extended"):
+        with pytest.raises(RunFolderError, match=r"by codriving 0\.9 \(behaviour 7, here 5\).* not extended"):
             RunFolder(tmp_path, dataclasses.replace(more, first_seed=7), {**CONFIGS, "b": ""})
     assert files(tmp_path) == before
 

@@ -66,7 +66,7 @@ def test_a_run_is_not_extended(folders: Path, name: str, command: tuple[str, ...
     code, said = codriving(*command, f"episodes={seeds}", f"run={name}")
     assert code == 2
     assert said.splitlines()[-1] == (
-        f"error: {Path('outputs', 'run', name)} was driven by codriving 0.1.0 (behaviour 1, here 4), so it can be "
+        f"error: {Path('outputs', 'run', name)} was driven by codriving 0.1.0 (behaviour 1, here 5), so it can be "
         "replayed and reported but not extended; extend it with codriving 0.1.0, or choose another run=<name>"
     )
     assert everything(folders / name) == everything(MADE / name)

@@ -54,7 +54,7 @@ MOMENTS = {
         ("SLOWER", {"SLOWER": 39.7, "IDLE": 33.2, "FASTER": 33.2}),
         ("FASTER", {"SLOWER": 52.0, "IDLE": 51.0, "FASTER": 51.0}),
     ),
-    # A driver who turns left before the CAV: planned keeps clear of it whoever goes first.
+    # A driver who turns left before the CAV: planned keeps clear of it, whichever of the two goes first.
     "first": (
         (car("CAV1", "south-north", 88.0, 8.0, 9.0), car("HDV1", "north-east", 100.0, 6.0)),
         ("SLOWER", {"SLOWER": 55.1, "IDLE": 51.6, "FASTER": 51.6}),
