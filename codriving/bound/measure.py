@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from codriving.bound.envelope import BIN, Envelope, alike
+from codriving.bound.passing import times_at
 from codriving.datatypes import Action, Kind, Outcome, Road, Scenario, Scene, Start
 from codriving.environment import Environment
 from codriving.geometry import FloatArray, Path, corners
@@ -196,10 +197,4 @@ def _smeared(extremes: FloatArray) -> FloatArray:
 def _ahead(fastest: FloatArray, other: FloatArray, goal: float) -> float:
     """By how many steps the other drive is at some place before the fastest one, at most."""
     places = np.linspace(fastest[0], min(goal, fastest[-1], other[-1]), 400)[1:]
-    return float(np.max(_passes(fastest, places) - _passes(other, places), initial=0.0))
-
-
-def _passes(drive: FloatArray, places: FloatArray) -> FloatArray:
-    """When a drive passes places, in steps."""
-    rising = np.maximum.accumulate(drive) + 1e-9 * np.arange(len(drive))
-    return np.interp(places, rising, np.arange(len(drive)))
+    return float(np.max(times_at(fastest, places, 1.0) - times_at(other, places, 1.0), initial=0.0))

@@ -59,6 +59,11 @@ class Passing:
     def earliest(self, places: FloatArray) -> FloatArray:
         """Return when it can be at places [m] at the earliest [s]."""
         here = self.start.position
-        rising = np.maximum.accumulate(self.alone) + 1e-9 * np.arange(len(self.alone))
-        alone = np.interp(places, rising, self.step * np.arange(len(rising))) - self.envelope.lead
+        alone = times_at(self.alone, places, self.step) - self.envelope.lead
         return np.asarray(np.maximum(np.maximum(alone, self.least_time(places) - self.least_time(np.array(here))), 0.0))
+
+
+def times_at(drive: FloatArray, places: FloatArray, step: float) -> FloatArray:
+    """Return when a drive (n,) [m] is at places [m]; steps that take 1 are counted, with parts of them."""
+    rising = np.maximum.accumulate(drive) + 1e-9 * np.arange(len(drive))
+    return np.asarray(np.interp(places, rising, step * np.arange(len(drive))))

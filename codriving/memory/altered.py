@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from codriving.datatypes import Action, Memory, Verdict
+from codriving.memory.effect import SIDEWAYS
 from codriving.memory.embedders import Vectors
 from codriving.memory.snapshot import Snapshot, StoredExperience
 from codriving.memory.store_file import COLUMNS, vectors_of
@@ -22,8 +23,6 @@ WORDS: dict[Alteration, str] = {
 
 _OF_SITUATION = ("vector", "scene", "conflict", "passing", "numbers", "kinds")
 _OF_VERDICT = ("verdict", "effect", "lesson")
-
-_LANE_CHANGES = (Action.LANE_LEFT, Action.LANE_RIGHT)
 
 
 def altered(snapshot: Snapshot, how: Alteration) -> Snapshot:
@@ -66,7 +65,7 @@ def avoided(entries: Sequence[StoredExperience]) -> tuple[Memory, ...]:
         if entry.experience.verdict is Verdict.INTENSIFIED:
             made[entry.experience.action] += entry.count
             first.setdefault(entry.experience.action, entry)
-    kinds = [_LANE_CHANGES, *((action,) for action in Action if action not in _LANE_CHANGES)]
+    kinds = [SIDEWAYS, *((action,) for action in Action if action not in SIDEWAYS)]
     most = max(kinds, key=lambda kind: sum(made[action] for action in kind))
     return tuple(
         Memory(first[a].id, f"{a} is never right.", a, Verdict.INTENSIFIED, 1.0, made[a]) for a in most if made[a]

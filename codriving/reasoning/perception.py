@@ -26,9 +26,8 @@ class Moment:
     forecast: Forecast
     sees_conflicts: bool = True  # Whether conflicts can be told at all, which takes routes that are shared or guessed
     gives_way: GivesWay = gives_way  # Says why a human driver is expected to let the CAV pass first
-    by_zone: bool = (
-        False  # Whether a CAV may pass a zone before one that precedes it, where it is out of its way in time
-    )
+    # Whether a CAV may pass a zone before one that precedes it in the order, if it is out of its way in time.
+    by_zone: bool = False
 
 
 @dataclass(slots=True)
@@ -41,8 +40,8 @@ class Perception:
     state_sharing: StateSharing
     intent_sharing: IntentSharing
     may_hold: bool = True  # Whether those who decide know HOLD
-    gives_way: GivesWay = gives_way  # Says why a human driver is expected to let the CAV pass first
-    by_zone: bool = False  # Whether CAVs may go first zone by zone, whatever their order
+    gives_way: GivesWay = gives_way  # As in `Moment`
+    by_zone: bool = False  # As in `Moment`
 
     def perceive(self, world: WorldState) -> Moment:
         """Return what every CAV knows, and begin the predictions of this step."""

@@ -7,11 +7,10 @@ from collections.abc import Mapping, Sequence
 from codriving.datatypes import Action, Decision, Role, SceneDescription, Situation, TrackedVehicle
 from codriving.reasoning.decision.cases import reconsider
 from codriving.reasoning.prediction.reversals import reverses
+from codriving.reasoning.safety.safety_input import SIDES
 
 # Actions along the lane from the most to the least progress; where IDLE and HOLD are as fast, IDLE is taken.
 EAGERNESS = (Action.FASTER, Action.IDLE, Action.HOLD, Action.SLOWER)
-
-LANE_CHANGES = (Action.LANE_LEFT, Action.LANE_RIGHT)
 
 OVERTAKES = 0.05  # Share of the progress that a lane change must gain to be worth it
 
@@ -91,15 +90,15 @@ def _takes_back(situation: Situation, action: Action) -> bool:
 def _lane_change(situation: Situation, reached: Mapping[Action, float]) -> Decision | None:
     """Change lanes if the route asks for it, or if it gets the CAV clearly farther."""
     scene = situation.scene
-    stays = max((gain for action, gain in reached.items() if action not in LANE_CHANGES), default=0.0)
+    stays = max((gain for action, gain in reached.items() if action not in SIDES), default=0.0)
     if scene.must_change is not None:
-        for action in (side for side in LANE_CHANGES if side in situation.allowed):
+        for action in (side for side in SIDES if side in situation.allowed):
             gain = reached.get(action, math.inf)
             if action is scene.must_change.action and gain >= stays - YIELDS:
                 room = f"{scene.must_change.room:.0f} m before its lane ends"
                 return Decision(scene.ego.id, action, f"the route asks for {action}, which is safe now, {room}")
         return None
-    sides = {action: gain for action, gain in reached.items() if action in LANE_CHANGES}
+    sides = {action: gain for action, gain in reached.items() if action in SIDES}
     # One lane change after another, and none so slowly that it would block both lanes.
     if not sides or scene.covers or scene.ego.speed < SLOWEST_CHANGE:
         return None

@@ -8,6 +8,8 @@ from codriving.geometry import RoadMap
 
 STANDS = 2.0  # A human driver who has been standing before the zone for this long is taken to give way [s]
 
+SLOW = 0.5  # Below this speed it stands [m/s]
+
 COMFORT = 4.0  # Braking up to which a driver who has to give way is expected to begin to do so [m/s2]
 
 FIRM = 5.0  # Braking up to which a driver who is seen to brake is expected to go on with it [m/s2]
@@ -64,7 +66,7 @@ def known_to_give_way(c: Conflict, human: TrackedVehicle, road_map: RoadMap, man
     if not road_map.road.regulated or c.distances[1] <= 0:
         return gives_way(c, human, road_map)
     brakes = human.acceleration is not None and human.acceleration < STEADY
-    late = 0.0 if brakes or human.speed < 0.5 else manner.reaction
+    late = 0.0 if brakes or human.speed < SLOW else manner.reaction
     if c.distances[0] <= 0 and _needed(human.speed, c.distances[1], late) <= COMFORT:
         return "the CAV is in the conflict zone already, and the human driver can still stop before it"
     late += 0.0 if late == 0.0 else manner.distraction
@@ -82,6 +84,6 @@ def known_to_give_way(c: Conflict, human: TrackedVehicle, road_map: RoadMap, man
 def _needed(speed: float, room: float, late: float) -> float:
     """Return the braking with which a driver stops within some room that begins to brake late [m/s2]."""
     left = room - speed * late
-    if speed < 0.5:
+    if speed < SLOW:
         return 0.0 if room > 0 else math.inf
     return speed**2 / (2 * left) if left > 0 else math.inf

@@ -146,6 +146,25 @@ def test_a_cav_that_precedes_lets_one_pass_that_means_to_pass_before_it(junction
     assert joint.stuck == ()
 
 
+@pytest.mark.parametrize(
+    ("sequence", "entries"),
+    [
+        (ORDER, (109.2, 104.4)),  # Where no zone of the two begins
+        (ORDER, (108.4, 105.2)),
+        (ORDER[::-1], (108.4, 104.4)),  # CAV2 is planned first, and CAV1 minds what it does now
+    ],
+)
+def test_a_cav_lets_pass_at_that_zone_alone_and_only_whom_it_precedes(
+    sequence: tuple[str, ...], entries: tuple[float, float], junction: Junction
+) -> None:
+    cars = car("CAV1", "south-north", 70.0, 8.0), car("CAV2", "west-east", 88.0, 6.0)
+    passage = EarlyPassing("CAV2", "CAV1", entries)
+    free, told = (plans(junction, *cars, by_zone=True, kept=kept).joint(sequence) for kept in ((), (passage,)))
+    assert {name: flags.tolist() for name, flags in told.works.items()} == {
+        name: flags.tolist() for name, flags in free.works.items()
+    }
+
+
 def test_a_cav_without_a_plan_goes_first_if_that_leaves_it_one(junction: Junction) -> None:
     """CAV2 can no longer stop, so with CAV1 planned before it there is nothing that it could do."""
     cars = car("CAV1", "south-north", 80.0, 8.0), car("CAV2", "west-east", 103.0, 8.0)
@@ -154,6 +173,20 @@ def test_a_cav_without_a_plan_goes_first_if_that_leaves_it_one(junction: Junctio
     assert made.rescued(ORDER).stuck == ()
     lost = plans(junction, car("CAV1", "south-north", 96.0, 8.0), cars[1], by_zone=False)
     assert lost.rescued(ORDER).stuck == ("CAV2",)
+    # It is neither behind CAV1 nor out of its way in time: CAV1 is not to wait for it.
+    assert lost.passages(lost.rescued(ORDER)) == []
+
+
+def test_a_cav_begins_with_what_it_is_told_and_is_stuck_if_no_plan_that_works_does(junction: Junction) -> None:
+    cars = car("CAV1", "south-north", 70.0, 8.0), car("CAV2", "west-east", 96.0, 6.0)
+    made = plans(junction, *cars, by_zone=False)
+    joint = made.joint(ORDER)
+    assert (first_actions(made, joint), joint.stuck) == ([Action.FASTER, Action.SLOWER], ())
+    slowly, fast = (
+        made.beginning(joint, {name: told}) for name, told in (("CAV1", Action.IDLE), ("CAV2", Action.FASTER))
+    )
+    assert (first_actions(made, slowly), slowly.stuck) == ([Action.IDLE, Action.SLOWER], ())
+    assert (first_actions(made, fast), fast.stuck) == ([Action.FASTER, Action.FASTER], ("CAV2",))
 
 
 def test_a_cav_that_was_held_back_is_not_let_pass(junction: Junction) -> None:
