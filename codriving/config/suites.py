@@ -62,15 +62,15 @@ def changed_worlds(
     Args:
         suites: The suite of each config; None where none was named.
     """
-    fixed = {m.suite: (name, m) for name in suite_sets(config_dir) for m in members(name, config_dir)}
+    fixed = [(name, member) for name in suite_sets(config_dir) for member in members(name, config_dir)]
     notes: dict[str, None] = {}
     for suite, config in zip(suites, configs, strict=True):
-        name, member = fixed.get(suite or "", ("", None))
-        if member is not None and (found := world_hash(config)) != member.sha256:
-            notes[
-                f"suite={suite} is not the world that was fixed for suite={name} on {member.fixed}: its settings were "
-                f"changed, so its numbers do not stand beside those of others (SHA-256 {found})."
-            ] = None
+        for name, member in fixed:
+            if member.suite == suite and (found := world_hash(config)) != member.sha256:
+                notes[
+                    f"suite={suite} is not the world that was fixed for suite={name} on {member.fixed}: its settings "
+                    f"were changed, so its numbers do not stand beside those of others (SHA-256 {found})."
+                ] = None
     return list(notes)
 
 

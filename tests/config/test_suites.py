@@ -38,6 +38,15 @@ def test_a_changed_world_is_said_to_be_another_one(hard: dict[str, dict[str, obj
     assert note.startswith("suite=standoff is not the world that was fixed for suite=hard on 2026-")
 
 
+def test_a_suite_of_two_sets_is_judged_by_both(tmp_path: Path, hard: dict[str, dict[str, object]]) -> None:
+    (tmp_path / "suite").mkdir()
+    fixed = next(member.sha256 for member in HARD if member.suite == "standoff")
+    for name, digest in (("mine", fixed), ("other", "0"), ("zero", fixed)):
+        (tmp_path / "suite" / f"{name}.csv").write_text(f"suite,fixed,sha256\nstandoff,2026-01-01,{digest}\n")
+    (note,) = changed_worlds(["standoff"], [hard["standoff"]], tmp_path)
+    assert note.startswith("suite=standoff is not the world that was fixed for suite=other on 2026-01-01")
+
+
 def test_a_set_stands_for_its_suites() -> None:
     assert [point.swept["suite"] for point in expand(["suite=hard"])] == NAMES
     assert [point.overrides for point in expand(["suite=paper,hard"])][:2] == [("suite=paper",), (f"suite={NAMES[0]}",)]
