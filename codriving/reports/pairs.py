@@ -172,29 +172,9 @@ def paired_columns(reference: str, against: str) -> tuple[Column[PairedCells], .
     """Give the columns of a paired comparison; every difference is the method minus the reference."""
     return (
         Column("pairs", lambda p: len(p.driven), "pairs", rank=5),
-        Column(
-            "clean_text",
-            lambda p: points(p.clean.difference) if p.clean.pairs else "",
-            "clean [points]",
-            csv=False,
-            sparse=True,
-        ),
-        Column(
-            "clean_p_text",
-            lambda p: p_text(p.clean.p) if p.clean.pairs else "",
-            "clean p",
-            csv=False,
-            sparse=True,
-            rank=4,
-        ),
-        Column(
-            "clean_holm",
-            lambda p: p_text(p.clean.corrected) if p.clean.pairs else "",
-            "clean p (Holm)",
-            csv=False,
-            sparse=True,
-            rank=2,
-        ),
+        _clean_text("clean_text", "clean [points]", lambda rate: points(rate.difference)),
+        _clean_text("clean_p_text", "clean p", lambda rate: p_text(rate.p), rank=4),
+        _clean_text("clean_holm", "clean p (Holm)", lambda rate: p_text(rate.corrected), rank=2),
         Column("success_difference", lambda p: p.success.difference, "success [points]", points),
         Column("only_method_succeeds", lambda p: p.success.gained),
         Column(f"only_{reference}_succeeds", lambda p: p.success.lost),
@@ -232,6 +212,10 @@ def paired_columns(reference: str, against: str) -> tuple[Column[PairedCells], .
         Column("level_in", lambda p: " ".join(p.level), words=True),
         Column("against", str, against, words=True, csv=False, rank=1),
     )
+
+
+def _clean_text(key: str, head: str, text: Callable[[PairedRate], str], rank: int = 0) -> Column[PairedCells]:
+    return Column(key, lambda p: text(p.clean) if p.clean.pairs else "", head, csv=False, sparse=True, rank=rank)
 
 
 PAIRED = paired_columns("codriving", AGAINST)
