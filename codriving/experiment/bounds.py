@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from codriving.bound import BoundedWorld, Margins, bounded_world, witness
-from codriving.config import build, expand
+from codriving.config import build, changed_worlds, expand
 from codriving.datatypes import Simulator
 from codriving.errors import ConfigError
 from codriving.experiment.cells import swept_values
-from codriving.experiment.plan import composed, each_cell, validated
+from codriving.experiment.plan import cell_name, composed, suite_of, validated
 from codriving.reports import BoundRow, print_bounds, print_table
 from codriving.runs import BEHAVIOUR, locked, new_run_path, unwritable, write_text
 
@@ -129,7 +129,7 @@ def _row(world: BoundedWorld, mark: str, seed: int, driven: bool) -> Row:
 
 
 def run_bound(overrides: Sequence[str], options: BoundOptions) -> int:
-    """Do what ``codriving bound`` does.
+    """Do what ``codriving bound`` does; of several configs those without a bound are left out with a line.
 
     Args:
         overrides: ``key=value`` tokens.
@@ -144,7 +144,14 @@ def run_bound(overrides: Sequence[str], options: BoundOptions) -> int:
     validated(points, configs)
     first = configs[0]
     output = Path(first["output"])
-    worlds = each_cell(points, configs, lambda config: world_of(config, output / ENVELOPES, options))
+    worlds, left_out = [], []
+    for point, config in zip(points, configs, strict=True):
+        try:
+            worlds.append((point, config, world_of(config, output / ENVELOPES, options)))
+        except ConfigError as refusal:
+            left_out.append((point, refusal))
+    if not worlds:
+        raise left_out[0][1]
     experiment = output / first["experiment"]
     folder = experiment / first["run"] if first["run"] else new_run_path(experiment, datetime.now(UTC))
     seeds = range(first["seed"], first["seed"] + first["episodes"])
@@ -153,12 +160,20 @@ def run_bound(overrides: Sequence[str], options: BoundOptions) -> int:
         folder.mkdir(parents=True, exist_ok=True)
         with locked(folder):
             kept = KeptBounds.of(folder)
-            for point, config, (world, mark) in zip(points, configs, worlds, strict=True):
-                solved = [kept.row(world, mark, seed, options.driven) for seed in seeds]
+            for point, config, (world, mark) in worlds:
+                try:
+                    solved = [kept.row(world, mark, seed, options.driven) for seed in seeds]
+                except ConfigError as refusal:
+                    left_out.append((point, refusal))
+                    continue
                 swept = swept_values(point.swept, config)
                 rows.append(BoundRow.of(world.name, swept, solved, world.envelopes is not None))
     except OSError as error:
         raise unwritable(folder, error) from error
-    print_table(print_bounds(rows, options.margin, options.one_order))
+    if not rows:
+        raise left_out[0][1]
+    notes = [f"{cell_name(point)} is left out: {refusal}." for point, refusal in left_out]
+    notes += changed_worlds([suite_of(point) for point in points], configs, options.config_dir)
+    print_table(print_bounds(rows, options.margin, options.one_order).with_notes(notes))
     print(folder / FILE)
     return 0

@@ -74,6 +74,19 @@ def test_margin_bound_of_free_lanes_is_refused() -> None:
         run_bound(["scenario=merge", "episodes=1"], BoundOptions(margin=0.6))
 
 
-def test_cell_without_bound_is_named() -> None:
-    with pytest.raises(ConfigError, match=r"blocked_exit=5.*no bound is defined at a blocked exit"):
-        run_bound(["scenario.blocked_exit=0,5", "scenario.cavs=6", "episodes=1"], BoundOptions())
+def test_what_has_no_bound_is_left_out_of_several_with_a_line(capsys: pytest.CaptureFixture[str]) -> None:
+    few = ["scenario.cavs=2", "episodes=1", "seed=24000"]
+    assert run_bound(["scenario.blocked_exit=0,5", "scenario.time_limit=4,60", *few], BoundOptions()) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "intersection 0 60" in shown
+    assert "scenario.blocked_exit=0 scenario.time_limit=4 is left out: CAV1 does not arrive within the" in shown
+    for limit in (4, 60):
+        assert f"scenario.blocked_exit=5 scenario.time_limit={limit} is left out: no bound is defined at a" in shown
+    for alone, said in (("blocked_exit=5", "no bound is defined"), ("time_limit=4", "CAV1 does not arrive")):
+        with pytest.raises(ConfigError, match=said):
+            run_bound([f"scenario.{alone}", *few], BoundOptions())
+
+
+def test_a_changed_suite_is_said_to_be_another_world(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_bound(["suite=standoff", "scenario.cavs=2", "episodes=1", "seed=24000"], BoundOptions()) == 0
+    assert "suite=standoff is not the world that was fixed for suite=hard" in capsys.readouterr().out
