@@ -74,7 +74,7 @@ def built(driven: Driven) -> Outputs:
         labels = cell.labels
         name = f"{labels.method} {labels.variant}".strip()
         rows.append(BuiltMemory(labels.scenario, name, labels.reasoner, reading, results_of(cell, records, cell.swept)))
-    display = print_built(rows)
+    display = print_built(rows).with_notes(driven.notes)
     return Outputs({"memory.md": markdown_text(display).encode()}, (display,))
 
 

@@ -79,12 +79,13 @@ def test_a_build_can_be_stopped_and_grown(
 ) -> None:
     """Two interactions and then two more are the same four as four at once, file and all."""
     monkeypatch.chdir(tmp_path)
-    short = ["scenario.time_limit=4", "scenario.cavs=2"]
+    short = ["suite=honest", "scenario.time_limit=4", "scenario.cavs=2"]
     assert run_command(BUILD, [*short, "interactions=2", "run=parts"]) == 0
     assert run_command(BUILD, [*short, "interactions=4", "run=parts"]) == 0
     assert run_command(BUILD, [*short, "interactions=4", "run=whole"]) == 0
     printed = capsys.readouterr().out
     assert "Recall from it with memory=frozen memory.file=FILE." in printed
+    assert printed.count("suite=honest is not the world that was fixed for suite=hard") == 3
     parts, whole = (
         read_memory(Path("outputs/memory") / run / "memory/intersection-codriving-full.sqlite")
         for run in ("parts", "whole")
