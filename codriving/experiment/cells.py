@@ -16,6 +16,7 @@ from codriving.experiment.episode import Labels
 from codriving.experiment.flows import check_flow
 from codriving.experiment.objects import make_method, memory_of, model_of
 from codriving.experiment.scoring import names_of_scores, scorers_of, settings_of_metric
+from codriving.reports import FILTERED
 from codriving.runs import CHOICES, CellEntry, NamedFile, fingerprint, redact, settings_of
 
 LONGEST = 100  # Characters of a folder's name; Windows allows 260 for a whole path
@@ -172,6 +173,21 @@ def repeated(cells: Sequence[Cell]) -> tuple[str, ...]:
             name = f"{cell.labels.method} {cell.labels.variant}".strip()
             notes[f"{name}: {ours} is the same configuration as {theirs} and has no row of its own."] = None
     return tuple(notes)
+
+
+def without_effect(cells: Sequence[Cell]) -> tuple[str, ...]:
+    """Say of an order or a filter that was chosen which methods take no notice of it."""
+    notes: dict[str, dict[str, None]] = {}
+    for cell in cells:
+        method, order = cell.resolved["method"], cell.resolved.get("order")
+        said = []
+        if order is not None and method.get("order") != order:
+            said.append("order={order} has no effect on {}: what orders by itself, or not at all, does not read it.")
+        if cell.resolved.get("filter") is not None and not cell.labels.variant.endswith(FILTERED):
+            said.append("filter={filter} has no effect on {}: what has this check or gives no actions is not filtered.")
+        for text in said:
+            notes.setdefault(text.format("{}", **cell.choices), {})[cell.labels.method] = None
+    return tuple(text.format(", ".join(names)) for text, names in notes.items())
 
 
 def swept_values(swept: Mapping[str, str], resolved: Mapping[str, Any]) -> dict[str, str]:

@@ -27,12 +27,11 @@ from codriving.config import (
 from codriving.errors import ConfigError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.cells import Cell
-from codriving.experiment.compare_filters import filter_points, make_filters, refuse_flows_of_filters
+from codriving.experiment.compare_filters import NO_FLOWS, filter_points, make_filters
 from codriving.experiment.compare_orders import ORDER, as_orders, order_points, subject_of
 from codriving.experiment.controls import split_controls
 from codriving.experiment.drive import Driven, Outputs, drive
-from codriving.experiment.flows import is_flow
-from codriving.experiment.plan import Plan, make_plan
+from codriving.experiment.plan import make_plan, refuse_flows
 from codriving.experiment.run import Command
 from codriving.reports import (
     METHOD_CHOICE,
@@ -76,6 +75,13 @@ CAVS = "scenario.cavs"  # The key that the load is
 # What `codriving compare load` drives, as far as the user does not set it.
 LOADED = ("scenario=intersection,roundabout", f"{CAVS}=4,6,8,12")
 
+# Why there are no flows in it.
+UNBOUNDED = "no bound is defined for a flow, in which vehicles keep coming; leave --bound out"
+UNLOADED = (
+    "codriving compare load varies the number of CAVs, which a flow does not have; write for instance codriving "
+    "compare baselines flow=steady flow.arrivals=200,400,600"
+)
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -96,11 +102,12 @@ def comparison_command(table: str | None, bounded: bool = False) -> Command:
     if bounded and table in (LOAD, FILTERS):
         raise ConfigError(f"compare {table} has no columns of the bound; write codriving compare baselines --bound")
     if table == LOAD:
-        return Command(name, points, _refuse_flows, make_loads)
+        return Command(name, points, partial(refuse_flows, UNLOADED), make_loads)
     if table == FILTERS:
-        return Command(name, points, refuse_flows_of_filters, make_filters)
+        return Command(name, points, partial(refuse_flows, NO_FLOWS), make_filters)
     if bounded:
-        return Command(f"{name} --bound", points, _refuse_bounded_flows, partial(make_comparison, table, bounded=True))
+        made = partial(make_comparison, table, bounded=True)
+        return Command(f"{name} --bound", points, partial(refuse_flows, UNBOUNDED), made)
     return Command(name, points, make_outputs=partial(make_comparison, table))
 
 
@@ -235,19 +242,6 @@ def _compared_flows(table: str, driven: Driven) -> Outputs:
     whole = flow_table(cells, swept)
     files = {"comparison.csv": whole.csv().encode(), "comparison.md": markdown_text(kept).encode()}
     return Outputs(files, (printed,), (whole,))
-
-
-def _refuse_bounded_flows(plan: Plan) -> None:
-    if any(is_flow(cell.resolved) for cell in plan.cells):
-        raise ConfigError("no bound is defined for a flow, in which vehicles keep coming; leave --bound out")
-
-
-def _refuse_flows(plan: Plan) -> None:
-    if any(is_flow(cell.resolved) for cell in plan.cells):
-        raise ConfigError(
-            "codriving compare load varies the number of CAVs, which a flow does not have; write for instance "
-            "codriving compare baselines flow=steady flow.arrivals=200,400,600"
-        )
 
 
 def make_loads(driven: Driven) -> Outputs:

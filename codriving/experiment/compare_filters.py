@@ -8,13 +8,16 @@ from codriving.errors import ConfigError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.cells import Cell
 from codriving.experiment.drive import Driven, Outputs
-from codriving.experiment.flows import is_flow
-from codriving.experiment.plan import Plan
 from codriving.reports import REFERENCE, CellResults, FilterRow, filter_rows, filter_table, markdown_text, print_filters
 
 FILTER = "filter"  # The key that varies
 
 WITHOUT_CHECK = "cda.safety_check=false"  # With it the reference has no safety check of its own either
+
+NO_FLOWS = (
+    "codriving compare filters pairs episodes, and in flows nothing is paired; write for instance codriving run "
+    "method=ppo filter=false,true flow=steady"
+)
 
 
 def filter_points(
@@ -36,15 +39,6 @@ def filter_points(
                 tokens = (*base, *point.overrides, f"{FILTER}={value}", f"method={name}")
                 points.append(Point(tokens, {**point.swept, "method": name, FILTER: value}, point.removed))
     return points
-
-
-def refuse_flows_of_filters(plan: Plan) -> None:
-    """Refuse flows, in which nothing is paired."""
-    if any(is_flow(cell.resolved) for cell in plan.cells):
-        raise ConfigError(
-            "codriving compare filters pairs episodes, and in flows nothing is paired; write for instance codriving "
-            "run method=ppo filter=false,true flow=steady"
-        )
 
 
 def make_filters(driven: Driven) -> Outputs:

@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 
 from codriving.config import ROOT, SUITE, Point, build, changed_worlds, compose_named, validate
 from codriving.errors import ConfigError
-from codriving.experiment.cells import Cell, distinct, make_cell, repeated
-from codriving.experiment.flows import refuse_mixed
+from codriving.experiment.cells import Cell, distinct, make_cell, repeated, without_effect
+from codriving.experiment.flows import is_flow, refuse_mixed
 from codriving.experiment.launchers import Launcher
 from codriving.experiment.objects import modules_to_preload
 from codriving.experiment.remembering import pinned
@@ -75,10 +75,20 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
         output=Path(first["output"]),
         experiment=first["experiment"],
         run=first["run"],
-        notes=(*repeated(cells), *changed_worlds([suite_of(point) for point in points], configs, config_dir)),
+        notes=(
+            *repeated(cells),
+            *without_effect(cells),
+            *changed_worlds([suite_of(point) for point in points], configs, config_dir),
+        ),
         render=first["render"],
         config_dir=config_dir,
     )
+
+
+def refuse_flows(why: str, plan: Plan) -> None:
+    """Refuse flows in the plan of a command that has no use for them."""
+    if any(is_flow(cell.resolved) for cell in plan.cells):
+        raise ConfigError(why)
 
 
 def _is_complete(config: Mapping[str, Any], cells: int) -> bool:

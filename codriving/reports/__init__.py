@@ -18,7 +18,7 @@ from codriving.reports.comparison import (
 )
 from codriving.reports.episodes import TimedEpisode, cpu_per_decision, timing_columns
 from codriving.reports.figures import learning_figure, load_figure
-from codriving.reports.filters import FilterRow, filter_rows, filter_table, print_filters
+from codriving.reports.filters import FILTERED, FilterRow, filter_rows, filter_table, print_filters
 from codriving.reports.flows import flow_table, flow_tables, print_flows
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
 from codriving.reports.load import load_rows, load_table, print_each_load, print_loads
@@ -30,8 +30,8 @@ from codriving.reports.subject import METHODS, REFERENCE, Subject
 from codriving.reports.summary import RunTables, run_tables
 
 __all__ = [
-    "METHODS", "METHOD_CHOICE", "REFERENCE", "BoundRow", "BuiltMemory", "CellResults", "Compared", "Condition",
-    "FilterRow", "LearningRow", "Paper", "PrintedTable", "RunTables", "SceneBounds", "Subject", "Table",
+    "FILTERED", "METHODS", "METHOD_CHOICE", "REFERENCE", "BoundRow", "BuiltMemory", "CellResults", "Compared",
+    "Condition", "FilterRow", "LearningRow", "Paper", "PrintedTable", "RunTables", "SceneBounds", "Subject", "Table",
     "TimedEpisode", "ablation_rows", "ablation_table", "comparison_rows", "comparison_table", "cpu_per_decision",
     "filter_rows", "filter_table", "flow_table", "flow_tables", "learning_figure", "learning_rows",
     "learning_table", "load_figure", "load_rows", "load_table", "markdown_text", "print_bounds", "print_built",

@@ -80,3 +80,16 @@ def test_values_that_come_to_the_same_are_one_row_and_a_note() -> None:
     assert note == (
         "codriving full: cda=agreement_seeking is the same configuration as cda=full and has no row of its own."
     )
+
+
+def test_what_a_method_takes_no_notice_of_is_said() -> None:
+    def notes(*tokens: str) -> tuple[str, ...]:
+        return make_plan(expand(["launcher=serial", *tokens])).notes
+
+    assert notes("method=fcfs,random_order,codriving,idm", "order=mcts", "filter=true") == (
+        "order=mcts has no effect on fcfs, random_order, idm: what orders by itself, or not at all, does not read it.",
+        "filter=true has no effect on random_order, codriving, idm: what has this check or gives no actions is not "
+        "filtered.",
+    )
+    assert notes("method=codriving,oracle", "order=mcts") == ()
+    assert notes("method=fcfs,codriving", "filter=true", "cda.safety_check=false") == ()
