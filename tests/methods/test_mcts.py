@@ -1,5 +1,6 @@
 """Tree search over orders: how good, how sure, and how steady its answers are."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import permutations
 from random import Random
@@ -17,7 +18,7 @@ from codriving.methods.fcfs import FirstComeFirstServed
 from codriving.methods.idfst import SpanningTree
 from codriving.methods.mcts import MonteCarloTreeSearch, TreeSearch
 from codriving.reasoning.ordering.order_search import Coded
-from codriving.reasoning.ordering.protocol import Request
+from codriving.reasoning.ordering.protocol import JointPlan, Request
 from codriving.reasoning.ordering.schedule import Objective, schedule, timed, total_delay
 
 
@@ -35,10 +36,14 @@ def searched(problem: Instance, iterations: int, seed: int = 1) -> tuple[float, 
 
 
 def by_zone(problem: Instance) -> Instance:
-    """The same problem, where either of a pair may be first unless that is fixed."""
+    """The same problem, where either of a pair may be first at each of two zones unless that is fixed."""
     apart, fixed = problem.separation, {frozenset(pair) for pair in problem.before}
     pairs = [pair for pair in apart if frozenset(pair) not in fixed and pair[::-1] in apart]
-    return replace(problem, zones={(a, b): ((apart[b, a], apart[a, b]),) for a, b in pairs})
+    # Between the two zones there is a while in which the one that is second at the first may be first at the other.
+    return replace(
+        problem,
+        zones={(a, b): ((apart[b, a], apart[a, b] / 4), (-apart[a, b] / 2, apart[a, b])) for a, b in pairs},
+    )
 
 
 @settings(max_examples=40, deadline=None)
@@ -153,6 +158,41 @@ def test_another_order_must_save_more_than_the_hysteresis() -> None:
     assert rule.order(instance({"a": 3.2, "b": 2.8}, separation, time=0.4), NoPlanner()).sequence == ("b", "a")
     rule.reset(0)
     assert rule.order(instance(then, separation), NoPlanner()).sequence == ("b", "a")
+
+
+class Foresees(NoPlanner):
+    """Knows how many CAVs are left without a plan in an order, and how far all get in it [m]."""
+
+    def __init__(self, **known: tuple[int, float]) -> None:
+        self.known = {tuple(order): plan for order, plan in known.items()}
+
+    def plan(self, order: Sequence[str]) -> JointPlan:
+        """Look it up."""
+        stuck, worth = self.known[tuple(order)]
+        return JointPlan(not stuck, {}, 0.5, stuck, worth)
+
+
+@pytest.mark.parametrize(
+    ("ab", "ba", "sequence", "kept"),
+    [
+        ((0, 9.0), (0, 8.0), "ab", 1),
+        # The order of the last step stays for 0.3 s of hysteresis, which count as 1.5 m.
+        ((0, 9.0), (0, 10.4), "ab", 1),
+        ((0, 9.0), (0, 10.6), "ba", 0),
+        ((1, 99.0), (0, 8.0), "ba", 0),
+        ((1, 9.0), (2, 99.0), "ab", 1),
+    ],
+)
+def test_zone_by_zone_the_plans_choose_among_what_is_found_and_the_order_of_the_last_step(
+    ab: tuple[int, float], ba: tuple[int, float], sequence: str, kept: int
+) -> None:
+    rule, separation = MonteCarloTreeSearch(), both("a", "b", 2.0)
+    first = rule.order(by_zone(instance({"a": 3.0, "b": 3.1}, separation)), Foresees(ab=(0, 0.0)))
+    assert (first.sequence, first.counts["order_kept"]) == (("a", "b"), 0)
+    # By the schedule b should go first now.
+    then = by_zone(instance({"a": 3.0, "b": 2.9}, separation, time=0.2))
+    answer = rule.order(then, Foresees(ab=ab, ba=ba))
+    assert ("".join(answer.sequence), answer.counts["order_kept"]) == (sequence, kept)
 
 
 def test_an_order_that_has_become_impossible_is_given_up() -> None:

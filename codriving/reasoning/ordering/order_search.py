@@ -39,6 +39,7 @@ class SearchedOrder(OrderRule):
 
     The seeds are the order of tickets, that of the earliest free slots, and that of the last step, which stays unless
     the search finds one that is better by more than the hysteresis, or unless it has become impossible.
+    Where CAVs may pass zone by zone, the plans of the executor choose among the seeds and what the search finds.
     """
 
     def __init__(
