@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from driven import moment_of, ordering_of, planned
 from hypothesis import given
@@ -125,6 +126,14 @@ def test_by_zone_a_cav_passes_before_one_that_precedes_it_if_it_is_out_of_its_wa
     (passage,) = by_zone.passages(joint)
     assert (passage.first, passage.second) == ("CAV2", "CAV1")
     assert passage.entries == pytest.approx((108.4, 104.4), abs=0.1)
+
+
+def test_who_passes_first_has_a_metre_of_room_when_the_other_one_is_in_the_zone(junction: Junction) -> None:
+    (meeting,) = plans(junction, FAR, NEAR, by_zone=True).open_meetings(*ORDER)
+    first = np.full(21, 110.0 - 30.0)
+    reach = float(meeting.zones[0][0].front(110.0)) - 85.0
+    travels = np.outer([reach + 0.9, reach + 1.1], np.ones(21))
+    assert meeting.steps_ahead(travels, first).tolist() == [0, 21]
 
 
 def test_by_zone_a_cav_that_is_not_out_of_the_way_in_time_waits_all_the_same(junction: Junction) -> None:
