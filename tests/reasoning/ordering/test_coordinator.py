@@ -1,6 +1,7 @@
 """The conflict coordinator: who goes first, and that it stays so."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from graphlib import TopologicalSorter
 
 import pytest
@@ -198,3 +199,13 @@ def test_no_cav_is_told_to_pass_in_front_of_a_human_driver_who_may_be_there_firs
                 worst = thoughts.forecast.reach(8.0, False).most
                 enters = thoughts.forecast.time_to(c.distances[1], worst)
                 assert thoughts.forecast.time_to(c.distances[0], mine) < enters
+
+
+def test_zone_by_zone_who_is_scheduled_first_is_told_to_go_first(junction: Junction) -> None:
+    coordinator, firsts = RuleCoordinator(binding=False), []
+    # Keeping the order of before costs nothing: CAV2, now near, passes in time before CAV1, which is far away.
+    for near, far in ((85.0, 30.0), (30.0, 85.0)):
+        cars = car("CAV1", "south-north", near, 8.0), car("CAV2", "west-east", far, 8.0)
+        order = coordinator.negotiate(replace(junction.thoughts(*cars).moment(), by_zone=True))
+        firsts.append((order.first_of("CAV1", "CAV2"), order.sequence))
+    assert firsts == [("CAV1", ("CAV1", "CAV2")), ("CAV2", ("CAV2", "CAV1"))]

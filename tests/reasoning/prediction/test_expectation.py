@@ -115,6 +115,27 @@ def test_a_follower_keeps_a_headway_or_the_margin_if_that_is_less(
     assert flag == keeps
 
 
+@pytest.mark.parametrize(
+    ("first", "place", "by_zone", "keeps"),
+    [
+        ("CAV2", 70.0, True, True),
+        ("CAV2", 70.0, False, False),
+        ("CAV2", 76.0, True, False),  # Out of its way, but not by the margin of 1 s
+        ("CAV2", 100.0, True, False),
+        ("HDV1", 70.0, True, False),  # No human driver is driven past on account of when it is likely to come
+    ],
+)
+def test_zone_by_zone_a_cav_may_pass_before_one_that_goes_first_if_it_is_out_of_its_way_in_time(
+    first: str, place: float, by_zone: bool, keeps: bool, junction: Junction
+) -> None:
+    thoughts = junction.thoughts(car("CAV1", "south-north", 85.0, 8.0), car(first, "west-east", place, 8.0))
+    moment, times = replace(thoughts.moment(), by_zone=by_zone), thoughts.forecast.times
+    ahead = {first: (Expected("west-east", place + 8 * times, True, {}),)}
+    own, order = (85.0 + 8 * times)[None], order_of(f"{first} CAV1")
+    (flag,) = keeps_order(moment, "CAV1", "CAV1", "south-north", own, ahead, order, LAG, True)
+    assert flag == keeps
+
+
 def test_who_changes_lanes_is_expected_on_both_of_them(highway: Junction) -> None:
     thoughts = highway.thoughts(car("CAV1", "lane-0", 300.0, 20.0, offset=2.5))
     entered, left = expected(thoughts, PassingOrder((), ()))["CAV1"]
