@@ -37,7 +37,7 @@ class Envelope:
 
     @property
     def corners(self) -> tuple[tuple[FloatArray, FloatArray], ...]:
-        """The extreme ways to lie: lateral offset and heading of each, for every row."""
+        """The extreme poses: lateral offset and heading of each, for every row."""
         return tuple((side, turn) for side in (self.left, self.right) for turn in (self.least_turn, self.most_turn))
 
 

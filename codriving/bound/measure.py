@@ -28,7 +28,7 @@ QUICKER = 0.002  # What is added to the pace that was seen [m/s]
 
 SPEEDS = (Action.SLOWER, Action.IDLE, Action.HOLD, Action.FASTER)
 
-Draw = Callable[[int], Action]
+Chooser = Callable[[int], Action]
 
 
 class Lone(Scenario):
@@ -69,7 +69,7 @@ class LoneRoad:
         self._environment = Environment(self._scenario, *parts, None, True)
         self.road_map, self.model = self._environment.road_map, self._environment.driving_model
 
-    def drive(self, start: Start, choose: Draw) -> LoneDrive:
+    def drive(self, start: Start, choose: Chooser) -> LoneDrive:
         """Drive from a start; the function gives the action of each decision."""
         self._scenario.starts = (start,)
         world = self._environment.reset(0)
@@ -123,7 +123,7 @@ def random_start(road: LoneRoad, route: str, rng: np.random.Generator) -> Start:
     return Start("CAV1", Kind.CAV, route, float(rng.uniform(first, latest)), speed)
 
 
-def random_actions(rng: np.random.Generator) -> Draw:
+def random_actions(rng: np.random.Generator) -> Chooser:
     """Draw how a drive goes on: an action is kept for a while, and drives differ in which they like."""
     liked = rng.dirichlet((0.7, 0.7, 0.7, 1.5))
     keeps = float(rng.uniform(0.2, 0.9))
@@ -137,7 +137,7 @@ def random_actions(rng: np.random.Generator) -> Draw:
     return choose
 
 
-def _nearly_fastest(rng: np.random.Generator) -> Draw:
+def _nearly_fastest(rng: np.random.Generator) -> Chooser:
     share = float(rng.uniform(0.05, 0.5))
     return lambda _: SPEEDS[int(rng.integers(len(SPEEDS)))] if rng.random() < share else Action.FASTER
 

@@ -76,30 +76,30 @@ def sure_overlap(
     mask = np.zeros((len(path_i.points), len(path_j.points)), dtype=np.bool_)
     if len(cells.i):
         inside = np.ones(len(cells.i), dtype=np.bool_)
-        for lies_i, lies_j in product(_lies(envelope_i, path_i, cells.i), _lies(envelope_j, path_j, cells.j)):
-            inside &= _overlaps(lies_i, lies_j)
+        for pose_i, pose_j in product(_poses(envelope_i, path_i, cells.i), _poses(envelope_j, path_j, cells.j)):
+            inside &= _overlaps(pose_i, pose_j)
         mask[cells.i[inside], cells.j[inside]] = True
         mask = between_looks(mask, jump / path_i.spacing, jump / path_j.spacing)
     mask.setflags(write=False)
     return mask
 
 
-Lie = tuple[FloatArray, FloatArray, FloatArray]  # x and y [m], heading [rad]
+Pose = tuple[FloatArray, FloatArray, FloatArray]  # x and y [m], heading [rad]
 
 
-def _lies(envelope: Envelope, path: Path, points: NDArray[np.intp]) -> list[Lie]:
-    """The extreme ways to lie at path points, and with the heading of the path between them."""
+def _poses(envelope: Envelope, path: Path, points: NDArray[np.intp]) -> list[Pose]:
+    """The extreme poses at path points, and on each side one with a heading between the extremes."""
     rows = np.minimum((points * path.spacing / BIN).astype(np.intp), len(envelope.pace) - 1)
     heading, (x, y) = path.headings[points], path.points[points].T
     middle = (envelope.least_turn + envelope.most_turn) / 2
-    ways = [*envelope.corners, (envelope.left, middle), (envelope.right, middle)]
+    sides = [*envelope.corners, (envelope.left, middle), (envelope.right, middle)]
     return [
         (x - side[rows] * np.sin(heading), y + side[rows] * np.cos(heading), heading + turn[rows])
-        for side, turn in ways
+        for side, turn in sides
     ]
 
 
-def _overlaps(one: Lie, other: Lie) -> BoolArray:
+def _overlaps(one: Pose, other: Pose) -> BoolArray:
     (x, y, heading), (x2, y2, heading2) = one, other
     cos, sin, dx, dy, turn = np.cos(heading), np.sin(heading), x2 - x, y2 - y, heading2 - heading
     return np.asarray(separation(cos * dx + sin * dy, cos * dy - sin * dx, np.cos(turn), np.sin(turn), TRUE) < 0)

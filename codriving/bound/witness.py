@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from codriving.bound.measure import Draw, LoneDrive, LoneRoad
+from codriving.bound.measure import Chooser, LoneDrive, LoneRoad
 from codriving.bound.meetings import Margins
 from codriving.bound.solve import Bound, lower_bound
 from codriving.bound.world import BoundedWorld
@@ -157,10 +157,8 @@ def _first(zone: ConflictZone, pair: _Pair, one: Start, other: Start, bound: Bou
     if one.route == other.route:
         return pair.i if one.position > other.position else pair.j
     # What i blocks at its start begins where j has not come yet, and the other way round.
-    i_leads = float(zone.over_i.lowest(one.position)) > other.position and np.isfinite(zone.over_i.lowest(one.position))
-    j_leads = float(zone.over_j.lowest(other.position)) > one.position and np.isfinite(
-        zone.over_j.lowest(other.position)
-    )
+    low_i, low_j = float(zone.over_i.lowest(one.position)), float(zone.over_j.lowest(other.position))
+    i_leads, j_leads = other.position < low_i < np.inf, one.position < low_j < np.inf
     if i_leads != j_leads:
         return pair.i if i_leads else pair.j
     passes = (_passes(bound.times[pair.i], zone.point_i), _passes(bound.times[pair.j], zone.point_j))
@@ -189,7 +187,7 @@ def _wall(zone: ConflictZone, first: SearchedDrive, place: float, steps: int) ->
     return np.where(first_blocked < len(edges), edges[np.minimum(first_blocked, len(edges) - 1)], np.inf)
 
 
-def _following(drive: SearchedDrive) -> Draw:
+def _following(drive: SearchedDrive) -> Chooser:
     return lambda step: drive.plan[min(step, len(drive.plan) - 1)]
 
 

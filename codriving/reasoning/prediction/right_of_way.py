@@ -69,7 +69,7 @@ def known_to_give_way(c: Conflict, human: TrackedVehicle, road_map: RoadMap, man
     late = 0.0 if brakes or human.speed < SLOW else manner.reaction
     if c.distances[0] <= 0 and _needed(human.speed, c.distances[1], late) <= COMFORT:
         return "the CAV is in the conflict zone already, and the human driver can still stop before it"
-    late += 0.0 if late == 0.0 else manner.distraction
+    late += manner.distraction if late else 0.0
     if manner.gives_way == "never" or _needed(human.speed, room, late) > (FIRM if brakes else COMFORT):
         return ""
     entry = road_map.routes[c.routes[0]].entry

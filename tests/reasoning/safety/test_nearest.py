@@ -26,6 +26,7 @@ TABLE = [
     ("S", 3, "IHF", "I"),
     ("S", 6, "IHF", "IHF"),
     ("S", 6, "F", "F"),
+    ("S", 6, "FHL", "HF"),  # Nor is a lane changed to slow down
     ("L", 6, "SIHF", "I"),  # A lane change keeps the speed
     ("L", 9, "SHF", "F"),
     ("L", 6, "SR", "S"),  # No other lane change takes its place
