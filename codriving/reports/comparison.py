@@ -369,8 +369,8 @@ def _where(row: Compared, swept: Sequence[str]) -> str:
 def _better_note(row: Compared, pairs: PairedCells, swept: Sequence[str], subject: Subject) -> str:
     texts = {column.key: column.text(column.value(pairs)) for column in PAIRED}
     shown = {
-        "clean": f"clean success by {texts['clean_text']} points (p = {texts['clean_p_text']})",
-        "success": f"success by {texts['success_difference']} points (p = {texts['mcnemar_p']})",
+        "clean": f"clean success by {texts['clean_text']} points (p (Holm) = {texts['clean_holm']})",
+        "success": f"success by {texts['success_difference']} points (p (Holm) = {texts['success_holm']})",
         "velocity": f"velocity by {texts['velocity']} m/s",
         "PET": f"PET by {texts['pet']} s",
     }
