@@ -146,15 +146,15 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
         others = [*(token for token in LOADED if token.partition("=")[0] not in named), *others]
     # Asked for once more on the command line, it is the user's.
     base = () if "experiment" in keys else (f"experiment={EXPERIMENT[table]}",)
-    methods = [*_methods(table, added, config_dir), *(taking_part(CONTROLS) if controlled else ())]
+    methods = list(dict.fromkeys([*_methods(table, added, config_dir), *(taking_part(CONTROLS) if controlled else ())]))
     if table == ORDERS:
         return order_points(base, others, methods, config_dir)
     if table == FILTERS:
-        return filter_points(base, others, list(dict.fromkeys(methods)), config_dir)
+        return filter_points(base, others, methods, config_dir)
     return [
         Point((*base, *point.overrides, f"method={name}"), {**point.swept, "method": name}, point.removed)
         for point in expand(others, config_dir)
-        for name in dict.fromkeys(methods)
+        for name in methods
     ]
 
 
@@ -164,9 +164,7 @@ def _methods(table: str, added: Sequence[str], config_dir: Path | None) -> list[
     known = choices("method", config_dir)
     for name in own:
         check_choice("method", name, config_dir)
-    return list(
-        dict.fromkeys([*(name for name in taking_part(ALL if table == FILTERS else table) if name in known), *own])
-    )
+    return [*(name for name in taking_part(ALL if table == FILTERS else table) if name in known), *own]
 
 
 def setting(resolved: Mapping[str, Any], varied: Sequence[str] = ()) -> str:

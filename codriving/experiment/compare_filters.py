@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from codriving.config import Point, expand, parse
+from codriving.config import Point, compose, expand, parse
 from codriving.errors import ConfigError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.cells import Cell
@@ -11,8 +11,6 @@ from codriving.experiment.drive import Driven, Outputs
 from codriving.reports import REFERENCE, CellResults, FilterRow, filter_rows, filter_table, markdown_text, print_filters
 
 FILTER = "filter"  # The key that varies
-
-WITHOUT_CHECK = "cda.safety_check=false"  # With it the reference has no safety check of its own either
 
 NO_FLOWS = (
     "codriving compare filters pairs episodes, and in flows nothing is paired; write for instance codriving run "
@@ -33,7 +31,7 @@ def filter_points(
         raise ConfigError("codriving compare filters sets filter itself; leave filter= out, or use codriving run")
     both, points = ("false", "true"), []
     for point in expand(overrides, config_dir):
-        checked = WITHOUT_CHECK not in [token.lstrip("+").lower() for token in point.overrides]
+        checked = compose(point.overrides, config_dir)["cda"].get("safety_check", True)
         for name in methods:
             for value in both[:1] if checked and name == REFERENCE else both:
                 tokens = (*base, *point.overrides, f"{FILTER}={value}", f"method={name}")

@@ -9,7 +9,7 @@ import pytest
 from codriving.config.build import build
 from codriving.config.choices import TABLES, choices, taking_part
 from codriving.config.compose import compose
-from codriving.config.locate import experiments_dir
+from codriving.config.locate import conf_dir, experiments_dir
 from codriving.datatypes.world import Kind
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.environment.scenarios.roundabout import Roundabout
@@ -105,6 +105,8 @@ def test_controls_are_the_last_rows_unless_they_are_left_out(table: str, own: Pa
     assert named == [*(m.partition("=")[2] for m in methods(table)), "mine", *CONTROLS]
     assert methods(table) + [f"method={name}" for name in CONTROLS] == [p.overrides[-1] for p in comparison(table, [])]
     assert methods(table, "method=idm")[-1] == "method=idm", "one that is asked for takes part all the same"
+    twice = comparison(table, ["controls=false", "controls=true"])
+    assert twice[-1].swept["method"] == CONTROLS[-1], "the last word counts"
     with pytest.raises(ConfigError, match="controls must be true or false, got 'no'"):
         comparison(table, ["controls=no"])
 
@@ -122,6 +124,10 @@ def test_filters_are_each_method_without_and_with_and_the_reference_once(own: Pa
     assert found == [pair for pair in pairs if pair != ("codriving", "filter=true")]
     without = comparison("filters", ["cda.safety_check=false", "scenario=merge"])
     assert without[-1].overrides[-2:] == ("filter=true", "method=codriving")
+    (own / "cda").mkdir()
+    level = (conf_dir() / "cda" / "full.yaml").read_text()
+    (own / "cda" / "bold.yaml").write_text(level.replace("safety_check: true", "safety_check: false"))
+    assert comparison("filters", ["cda=bold"], own)[-1].overrides[-2:] == ("filter=true", "method=codriving")
     assert {point.overrides[0] for point in without} == {"experiment=compare-filters"}
     with pytest.raises(ConfigError, match="codriving compare filters sets filter itself"):
         comparison("filters", ["filter=true"])
