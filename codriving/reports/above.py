@@ -36,7 +36,6 @@ def above(cell: CellResults, bounds: SceneBounds) -> Above:
     totals = [
         (sum(episode.record.outcome.arrivals.values()), bounds.totals[episode.record.seed])
         for episode in cell.successes
-        if episode.record.seed in bounds.totals
     ]
     return Above(
         mean([total / bounds.cavs for total, _ in totals]),

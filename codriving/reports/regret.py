@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from codriving.reports.columns import Column, Value
-from codriving.reports.wording import two_digits
+from codriving.reports.columns import Column
+from codriving.reports.wording import fixed, two_digits
 
 HEAD = "bound without human drivers"  # What the title of a table says that has these columns
 
@@ -32,14 +32,9 @@ def above_columns() -> list[Column[Any]]:
     columns: list[Column[Above]] = [
         Column("arrival_mean", lambda a: a.arrival, "arrival [s]", two_digits),
         Column("above_bound", lambda a: a.seconds, "above bound [s]", two_digits),
-        Column("above_bound_percent", lambda a: a.percent, "above bound [%]", one_digit),
+        Column("above_bound_percent", lambda a: a.percent, "above bound [%]", fixed),
     ]
     return [column.of(lambda row: row.above) for column in columns]
-
-
-def one_digit(value: Value) -> str:
-    """Write a number with one digit."""
-    return f"{value:.1f}" if isinstance(value, float) else ""
 
 
 def above_notes(rows: Sequence[Any]) -> list[str]:

@@ -72,7 +72,7 @@ class CellResults:
     @property
     def is_control(self) -> bool:
         """Whether it is no method: its variant says so with its first word."""
-        return self.first.variant.replace("/", " ").startswith("control ") or self.first.variant == "control"
+        return self.first.variant.replace("/", " ").split(" ")[0] == "control"
 
     @cached_property
     def episodes(self) -> "list[ScoredEpisode]":

@@ -33,6 +33,24 @@ def test_bounds_are_printed_kept_and_not_solved_again(capsys: pytest.CaptureFixt
     assert file.read_text().splitlines()[2] == lines[2]
 
 
+@pytest.mark.parametrize("spoilt", ["nan", "", "-3.0", "x"])
+def test_a_number_that_cannot_be_one_is_solved_anew(spoilt: str) -> None:
+    run_bound([*FEW, "episodes=1"], BoundOptions())
+    file = Path("outputs/bound/few/bound.csv")
+    whole = file.read_text()
+    bound = whole.splitlines()[1].split(",")[4]
+    file.write_text(whole.replace(f",{bound},", f",{spoilt},", 1))
+    run_bound([*FEW, "episodes=1"], BoundOptions())
+    assert file.read_text() == whole
+
+
+def test_bounds_of_another_behaviour_are_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    run_bound([*FEW, "episodes=1"], BoundOptions())
+    monkeypatch.setattr("codriving.experiment.bounds.BEHAVIOUR", 1)
+    run_bound([*FEW, "episodes=1"], BoundOptions())
+    assert len(Path("outputs/bound/few/bound.csv").read_text().splitlines()) == 3
+
+
 def test_rows_of_other_settings_stay_beside(capsys: pytest.CaptureFixture[str]) -> None:
     run_bound([*FEW, "episodes=1"], BoundOptions())
     run_bound(["scenario=merge", "seed=24000", "episodes=1", "run=few"], BoundOptions())
@@ -47,6 +65,7 @@ def test_rows_of_other_settings_stay_beside(capsys: pytest.CaptureFixture[str]) 
 @pytest.mark.parametrize(
     ("options", "words"),
     [
+        (BoundOptions(margin=5.1), r"--margin must be 0 to 5 s, got 5\.1"),
         (BoundOptions(margin=-1), "--margin must be 0 to 5 s, got -1"),
         (BoundOptions(margin=1, driven=True), "--driven keeps no margins"),
         (BoundOptions(one_order=True), "--one-order needs --margin"),

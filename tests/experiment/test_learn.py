@@ -77,7 +77,8 @@ def test_without_interactions_or_if_they_are_left_out_there_are_no_controls(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert run_learn([*SHORT, "interactions=1", "episodes=1", "run=x", "launcher=serial", "controls=false"]) == 0
-    said = capsys.readouterr()
-    assert "Testing: 1 episodes in each of 1 cells." in said.err
-    assert "ontrol" not in said.out
+    for run, more in (("x", ["interactions=1", "controls=false"]), ("y", ["interactions=0"])):
+        assert run_learn([*SHORT, "episodes=1", f"run={run}", "launcher=serial", *more]) == 0
+        said = capsys.readouterr()
+        assert "Testing: 1 episodes in each of 1 cells." in said.err
+        assert "ontrol" not in said.out

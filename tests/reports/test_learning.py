@@ -56,6 +56,11 @@ def test_a_statement_is_not_put_beside_a_variant(make: Make) -> None:
     assert [row.claim for row in learning_rows(cells, read_learning(experiments_dir()))] == [None, None]
 
 
+def test_a_statement_is_not_put_beside_a_control(make: Make) -> None:
+    cells = [LearningRow(CellResults([make(0, scenario="merge")]), 10, 0, 5, control=c) for c in ("none", "rule")]
+    assert [row.claim for row in learning_rows(cells, read_learning(experiments_dir()))] == ["about 75 %", None]
+
+
 def test_the_table_says_what_is_shown(rows: list[LearningRow]) -> None:
     table = print_learning(rows, "standard")
     notes = " ".join(table.notes)

@@ -67,6 +67,17 @@ def test_settings_of_a_suite_have_panels_of_their_own(make: Make, monkeypatch: p
     assert panels == ["blind", "crowd\nscenario.cavs=4", "crowd\nscenario.cavs=8", "paper\nmerge", "paper\nhighway"]
 
 
+def test_rates_are_of_completed_episodes_and_stand_in_the_row_of_their_method(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    endings = (Ending.SUCCESS, Ending.SUCCESS, Ending.TIMEOUT, Ending.TIMEOUT, Ending.ERROR)
+    half = Compared("intersection", "mine", cell=CellResults([make(k, e, variant="") for k, e in enumerate(endings)]))
+    figure = drawn(monkeypatch, [("standoff", [row(make, "fcfs", 3, False), half]), ("crowd", [half])])
+    for axis, places in zip(figure.axes, ([(75.0, 0), (50.0, 1)], [(50.0, 1)]), strict=True):
+        marks = [line.get_xydata()[0] for line in axis.get_lines() if line.get_label() == "success"]
+        assert [(x, round(y)) for x, y in marks] == places
+
+
 @pytest.mark.parametrize("suites", [2, 6])
 def test_nothing_lies_under_the_legend_and_nothing_is_cut(
     make: Make, monkeypatch: pytest.MonkeyPatch, suites: int

@@ -194,6 +194,14 @@ def test_how_a_model_is_asked_tells_nothing_and_which_one_does() -> None:
         assert told(*model, f"llm.{setting}") != told(*model)
 
 
+def test_a_memory_that_knows_no_controls_is_one_without() -> None:
+    asked = ("memory=frozen", "memory.file=a", "memory.snapshot=bb")
+    resolved = compose(asked)
+    before = {**resolved, "memory": {k: v for k, v in resolved["memory"].items() if k != "control"}}
+    assert driving_values(before) == driving_values(resolved)
+    assert driving_values(before) != driving_values(compose([*asked, "memory.control=rule"]))
+
+
 def test_a_memory_is_told_by_its_snapshot_wherever_its_file_lies() -> None:
     one, two = (compose(["memory=frozen", f"memory.file={name}", "memory.snapshot=bb"]) for name in ("a", "b"))
     assert driving_values(one) == driving_values(two)
