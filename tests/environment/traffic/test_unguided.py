@@ -84,6 +84,14 @@ def test_episode_ends_as_it_does_for_other_cavs(configured: Made) -> None:
     assert set(ends[0][0].arrivals) == {"CAV1", "CAV2", "CAV3", "CAV4"}
 
 
+def test_what_hides_whom_is_told_of_the_vehicles_that_are_on_the_road(configured: Made) -> None:
+    environment = configured("scenario=intersection", "scenario.blind=8", *SETTINGS)
+    environment.reset(10_000)
+    assert any(environment._traffic.hidden.values()), "some are hidden from one another"
+    environment.hand_over()
+    assert environment._traffic.hidden.keys() == set(environment._traffic.vehicles)
+
+
 def test_a_cav_that_comes_in_with_a_flow_is_handed_over_too(configured: Made) -> None:
     environment = configured("scenario=intersection", "flow=steady", *SETTINGS[:2])
     environment.reset(10_000)

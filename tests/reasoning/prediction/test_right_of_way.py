@@ -129,6 +129,7 @@ KNOWN = [
     ("south-north 111 3", "west-east 80 8", "rule higher hesitant late never"),  # In the zone: bodies are minded by all
     ("east-west 80 8", "south-north 96 0.1", "rule higher hesitant late"),  # It stands
     ("south-north 80 8", "west-east 96 0.1", "hesitant"),  # It stands, but has the right of way
+    ("east-west 80 8", "south-north 102 0.1", ""),  # It stands in the junction, and wants to leave it
 ]
 
 
