@@ -15,6 +15,7 @@ from codriving.config.target import find_class
 from codriving.datatypes import (
     ActionFilter,
     CaseMemory,
+    Communication,
     Cooperation,
     Drivers,
     EpisodeLauncher,
@@ -256,6 +257,7 @@ EXPECTED |= {
     "limits": VehicleLimits,
     "drivers": Drivers,
     "flow": Flow,
+    "v2x": Communication,
     "environment": Simulator,  # Last, so that refusals name limits.lateral, as a user does
 }
 """What each node has to be, known before its class is called: a file chooses no other code than a part of its kind."""

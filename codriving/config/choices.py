@@ -45,6 +45,7 @@ FIRST = {
     "limits": ("none", "road"),
     "drivers": ("simulator", "attentive", "mixed", "rough"),
     "flow": ("none", "steady"),
+    "v2x": ("perfect", "good", "urban", "poor"),
     SUITE: ("default", "paper", "honest", "standoff", "crowd", "blind", "blocked_exit", "busy_merge"),
     "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),

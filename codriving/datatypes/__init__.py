@@ -19,6 +19,7 @@ from codriving.datatypes.parts import (
     ActionFilter,
     CaseMemory,
     Chat,
+    Communication,
     Cooperation,
     Drivers,
     EpisodeLauncher,
@@ -29,7 +30,9 @@ from codriving.datatypes.parts import (
     OrderOfCavs,
     RuleModel,
     Scenario,
+    Shares,
     Simulator,
+    Wrapped,
 )
 from codriving.datatypes.record import (
     BLOCKER,
@@ -74,16 +77,28 @@ from codriving.datatypes.situation import (
     Situation,
     TrackedVehicle,
 )
-from codriving.datatypes.world import Action, DrivingModel, Intent, Kind, Manner, Scene, Start, VehicleState, WorldState
+from codriving.datatypes.world import (
+    Action,
+    DrivingModel,
+    Intent,
+    Kind,
+    Manner,
+    Scene,
+    Start,
+    Told,
+    VehicleState,
+    WorldState,
+)
 
 __all__ = [
     "BLOCKER", "Account", "Action", "ActionAssessment", "ActionFilter", "Approach", "ApproachingVehicle", "Arc",
-    "Block", "CaseMemory", "Chat", "Collision", "Conflict", "Cooperation", "Decision", "Deliberation", "Description",
-    "Drivers", "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience", "Flow",
-    "FlowArrival", "FlowLog", "Instance", "Intent", "Interaction", "Kind", "Lane", "LaneChange", "LaneId",
+    "Block", "CaseMemory", "Chat", "Collision", "Communication", "Conflict", "Cooperation", "Decision", "Deliberation",
+    "Description", "Drivers", "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience",
+    "Flow", "FlowArrival", "FlowLog", "Instance", "Intent", "Interaction", "Kind", "Lane", "LaneChange", "LaneId",
     "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory", "Method", "Metric", "Model", "NamedNumber",
     "OrderExecutor", "OrderOfCavs", "Outcome", "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence",
     "ReasonedDeliberation", "Relation", "Road", "Role", "Route", "RuleModel", "Scenario", "Scene", "SceneDescription",
-    "Score", "Severity", "Simulator", "Sine", "Situation", "Start", "Straight", "Track", "TrackedVehicle",
-    "Trajectory", "TravelScore", "Turn", "VehicleLimits", "VehicleState", "Verdict", "WorldState", "beside",
+    "Score", "Severity", "Shares", "Simulator", "Sine", "Situation", "Start", "Straight", "Told", "Track",
+    "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleLimits", "VehicleState", "Verdict", "WorldState",
+    "Wrapped", "beside",
 ]  # fmt: skip

@@ -1,7 +1,8 @@
 """The parts that a run is put together from, as base classes: what is built from a config is one of these."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -69,6 +70,7 @@ class Simulator(ABC):
 
     road_map: RoadMap
     driving_model: DrivingModel  # How a CAV answers to actions
+    observer: "Callable[[WorldState], None] | None" = None  # Is shown the world at each simulation step
 
     @property
     @abstractmethod
@@ -166,6 +168,15 @@ class CaseMemory(ABC):
         return 0
 
 
+@dataclass(frozen=True, slots=True)
+class Shares:
+    """What the CAVs of a method tell one another."""
+
+    states: bool = False  # Their states, and the vehicles that they see (class A of SAE J3216)
+    intents: bool = False  # Their routes and target speeds (class B)
+    orders: bool = False  # Who goes first (class C)
+
+
 class Method(ABC):
     """Decides for all CAVs, one decision step after another.
 
@@ -181,6 +192,8 @@ class Method(ABC):
     is_checked: bool = False  # Whether its actions pass the safety check of codriving already
     hands_over: bool = False  # Whether its CAVs drive as human drivers do, so that it gives no actions
     knows_drivers: bool = False  # Whether it is told what no vehicle can know: how human drivers treat the right of way
+    shares: Shares = Shares()
+    observer: "Callable[[WorldState], None] | None" = None  # Wants to be shown the world at each simulation step
 
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
         """Refuse a road that the method was not made for, before anything is driven.
@@ -243,6 +256,38 @@ class Method(ABC):
         return {}, []
 
 
+class Wrapped(Method):
+    """A method around another one, which answers for it wherever nothing else is said."""
+
+    def __init__(self, method: Method) -> None:
+        self.method = method
+        self.name, self.variant, self.reasoner = method.name, method.variant, method.reasoner
+        self.remembers, self.most_cavs, self.is_checked = method.remembers, method.most_cavs, method.is_checked
+        self.hands_over, self.knows_drivers, self.shares = method.hands_over, method.knows_drivers, method.shares
+        self.observer = method.observer
+
+    def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
+        self.method.check_road(road, target_speeds, decision_interval)
+
+    def files(self, road: Road) -> Mapping[str, Path]:
+        return self.method.files(road)
+
+    def remark(self, road: Road, world: Mapping[str, str]) -> str:
+        return self.method.remark(road, world)
+
+    def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
+        self.method.reset(road_map, model, seed)
+
+    def be_told(self, manners: Mapping[str, Manner]) -> None:
+        self.method.be_told(manners)
+
+    def conclude(self, world: WorldState, outcome: Outcome) -> Account:
+        return self.method.conclude(world, outcome)
+
+    def unfinished_step(self, time: float) -> Account:
+        return self.method.unfinished_step(time)
+
+
 class Cooperation:
     """How far CAVs cooperate: base of what a choice of ``cda`` may be; it has no hooks."""
 
@@ -265,6 +310,18 @@ class ActionFilter:
     def around(self, method: Method) -> Method:
         """Return the method with all its actions filtered; the method itself if none can be."""
         return method
+
+
+class Communication:
+    """How CAVs hear of one another: base of what a choice of ``v2x`` may be."""
+
+    def between(self, method: Method, shared: Sequence[object]) -> Method:
+        """Return the method with a copy for each CAV, which knows what has reached that one.
+
+        Args:
+            shared: What all copies use together, for instance the language model.
+        """
+        raise NotImplementedError
 
 
 class EpisodeLauncher:

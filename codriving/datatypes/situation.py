@@ -12,7 +12,7 @@ from typing import Any
 from codriving.datatypes.experience import Memory
 from codriving.datatypes.order import Conflict, PassingOrder
 from codriving.datatypes.road import LaneId
-from codriving.datatypes.world import Action, Intent, Kind, VehicleState
+from codriving.datatypes.world import Action, Intent, Kind, Told, VehicleState
 
 
 class Role(StrEnum):
@@ -43,6 +43,7 @@ class TrackedVehicle:
     standing: float = 0.0  # How long it has been standing [s]
     role: Role = Role.OTHER
     gap: float | None = None  # Free distance along the ego lane for a leading or rearing vehicle [m]
+    told: Told | None = None  # How old and how exact it is if it is known by messages; None where these are exact
 
     @property
     def is_cav(self) -> bool:
@@ -274,6 +275,8 @@ class _Writers(dict[type, Callable[[Any], Any]]):
             return lambda value: round(value, 6) if isfinite(value) else None
         if issubclass(kind, tuple | list):
             return _list
+        if kind is TrackedVehicle:
+            return _tracked
         if is_dataclass(kind):
             return _record(tuple(f.name for f in fields(kind)))
         if issubclass(kind, dict):
@@ -282,6 +285,14 @@ class _Writers(dict[type, Callable[[Any], Any]]):
 
 
 _WRITERS = _Writers()
+
+
+def _tracked(vehicle: TrackedVehicle) -> dict[str, Any]:
+    """Turn a vehicle into a dict, without ``told`` where messages are exact."""
+    written = _TRACKED(vehicle)
+    if vehicle.told is None:
+        del written["told"]
+    return written
 
 
 @lru_cache(maxsize=1024)
@@ -312,3 +323,6 @@ def _record(names: tuple[str, ...]) -> Callable[[Any], dict[str, Any]]:
         return dict(zip(names, _list(read(value)), strict=True))
 
     return write
+
+
+_TRACKED = _record(tuple(f.name for f in fields(TrackedVehicle)))

@@ -123,10 +123,24 @@ class Manner:
 
 
 @dataclass(frozen=True, slots=True)
-class WorldState:
-    """All vehicles on the road, and what the CAVs among them intend.
+class Told:
+    """How old, and how exact, what one CAV knows of another vehicle by messages is."""
 
-    Human drivers have no entry in ``intents``: their minds cannot be read.
+    age: float  # Age of its state; 0 where the CAV's own sensors see it [s]
+    intent_age: float | None  # Age of its intent; None if it is not known [s]
+    seen: bool = False  # Whether the CAV's own sensors see it
+    behind: float = 0.0  # How far behind the place at which it is taken to be it may be [m]
+    ahead: float = 0.0  # How far ahead of it [m]
+    slower: float = 0.0  # How much slower than it is taken to be it may be [m/s]
+    faster: float = 0.0  # How much faster [m/s]
+
+
+@dataclass(frozen=True, slots=True)
+class WorldState:
+    """All vehicles on the road, and what the CAVs among them intend; or as much of it as one CAV knows.
+
+    Human drivers have no entry in ``intents``: their minds cannot be read. In what one CAV knows another CAV whose
+    intent has not reached it counts as a human driver.
     """
 
     time: float  # Simulated time [s]
@@ -138,6 +152,8 @@ class WorldState:
         default_factory=dict
     )  # ``left`` or ``right`` of each vehicle that signals a turn
     hidden: tuple[tuple[str, str], ...] = ()  # Pairs between which a building stands, in the order of names
+    viewer: str | None = None  # The CAV whose knowledge this is; None for the world as it is
+    told: Mapping[str, Told] = field(default_factory=dict)  # What the viewer knows by messages, by id of the vehicle
 
     @property
     def cavs(self) -> tuple[VehicleState, ...]:
@@ -151,5 +167,16 @@ class WorldState:
 
     def senses(self, one: VehicleState, other: VehicleState, reach: float) -> bool:
         """Whether a vehicle is within reach [m] of the sensors of another one, and no building between them."""
+        if one.id == self.viewer and (told := self.told.get(other.id)) is not None:
+            return told.seen
         near = hypot(one.x - other.x, one.y - other.y) <= reach
         return near and (min(one.id, other.id), max(one.id, other.id)) not in self.hidden
+
+    def known_to_cavs(self, vehicle: VehicleState, reach: float) -> bool:
+        """Whether the CAVs know of a vehicle if they share what their sensors see within a reach [m]."""
+        return vehicle.id in self.told or any(self.senses(cav, vehicle, reach) for cav in self.cavs)
+
+    @property
+    def deciding(self) -> tuple[str, ...]:
+        """The CAVs that are decided for: all, or the one whose knowledge this is."""
+        return tuple(cav.id for cav in self.cavs) if self.viewer is None else (self.viewer,)

@@ -123,6 +123,8 @@ class Environment(Simulator):
             self._traffic.step(self.driving_model.step)
             self._steps += 1
             self._recorder.record(self._steps, self._traffic.vehicles, in_force)
+            if self.observer is not None:
+                self.observer(snapshot(self._traffic, self._time, self._decisions))
             self._outcome = self._termination.check(self._traffic, self._time)
             if self._outcome is not None:
                 break

@@ -87,6 +87,7 @@ def run_episode(
     trajectory: Trajectory | None = None
     scores: dict[str, Score] = {}
     try:
+        environment.observer = method.observer
         world = environment.reset(seed)
         log.begun = True
         if method.hands_over:

@@ -10,6 +10,7 @@ from codriving.datatypes import (
     Model,
     Outcome,
     ReasonedDeliberation,
+    Shares,
     Situation,
     WorldState,
 )
@@ -65,6 +66,7 @@ class CoDriving(ModelMethod):
         )
         super().__init__(llm, memory)
         self.cda, self.margin, self.variant = cda, margin, order_variant(cda.variant, order)
+        self.shares = Shares(cda.state_sharing, cda.intent_sharing, cda.negotiation)
         self.order, self.most_cavs = order, order.most_cavs if order is not None else None
         self.is_checked, self.by_zone = cda.safety_check, by_zone and not cda.binding
         self.asked = ("negotiate", "decide") if order is None else ("decide",)

@@ -1,24 +1,20 @@
 """The safety check behind any method: an action that it removes gives way to the nearest one that it allows."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from codriving.datatypes import (
-    Account,
     Action,
     ActionAssessment,
     ActionFilter,
     Deliberation,
     DrivingModel,
-    Manner,
     Method,
-    Outcome,
     PassingOrder,
     ReasonedDeliberation,
-    Road,
     WorldState,
+    Wrapped,
 )
 from codriving.errors import require_range
 from codriving.geometry import RoadMap
@@ -87,25 +83,15 @@ class FilteredDeliberation(Deliberation):
         return line
 
 
-class Filtered(Method):
+class Filtered(Wrapped):
     """A method behind the safety check."""
 
     def __init__(self, method: Method, cda: CdaLevel, margin: float) -> None:
-        self.method, self.cda, self.margin = method, cda, margin
-        self.name, self.variant, self.is_checked = method.name, f"{method.variant} filtered".strip(), True
-        self.reasoner, self.remembers, self.most_cavs = method.reasoner, method.remembers, method.most_cavs
-        self.knows_drivers = method.knows_drivers
+        super().__init__(method)
+        self.cda, self.margin = cda, margin
+        self.variant, self.is_checked = f"{method.variant} filtered".strip(), True
         self._ordering = method if isinstance(method, Ordered | CoDriving) and method.orders else None
         self._safety = ThreeLayers()
-
-    def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
-        self.method.check_road(road, target_speeds, decision_interval)
-
-    def files(self, road: Road) -> Mapping[str, Path]:
-        return self.method.files(road)
-
-    def remark(self, road: Road, world: Mapping[str, str]) -> str:
-        return self.method.remark(road, world)
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode."""
@@ -115,20 +101,11 @@ class Filtered(Method):
         agreed = AgreedOrder(RuleCoordinator(self.cda.binding)) if self.cda.negotiation else None
         self._negotiation = agreed or OwnOrders(self.cda.own_order, seed)
 
-    def be_told(self, manners: Mapping[str, Manner]) -> None:
-        self.method.be_told(manners)
-
     def act(self, world: WorldState) -> FilteredDeliberation:
         return self._check(world, self.method.act(world))
 
     def ask_once(self, world: WorldState) -> FilteredDeliberation:
         return self._check(world, self.method.ask_once(world))
-
-    def conclude(self, world: WorldState, outcome: Outcome) -> Account:
-        return self.method.conclude(world, outcome)
-
-    def unfinished_step(self, time: float) -> Account:
-        return self.method.unfinished_step(time)
 
     def _check(self, world: WorldState, deliberation: Deliberation) -> FilteredDeliberation:
         moment, actions = self._perception.perceive(world), deliberation.actions
@@ -136,7 +113,8 @@ class Filtered(Method):
         lag = round(self.margin / moment.forecast.sample)
         expected = expect_all(moment, orders, lag)
         found = {}
-        for ego, scene in moment.scenes.items():
+        for ego in world.deciding:
+            scene = moment.scenes[ego]
             given = safety_input(moment, ego, orders[ego], expected[ego], lag)
             assessed = self._safety.assess(given)
             near = nearest(actions[ego], assessed, scene.ego.speed, scene.intent.target_speed)

@@ -8,6 +8,7 @@ from codriving.datatypes import (
     Method,
     PassingOrder,
     ReasonedDeliberation,
+    Shares,
     Situation,
     WorldState,
 )
@@ -37,6 +38,8 @@ class Ordered(Method):
     States and intents are shared as in the full framework. Only the choice of the order differs between such methods.
     """
 
+    shares = Shares(states=True, intents=True)
+
     def __init__(self, rule: OrderRule, executor: Executor) -> None:
         self.rule, self.executor, self.name = rule, executor, rule.name
         self.most_cavs, self.orders, self.by_zone = rule.most_cavs, executor.orders, executor.by_zone
@@ -60,9 +63,10 @@ class Ordered(Method):
         agreed = agreement(moment, problem, ordering.times, ordering.reason, True)
         drive = self.executor.drive(moment, ordering)
         changes = self._lane_changes(moment, agreed, drive)
-        situations = tuple(_situation(moment, name, agreed, drive, changes.get(name)) for name in moment.scenes)
+        deciding = world.deciding
+        situations = tuple(_situation(moment, name, agreed, drive, changes.get(name)) for name in deciding)
         decisions = tuple(
-            changes.get(name) or Decision(name, drive.actions[name], drive.reasons[name]) for name in moment.scenes
+            changes.get(name) or Decision(name, drive.actions[name], drive.reasons[name]) for name in deciding
         )
         return ReasonedDeliberation(world.time, world.step, situations, decisions, {**ordering.counts, **drive.counts})
 

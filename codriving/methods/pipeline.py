@@ -33,9 +33,10 @@ class Pipeline:
         """Decide for every CAV on the road."""
         moment = self.perception.perceive(world)
         orders = self.negotiation.orders(moment)
+        orders = {ego: orders[ego] for ego in world.deciding}
         lag = round(self.margin / moment.forecast.sample)
         expected = expect_all(moment, orders, lag)
-        inputs = [safety_input(moment, ego, orders[ego], expected[ego], lag) for ego in moment.scenes]
+        inputs = [safety_input(moment, ego, orders[ego], expected[ego], lag) for ego in orders]
         situations = recall(self.memory, [self._situation(given) for given in inputs])
         decisions = tuple(self.decider.decide(situations))
         counts, lines = self.ledger.close_step(world.time) if self.ledger is not None else ({}, [])

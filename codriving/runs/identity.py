@@ -62,8 +62,8 @@ CHOICES = ("scenario", "method", "executor", "llm", "memory")
 DRIVERS, ENVIRONMENT = "drivers", "environment"  # Drivers are told by their values in the environment, as before
 
 # Without limits a world is that of a run whose config did not know them yet; without a flow, and with the order that is
-# negotiated or without a filter, likewise.
-LIMITS, FLOW, ORDER, FILTER = "limits", "flow", "order", "filter"
+# negotiated, without a filter or without a channel, likewise.
+LIMITS, FLOW, ORDER, FILTER, V2X = "limits", "flow", "order", "filter", "v2x"
 
 STEADY = "steady"  # Where it is false a world is that of a run whose config did not know it yet
 
@@ -71,7 +71,7 @@ MEMORY = "memory"
 SNAPSHOT, AUTO = "snapshot", "auto"  # Where a memory's snapshot is told by its contents, its file may lie anywhere
 
 # Nodes of the root to which other nodes refer, and which therefore stand in these once more.
-_COPIED = (*CHOICES, "cda", LIMITS, FLOW, ORDER, FILTER)
+_COPIED = (*CHOICES, "cda", LIMITS, FLOW, ORDER, FILTER, V2X)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +107,7 @@ class CellEntry:
 def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out of a resolved config what does not change what is driven, the names of classes, and repetitions."""
     values = {key: _plain(node, resolved) for key, node in resolved.items() if key not in WITHOUT_EFFECT}
-    for key in (LIMITS, FLOW, ORDER, FILTER):
+    for key in (LIMITS, FLOW, ORDER, FILTER, V2X):
         if values.get(key) is None:
             values.pop(key, None)
     environment = values.get(ENVIRONMENT)
@@ -184,7 +184,7 @@ def fingerprint(
     """
     values = driving_values(resolved)
     # Where an order or a filter is chosen its name stands for a class, too: a plug-in may have no settings.
-    groups = (*CHOICES, *(group for group in (ORDER, FILTER) if group in values))
+    groups = (*CHOICES, *(group for group in (ORDER, FILTER, V2X) if group in values))
     told = {
         "names": list(names),
         "choices": {group: choices[group] for group in groups if group in choices},

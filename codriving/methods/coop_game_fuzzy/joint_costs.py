@@ -72,7 +72,7 @@ def human_risk(moment: Moment, ego: str, where: Poses, samples: int, top_speed: 
             continue
         dangers = []
         for route, place in other.routes:
-            low, high = moment.forecast.likely(other.speed, (route, place))
+            low, high = moment.forecast.likely_of(other, (route, place))
             if other.standing >= YIELDS_AFTER:
                 low, high = np.zeros_like(low), np.zeros_like(high)
             # The interval is up to 12 m long: its middle and its ends are close enough for a field of this length.

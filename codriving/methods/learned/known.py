@@ -30,7 +30,7 @@ class Knowledge:
         known = [
             self._partner(v, world) if v.kind is Kind.CAV else self._human(v)
             for v in vehicles
-            if v.kind is Kind.CAV or any(world.senses(cav, v, self._range) for cav in cavs)
+            if v.kind is Kind.CAV or world.known_to_cavs(v, self._range)
         ]
         return {cav.id: tuple(other for other in known if other.id != cav.id) for cav in cavs}
 

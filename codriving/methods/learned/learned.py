@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from codriving.datatypes import Action, Deliberation, DrivingModel, Method, Road, WorldState
+from codriving.datatypes import Action, Deliberation, DrivingModel, Method, Road, Shares, WorldState
 from codriving.errors import WeightsError
 from codriving.geometry import RoadMap
 from codriving.methods.learned.features import Features, Observation
@@ -66,6 +66,7 @@ class Learned(Method):
     meaning: ClassVar[str]  # What the network says of an action, ``values`` or ``probabilities``
 
     def __init__(self, weights: Path | None) -> None:
+        self.shares = Shares(states=self.shared, intents=self.shared)
         self._file = weights
         self._trained: dict[str, Trained] = {}
         self._own: str | None = None

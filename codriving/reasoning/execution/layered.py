@@ -84,7 +84,7 @@ def _too_close(moment: Moment, name: str, headway: float, action: Action) -> str
     for n in scene.neighbours:
         if n.role is Role.LEADING and n.gap is not None:
             there = moment.vehicles[name][n.id]
-            rolls = float(forecast.reach(n.speed, there.is_cav, there.routes[0]).least[-1])
+            rolls = float(forecast.reach_of(there, there.routes[0]).least[-1])
             if n.gap < max(headway * speed, later - rolls) + ROOM:
                 return n.id
     change = scene.must_change

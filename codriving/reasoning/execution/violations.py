@@ -113,7 +113,7 @@ def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, 
     found: Steps = np.full(len(travels), travels.shape[1])
     people = {m.id: m for m in moment.vehicles[ego.id].values() if not m.is_cav}
     for other in people.values():
-        low = np.min([moment.forecast.likely(other.speed, way)[0] for way in other.routes], axis=0)
+        low = np.min([moment.forecast.likely_of(other, way)[0] for way in other.routes], axis=0)
         for meeting in meetings_behind(moment, ego, other, lag, following, pad):
             found = np.minimum(found, meeting.steps(travels, low))
     for c in moment.conflicts[ego.id]:
@@ -124,7 +124,7 @@ def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, 
 
 def _in_zone(moment: Moment, c: Conflict, other: TrackedVehicle, travels: Array, lag: int, pad: float) -> Steps:
     place, there = c.places
-    low, high = moment.forecast.likely(other.speed, (c.routes[1], there))
+    low, high = moment.forecast.likely_of(other, (c.routes[1], there))
     yields = moment.gives_way(c, other, moment.road_map)
     steps: Steps = np.zeros(len(travels), dtype=np.int64)
     # Beside a driver who gives way the bodies have to keep clear, no more.

@@ -200,7 +200,7 @@ def window(moment: Moment, c: Conflict, human: TrackedVehicle, reference: float)
     if moment.gives_way(c, human, moment.road_map):
         return inf, inf
     zone = moment.road_map.zones(*c.routes)[c.zone]
-    slow, fast = forecast.likely(human.speed, (c.routes[1], c.places[1]))
+    slow, fast = forecast.likely_of(human, (c.routes[1], c.places[1]))
     leaves = forecast.time_to(zone.entry_i + lag_length(zone, False) - c.places[1], slow)
     way = (c.routes[0], reference)
     passed = forecast.duration(way, zone.entry_j + lag_length(zone) - reference)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codriving.datatypes import Action, DrivingModel
+from codriving.datatypes import Action, DrivingModel, TrackedVehicle
 from codriving.geometry import Along, Array, RoadMap, accelerated, driven
 from codriving.reasoning.prediction.rollout import Plan, canonical, travelled
 
@@ -181,6 +181,23 @@ class Forecast:
             self._reach[key] = self._bounds(speed, is_cav, where)
         return self._reach[key]
 
+    def reach_of(self, vehicle: TrackedVehicle, where: Where) -> Reach:
+        """Bounds of how far another vehicle comes, wider by what is not known exactly if it is known by messages.
+
+        Args:
+            where: A route of the vehicle, and its arc length there [m].
+        """
+        told, speed, is_cav = vehicle.told, vehicle.speed, vehicle.is_cav
+        if told is None or told.seen:
+            return self.reach(speed, is_cav, where)
+        least = self.reach(max(speed - told.slower, 0.0), is_cav, where).least - told.behind
+        most = self.reach(min(speed + told.faster, self.fastest(is_cav)), is_cav, where).most + told.ahead
+        return Reach(least, self.reach(speed, is_cav, where).steady, most)
+
+    def fastest(self, is_cav: bool) -> float:
+        """Return the highest speed that a vehicle is expected to have [m/s]."""
+        return self.model.top_speed + (0.0 if is_cav else SPEEDING)
+
     def _bounds(self, speed: float, is_cav: bool, where: Where) -> Reach:
         steady = self._steady(speed, where)
         if is_cav:
@@ -243,6 +260,15 @@ class Forecast:
         if key not in self._likely:
             self._likely[key] = likely_distances(self._steady(speed, where), self.times)
         return self._likely[key]
+
+    def likely_of(self, human: TrackedVehicle, where: Where) -> tuple[Array, Array]:
+        """Distances between which a human driver is expected, wider by what is not known exactly.
+
+        Args:
+            where: A route of the vehicle, and its arc length there [m].
+        """
+        slow, fast = self.likely(human.speed, where)
+        return (slow, fast) if human.told is None else (slow - human.told.behind, fast + human.told.ahead)
 
     def duration(self, where: Where, length: float) -> float:
         """Return how long the fastest vehicle takes from a place on for a length of the centre line [m], in s."""

@@ -117,7 +117,7 @@ def _soonest(given: SafetyInput, motions: Array, guess: int) -> Steps:
         other = given.vehicles[name]
         for k, e in enumerate(expected):
             now = float(e.places[0])
-            reach = given.forecast.reach(other.speed, other.is_cav, other.routes[0 if other.is_cav else k])
+            reach = given.forecast.reach_of(other, other.routes[0 if other.is_cav else k])
             travel = (reach.steady, reach.least, reach.most)[guess]
             # A vehicle behind on the same lane has to mind the CAV, not the other way round.
             for zone in given.road_map.zones(scene.intent.route, e.route):

@@ -91,7 +91,7 @@ def expected_to_pass(given: SafetyInput, c: Conflict) -> Flags:
 def leaves_in_time(given: SafetyInput, c: Conflict, zone: ConflictZone) -> bool:
     """Whether the CAV, as it is expected to move, will be out of a zone before a human driver can be there."""
     way = (c.routes[1], c.places[1])
-    most = c.places[1] + given.forecast.reach(given.vehicles[c.other].speed, False, way).most
+    most = c.places[1] + given.forecast.reach_of(given.vehicles[c.other], way).most
     return bool(stays_ahead(zone, given.expected[c.ego][0].places[None], most, 0, 0.0)[0])
 
 
@@ -111,13 +111,14 @@ def passes_and_stops(given: SafetyInput, c: Conflict) -> tuple[Flags, Flags]:
     """
     zone, other = given.road_map.zones(*c.routes)[c.zone], given.vehicles[c.other]
     place = c.places[1]
-    reach = given.forecast.reach(other.speed, other.is_cav, other.routes[0] if other.is_cav else (c.routes[1], place))
+    reach = given.forecast.reach_of(other, other.routes[0] if other.is_cav else (c.routes[1], place))
     relied_on = _goes_on(given, other)
     # A bound on what the other one can do is a margin in itself; an expectation needs one.
     lag = given.lag if relied_on else round(BOUND_LAG / given.forecast.sample)
     # Both in one go: nearly all of the time goes into calls, not into numbers.
     motions = np.concatenate((given.goes, given.stops))
-    fine = stays_behind(zone, motions, place + (reach.steady if relied_on else reach.least), lag, PAD)
+    slowly = reach.steady - (0.0 if other.told is None else other.told.behind) if relied_on else reach.least
+    fine = stays_behind(zone, motions, place + slowly, lag, PAD)
     goes_first = given.order.first_of(c.ego, c.other) == c.ego
     if goes_first and (other.is_cav or given.moment.gives_way(c, other, given.road_map)):
         fine |= keeps_clear(given, c, motions, place + reach.least)

@@ -42,7 +42,7 @@ def check_ahead(given: SafetyInput) -> dict[Action, list[str]]:
         gap = n.gap if n.role is Role.LEADING else None
         if not ahead and gap is None:
             continue
-        least = given.forecast.reach(n.speed, there.is_cav, there.routes[0]).least
+        least = given.forecast.reach_of(there, there.routes[0]).least
         keeps = np.ones(len(given.actions), dtype=np.bool_)
         if gap is not None:
             keeps &= (gap + least - travelled >= min(STANDSTILL_GAP, gap)).all(axis=1)

@@ -46,10 +46,7 @@ def describe_scenes(
         road_map.project_all(intent.route, [(ego.x, ego.y), *((other.x, other.y) for other in seen)])
         place, _ = road_map.project(intent.route, ego.x, ego.y)
         change = road_map.changes.ahead(intent.route, place)
-        others = [
-            _neighbour(other, intents.get(other.id), world.signals.get(other.id, ""), tracking, ego.id, world.time)
-            for other in seen
-        ]
+        others = [_neighbour(other, intents.get(other.id), world, tracking, ego.id) for other in seen]
         lanes = adjacent_lanes(road_map, ego.lane)
         scenes[ego.id] = SceneDescription(
             ego=ego,
@@ -156,10 +153,11 @@ def adjacent_lanes(road_map: RoadMap, lane: LaneId) -> tuple[LaneId, ...]:
 
 
 def _neighbour(
-    n: TrackedVehicle, intent: Intent | None, signal: str, tracking: Tracking, ego: str, time: float
+    n: TrackedVehicle, intent: Intent | None, world: WorldState, tracking: Tracking, ego: str
 ) -> TrackedVehicle:
     # A vehicle that shares an intent has said that it is a CAV.
     kind = Kind.CAV if intent is not None else n.kind
-    routes, standing = tracking.places(ego, n, intent, signal), tracking.standing(ego, n, time)
+    routes = tracking.places(ego, n, intent, world.signals.get(n.id, ""))
+    standing = tracking.standing(ego, n, world.time)
     motion = (n.x, n.y, n.speed, n.heading, n.acceleration, n.lane, n.length)
-    return TrackedVehicle(n.id, kind, *motion, routes, intent, standing)
+    return TrackedVehicle(n.id, kind, *motion, routes, intent, standing, told=world.told.get(n.id))

@@ -28,7 +28,7 @@ class SharedStates(StateSharing):
     def detections(self, world: WorldState, model: DrivingModel) -> Detections:
         """Return the same full states for all: every CAV, and every HDV that at least one CAV senses."""
         cavs = world.cavs
-        seen = [h for h in world.hdvs if any(world.senses(c, h, model.detection_range) for c in cavs)]
+        seen = [h for h in world.hdvs if world.known_to_cavs(h, model.detection_range)]
         known = tuple(
             TrackedVehicle(v.id, v.kind, v.x, v.y, v.speed, v.heading, v.acceleration, v.lane, v.length)
             for v in sorted((*cavs, *seen), key=lambda v: v.id)

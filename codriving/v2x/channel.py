@@ -1,0 +1,99 @@
+"""The channel of one episode: what is sent at each tick, and what of it has reached whom."""
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import hypot
+
+from codriving.datatypes import DrivingModel, Shares, VehicleState, WorldState
+from codriving.v2x.draws import Errors, Link
+from codriving.v2x.messages import (
+    CollectivePerception,
+    CooperativeAwareness,
+    ManoeuvreCoordination,
+    PerceivedObject,
+    V2xMessage,
+)
+from codriving.v2x.settings import ChannelSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Packet:
+    """What one CAV sends at one tick."""
+
+    sender: str
+    time: float  # [s]
+    tick: int
+    messages: tuple[V2xMessage, ...]
+    heard_by: frozenset[str]  # The CAVs within the range
+
+
+class Channel:
+    """Everything that is on the air."""
+
+    def __init__(self, settings: ChannelSettings, shares: Shares, model: DrivingModel, seed: int) -> None:
+        self.settings, self._shares, self._model, self._seed = settings, shares, model, seed
+        self._sent: dict[str, deque[Packet]] = {}
+        self._links: dict[tuple[str, str], Link] = {}
+        self._errors: dict[tuple[str, str], Errors] = {}
+        self._tick = -1
+        self.messages = self.bytes = 0  # Since they were counted last
+
+    def hear(self, world: WorldState) -> None:
+        """Let every CAV send what is due at this time."""
+        tick = int(world.time * self.settings.rate + 1e-6)
+        if tick == self._tick:
+            return
+        self._tick = tick
+        cavs = world.cavs
+        for cav in cavs:
+            near = (c.id for c in cavs if c.id != cav.id and hypot(c.x - cav.x, c.y - cav.y) <= self.settings.range)
+            messages = tuple(self._messages(world, cav))
+            self.messages += len(messages)
+            self.bytes += sum(message.size for message in messages)
+            packet = Packet(cav.id, world.time, tick, messages, frozenset(near))
+            self._sent.setdefault(cav.id, deque()).append(packet)
+        for packets in self._sent.values():
+            while packets and packets[0].time < world.time - self.settings.validity - 1e-9:
+                packets.popleft()
+
+    def _messages(self, world: WorldState, cav: VehicleState) -> Iterator[V2xMessage]:
+        settings, reach = self.settings, self._model.detection_range
+        about = cav.id, world.time, settings.validity
+        if self._shares.states:
+            yield CooperativeAwareness(*about, settings.cam_bytes, self._measured(cav.id, cav))
+            objects = tuple(
+                PerceivedObject(self._measured(cav.id, h), world.signals.get(h.id, ""))
+                for h in world.hdvs
+                if world.senses(cav, h, reach)
+            )
+            size = settings.cpm_bytes + settings.object_bytes * len(objects)
+            yield CollectivePerception(*about, size, objects)
+        if self._shares.intents:
+            intent, available = world.intents[cav.id], world.available[cav.id]
+            yield ManoeuvreCoordination(*about, settings.mcm_bytes, intent, available)
+
+    def _measured(self, by: str, vehicle: VehicleState) -> VehicleState:
+        """Return a state as a CAV writes it into a message."""
+        if (by, vehicle.id) not in self._errors:
+            self._errors[by, vehicle.id] = Errors(self.settings, self._seed, by, vehicle.id)
+        x, y, speed = self._errors[by, vehicle.id].at(self._tick)
+        return replace(vehicle, x=vehicle.x + x, y=vehicle.y + y, speed=max(vehicle.speed + speed, 0.0))
+
+    def received(self, receiver: str, time: float) -> list[Packet]:
+        """Return the newest packet of each sender that has reached a CAV and is still valid, by sender."""
+        found = []
+        for sender in sorted(self._sent.keys() - {receiver}):
+            if (sender, receiver) not in self._links:
+                self._links[sender, receiver] = Link(self.settings, self._seed, sender, receiver)
+            link = self._links[sender, receiver]
+            newest = (
+                packet
+                for packet in reversed(self._sent[sender])
+                if receiver in packet.heard_by
+                and packet.time + link.delay(packet.tick) <= time + 1e-9
+                and time - packet.time <= self.settings.validity + 1e-9
+            )
+            if (packet := next(newest, None)) is not None:
+                found.append(packet)
+        return found

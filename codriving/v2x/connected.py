@@ -1,0 +1,131 @@
+"""A method whose CAVs hear of one another by messages: one copy a CAV, which decides by what that one knows."""
+
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass
+from typing import Any
+
+from codriving.datatypes import (
+    Account,
+    Action,
+    Communication,
+    Deliberation,
+    DrivingModel,
+    Manner,
+    Method,
+    Outcome,
+    WorldState,
+    Wrapped,
+)
+from codriving.geometry import RoadMap
+from codriving.v2x.channel import Channel
+from codriving.v2x.knowledge import KnownWorld
+from codriving.v2x.settings import ChannelSettings
+
+
+@dataclass(frozen=True, slots=True)
+class ConnectedDeliberation(Deliberation):
+    """A decision step in which each CAV has decided for itself."""
+
+    time: float  # Simulated time [s]
+    step: int
+    each: Mapping[str, Deliberation]  # By id of the CAV
+    counts: Mapping[str, float]
+    transcript: tuple[dict[str, Any], ...]
+
+    @property
+    def actions(self) -> dict[str, Action]:
+        return {name: deliberation.actions[name] for name, deliberation in self.each.items()}
+
+    def as_dict(self) -> dict[str, Any]:
+        cavs = [
+            entry
+            for name, deliberation in self.each.items()
+            for entry in deliberation.as_dict()["cavs"]
+            if entry["id"] == name
+        ]
+        return {"time": self.time, "step": self.step, "cavs": cavs}
+
+
+class V2X(ChannelSettings, Communication):
+    """What ``v2x=`` chooses."""
+
+    def between(self, method: Method, shared: Sequence[object]) -> Method:
+        """Return the method with a copy for each CAV; the method itself if its CAVs tell one another nothing."""
+        told = method.shares
+        return Connected(method, self, shared) if told.states or told.intents else method
+
+
+class Connected(Wrapped):
+    """A method, copied for each CAV, and the channel between the copies."""
+
+    def __init__(self, method: Method, settings: ChannelSettings, shared: Sequence[object]) -> None:
+        super().__init__(method)
+        self.settings, self._shared = settings, shared
+        self.observer = self._hear
+
+    def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
+        """Begin an episode; every CAV begins with what it sees and what it has heard at its first step."""
+        self._begin = road_map, model, seed
+        self._channel = Channel(self.settings, self.shares, model, seed)
+        self._knowledge: dict[str, KnownWorld] = {}
+        self._copies: dict[str, Method] = {}
+        self._manners: Mapping[str, Manner] = {}
+
+    def _hear(self, world: WorldState) -> None:
+        self._channel.hear(world)
+
+    def be_told(self, manners: Mapping[str, Manner]) -> None:
+        self._manners = manners
+
+    def act(self, world: WorldState) -> ConnectedDeliberation:
+        """Let each CAV on the road decide by what it knows."""
+        channel = self._channel
+        channel.hear(world)
+        each: dict[str, Deliberation] = {}
+        ages, uses = 0.0, 0
+        for cav in world.cavs:
+            knowledge = self._knowledge_of(cav.id)
+            knowledge.hear(channel.received(cav.id, world.time), world.time)
+            known = knowledge.of(world)
+            copy = self._copy(cav.id)
+            if copy.knows_drivers:
+                copy.be_told(self._manners)
+            each[cav.id] = copy.act(known)
+            used = [age for told in known.told.values() for age in (told.intent_age, None if told.seen else told.age)]
+            ages, uses = ages + sum(age for age in used if age is not None), uses + len(used) - used.count(None)
+        counts: dict[str, float] = {}
+        for deliberation in each.values():
+            for name, number in deliberation.counts.items():
+                counts[name] = counts.get(name, 0) + number
+        counts |= {"messages": channel.messages, "message_bytes": channel.bytes}
+        counts |= {"message_age": round(ages, 9), "message_uses": uses}
+        channel.messages = channel.bytes = 0
+        transcript = tuple(line for deliberation in each.values() for line in deliberation.transcript)
+        return ConnectedDeliberation(world.time, world.step, each, counts, transcript)
+
+    def conclude(self, world: WorldState, outcome: Outcome) -> Account:
+        return _together([copy.conclude(world, outcome) for copy in self._copies.values()])
+
+    def unfinished_step(self, time: float) -> Account:
+        return _together([copy.unfinished_step(time) for copy in self._copies.values()])
+
+    def _knowledge_of(self, name: str) -> KnownWorld:
+        if name not in self._knowledge:
+            road_map, model, _ = self._begin
+            self._knowledge[name] = KnownWorld(name, self.settings, road_map, model)
+        return self._knowledge[name]
+
+    def _copy(self, name: str) -> Method:
+        if name not in self._copies:
+            self._copies[name] = deepcopy(self.method, {id(part): part for part in self._shared})
+            self._copies[name].reset(*self._begin)
+        return self._copies[name]
+
+
+def _together(accounts: Sequence[Account]) -> Account:
+    counts: dict[str, float] = {}
+    for found, _ in accounts:
+        for name, number in found.items():
+            counts[name] = counts.get(name, 0) + number
+    return counts, [line for _, lines in accounts for line in lines]

@@ -1,0 +1,120 @@
+"""What one CAV knows: what its own sensors see, and for the rest what has reached it, brought up to the present."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from math import cos, sin, sqrt
+
+from codriving.datatypes import Action, DrivingModel, Intent, Kind, Told, VehicleState, WorldState
+from codriving.geometry import RoadMap
+from codriving.v2x.channel import Packet
+from codriving.v2x.draws import CUT
+from codriving.v2x.messages import CollectivePerception, CooperativeAwareness, ManoeuvreCoordination
+from codriving.v2x.settings import ChannelSettings
+
+
+@dataclass(frozen=True, slots=True)
+class _Heard:
+    state: VehicleState
+    signal: str
+    time: float  # When it was so [s]
+
+
+class KnownWorld:
+    """What one CAV has heard and sees, from one decision to the next."""
+
+    def __init__(self, ego: str, settings: ChannelSettings, road_map: RoadMap, model: DrivingModel) -> None:
+        self.ego, self._settings, self._road_map, self._model = ego, settings, road_map, model
+        self._heard: dict[str, _Heard] = {}
+        self._intents: dict[str, tuple[Intent, tuple[Action, ...], float]] = {}
+
+    def hear(self, packets: Iterable[Packet], time: float) -> None:
+        """Take in what has reached the CAV, and forget what is no longer valid."""
+        for packet in packets:
+            for message in packet.messages:
+                if isinstance(message, CooperativeAwareness):
+                    self._note(message.state, "", message.time)
+                elif isinstance(message, CollectivePerception):
+                    for seen in message.objects:
+                        self._note(seen.state, seen.signal, message.time)
+                elif isinstance(message, ManoeuvreCoordination):
+                    known = self._intents.get(message.sender)
+                    if known is None or known[2] < message.time:
+                        self._intents[message.sender] = (message.intent, message.available, message.time)
+        oldest = time - self._settings.validity - 1e-9
+        self._heard = {name: heard for name, heard in self._heard.items() if heard.time >= oldest}
+        self._intents = {name: intent for name, intent in self._intents.items() if intent[2] >= oldest}
+
+    def _note(self, state: VehicleState, signal: str, time: float) -> None:
+        known = self._heard.get(state.id)
+        if state.id != self.ego and (known is None or known.time < time):
+            self._heard[state.id] = _Heard(state, signal, time)
+
+    def of(self, world: WorldState) -> WorldState:
+        """Return what the CAV knows of a world."""
+        own = next(cav for cav in world.cavs if cav.id == self.ego)
+        vehicles, signals, told = [own], {}, {}
+        intents, available = {own.id: world.intents[own.id]}, {own.id: world.available[own.id]}
+        for v in world.vehicles:
+            if v.id != own.id and world.senses(own, v, self._model.detection_range):
+                vehicles.append(self._named(v))
+                if v.id in world.signals:
+                    signals[v.id] = world.signals[v.id]
+                if v.id in self._intents:
+                    told[v.id] = Told(0.0, world.time - self._intents[v.id][2], seen=True)
+        seen = {v.id for v in vehicles}
+        for name, heard in self._heard.items():
+            if name in seen:
+                continue
+            age = world.time - heard.time
+            state = self._brought_up(heard.state, age)
+            if state is None:
+                continue
+            vehicles.append(self._named(state))
+            if heard.signal:
+                signals[name] = heard.signal
+            intent = self._intents.get(name)
+            told[name] = self._told(heard.state, age, None if intent is None else world.time - intent[2])
+        for v in vehicles[1:]:
+            if v.kind is Kind.CAV:
+                intents[v.id], available[v.id], _ = self._intents[v.id]
+        hidden = tuple(pair for pair in world.hidden if own.id in pair)
+        ordered = tuple(sorted(vehicles, key=lambda v: v.id))
+        return WorldState(world.time, world.step, ordered, intents, available, signals, hidden, own.id, told)
+
+    def _named(self, v: VehicleState) -> VehicleState:
+        """Take a vehicle whose intent is not known for one that a human drives."""
+        kind = Kind.CAV if v.id in self._intents else Kind.HDV
+        return v if v.kind is kind else replace(v, kind=kind)
+
+    def _brought_up(self, v: VehicleState, age: float) -> VehicleState | None:
+        """Let a vehicle go on at its speed since a message was made; None if it has left the road since."""
+        if age <= 1e-9:
+            return v
+        way = v.speed * age
+        intent = self._intents.get(v.id)
+        if intent is None or intent[0].route not in self._road_map.routes:
+            return replace(v, x=v.x + way * cos(v.heading), y=v.y + way * sin(v.heading))
+        route = intent[0].route
+        place = self._road_map.project(route, v.x, v.y)[0] + way
+        if place > self._road_map.routes[route].goal:
+            return None
+        x, y, heading = self._road_map.paths[route].place(place)
+        return replace(v, x=x, y=y, heading=heading, lane=self._road_map.lane_at(route, place))
+
+    def _told(self, v: VehicleState, age: float, intent_age: float | None) -> Told:
+        """Say how far from where it is taken to be a vehicle may be, whatever it has done since."""
+        model, settings = self._model, self._settings
+        pedal = model.speed_gain * model.top_speed if model.limits is None else model.limits.acceleration
+        brake = model.speed_gain * model.top_speed if model.limits is None else model.limits.braking
+        if v.kind is Kind.HDV:
+            pedal, brake = model.human_acceleration, model.human_braking
+        place, speed = CUT * sqrt(2.0) * settings.noise, CUT * settings.speed_noise
+        braked = min(age, v.speed / brake)
+        return Told(
+            age,
+            intent_age,
+            behind=v.speed * age - (v.speed * braked - brake * braked**2 / 2) + speed * age + place,
+            ahead=pedal * age**2 / 2 + speed * age + place,
+            slower=min(v.speed, brake * age) + speed,
+            faster=pedal * age + speed,
+        )

@@ -1,0 +1,44 @@
+"""The settings of a channel; with ``v2x=perfect`` there is none, and no message is sent at all."""
+
+from dataclasses import dataclass
+
+from codriving.errors import require_range
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelSettings:
+    """How messages reach other CAVs: how often, how late, how far and how surely.
+
+    Raises:
+        ConfigError: If a value is out of its range.
+    """
+
+    rate: float  # Messages of each kind that a CAV sends a second [Hz]
+    age: float  # Mean time from making a message to its use by a receiver [s]
+    age_shape: float  # Shape of the Gamma distribution of that time; 0 for always the same
+    loss: float  # Share of messages that are lost
+    burst: float  # Mean number of messages that are lost in a row (Gilbert-Elliott); at least 1
+    range: float  # Distance up to which a message is received [m]
+    noise: float  # Standard deviation of positions in messages, each coordinate, cut off at three times that [m]
+    speed_noise: float  # The same for speeds [m/s]
+    validity: float  # How long a message may be used [s]
+    cam_bytes: int  # Size of a message about one's own state
+    cpm_bytes: int  # Size of a message about vehicles that are seen, without these
+    object_bytes: int  # Size of one such vehicle
+    mcm_bytes: int  # Size of a message about an intent
+
+    def __post_init__(self) -> None:
+        require_range("rate", self.rate, 0.5, 100, " Hz")
+        for key, value, most, unit in (
+            ("age", self.age, 10, " s"),
+            ("age_shape", self.age_shape, 100, ""),
+            ("loss", self.loss, 0.99, ""),
+            ("range", self.range, 10_000, " m"),
+            ("noise", self.noise, 10, " m"),
+            ("speed_noise", self.speed_noise, 10, " m/s"),
+            ("validity", self.validity, 60, " s"),
+        ):
+            require_range(key, value, 0, most, unit)
+        require_range("burst", self.burst, 1, 1000)
+        for key in ("cam_bytes", "cpm_bytes", "object_bytes", "mcm_bytes"):
+            require_range(key, getattr(self, key), 0, 100_000)
