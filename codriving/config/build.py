@@ -27,6 +27,7 @@ from codriving.datatypes import (
     OrderOfCavs,
     Scenario,
     Simulator,
+    ThinkingTime,
     VehicleLimits,
 )
 from codriving.errors import ConfigError
@@ -258,6 +259,7 @@ EXPECTED |= {
     "drivers": Drivers,
     "flow": Flow,
     "v2x": Communication,
+    "thinking": ThinkingTime,
     "environment": Simulator,  # Last, so that refusals name limits.lateral, as a user does
 }
 """What each node has to be, known before its class is called: a file chooses no other code than a part of its kind."""

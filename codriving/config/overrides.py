@@ -50,7 +50,8 @@ def prepare(token: str, config_dir: Path | None = None) -> str:
         raise ConfigError(f"{key} is no setting of a run, but what a YAML says for tables; leave it out")
     if head == SUITE:
         raise ConfigError(f"{key}: a suite has no keys of its own, it chooses other groups; set theirs")
-    if head not in GROUPS[2:] and (slot := rest.partition(".")[0]) in GROUPS:
+    # How long an order takes is no order.
+    if key != "thinking.order" and head not in GROUPS[2:] and (slot := rest.partition(".")[0]) in GROUPS:
         if slot == "drivers":
             rest = f"drivers=simulator {rest}"
         why = "has moved in release 0.2" if slot == "drivers" else f"is {slot} itself"

@@ -33,7 +33,7 @@ GROUPS = (
     *("drivers", "flow", "v2x"),
 )
 
-NODES = (*GROUPS, "environment")  # The keys of the root that hold a constructor call
+NODES = (*GROUPS, "thinking", "environment")  # The keys of the root that hold a constructor call
 
 SHOWN = ("_tables_", "_style_")  # What a method's YAML says for tables and figures; it is no part of a run
 

@@ -115,6 +115,7 @@ class Model(ABC):
     cache: str  # ``off``, ``use`` or ``replay``
     ask_plain: bool  # Whether it is asked even where no other vehicle is near and the best action is plain
     prompts: str | None  # Folder with templates that replace ours; None takes ours
+    latency: str | float = "none"  # How long a question takes in the world: ``none``, ``measured`` or a time [s]
 
     @abstractmethod
     def chat(self) -> Chat | None:
@@ -322,6 +323,18 @@ class Communication:
             shared: What all copies use together, for instance the language model.
         """
         raise NotImplementedError
+
+
+class ThinkingTime:
+    """What lets time pass while a method thinks: base of what ``thinking`` may be."""
+
+    def around(self, method: Method, llm: Model | None) -> Method:
+        """Return the method with its answers as late as its thinking takes; the method itself if it takes none."""
+        return method
+
+    def notes(self, method: Method) -> tuple[str, ...]:
+        """Say what it means for a method that ``around`` has returned, ``{}`` standing for names of such methods."""
+        return ()
 
 
 class EpisodeLauncher:

@@ -14,7 +14,7 @@ from codriving.errors import ConfigError
 from codriving.experiment.contents import contents
 from codriving.experiment.episode import Labels
 from codriving.experiment.flows import check_flow
-from codriving.experiment.objects import make_method, memory_of, model_of
+from codriving.experiment.objects import make_method, memory_of, model_of, thinking_of
 from codriving.experiment.scoring import names_of_scores, scorers_of, settings_of_metric
 from codriving.reports import FILTERED
 from codriving.runs import CHOICES, CellEntry, NamedFile, fingerprint, redact, settings_of
@@ -44,6 +44,7 @@ class Cell:
     files: tuple[NamedFile, ...] = ()
     score: str = ""  # Name of its scores in a record; empty for that of the metric
     remark: str = ""  # What a reader of its numbers has to know of the method
+    notes: tuple[str, ...] = ()  # What is said of several methods in one line, whose names ``{}`` stands for
 
     @property
     def score_name(self) -> str:
@@ -102,7 +103,9 @@ def make_cell(
     if method.knows_drivers and not remark.endswith(KNOWS):
         # Whatever a method says of itself.
         remark = f"{remark} {method.name}: it is told how human drivers treat the right of way, {KNOWS}".strip()
-    return Cell(folder_name(labels), labels, resolved, scorer.metric.name, swept, chosen, files, remark=remark)
+    notes = thinking_of(resolved).notes(method)
+    told = labels, resolved, scorer.metric.name, swept, chosen, files
+    return Cell(folder_name(labels), *told, remark=remark, notes=notes)
 
 
 def with_metrics(config: Mapping[str, Any], rows: Sequence[Cell]) -> dict[str, Any]:
@@ -176,11 +179,11 @@ def repeated(cells: Sequence[Cell]) -> tuple[str, ...]:
 
 
 def without_effect(cells: Sequence[Cell]) -> tuple[str, ...]:
-    """Say of an order or a filter that was chosen which methods take no notice of it."""
+    """Say of an order or a filter that was chosen which methods take no notice of it, and what else several share."""
     notes: dict[str, dict[str, None]] = {}
     for cell in cells:
         method, order = cell.resolved["method"], cell.resolved.get("order")
-        said = []
+        said = list(cell.notes)
         if order is not None and method.get("order") != order:
             said.append("order={order} has no effect on {}: what orders by itself, or not at all, does not read it.")
         if cell.resolved.get("filter") is not None and not cell.labels.variant.endswith(FILTERED):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from codriving.config import asks_for, build, targets
-from codriving.datatypes import ActionFilter, CaseMemory, Communication, Method, Model, Simulator
+from codriving.datatypes import ActionFilter, CaseMemory, Communication, Method, Model, Simulator, ThinkingTime
 from codriving.experiment.scoring import scorers_of
 from codriving.experiment.worker import Objects
 
@@ -25,14 +25,21 @@ def memory_of(config: Mapping[str, Any]) -> CaseMemory | None:
 
 
 def make_method(config: Mapping[str, Any], llm: Model | None, memory: CaseMemory | None) -> Method:
-    """Build the method of a config, handed what it asks for, with the filter behind it and the channel around it."""
+    """Build the method of a config, handed what it asks for, with filter, thinking time and channel around it."""
     plugins = config["plugins"]
     method = build(config["method"], Method, "method", plugins, {Model: llm, CaseMemory: memory})
     if (filtered := config.get("filter")) is not None:
         method = build(filtered, ActionFilter, "filter", plugins).around(method)
+    method = thinking_of(config).around(method, llm)
     if (v2x := config.get("v2x")) is not None:
         method = build(v2x, Communication, "v2x", plugins).between(method, [part for part in (llm, memory) if part])
     return method
+
+
+def thinking_of(config: Mapping[str, Any]) -> ThinkingTime:
+    """Build what says how long the method of a config thinks."""
+    node = config.get("thinking")
+    return ThinkingTime() if node is None else build(node, ThinkingTime, "thinking", config["plugins"])
 
 
 def make_objects(config: Mapping[str, Any], llm: Model | None = None) -> Objects:

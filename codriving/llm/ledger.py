@@ -33,6 +33,10 @@ class Ledger:
         """Count something else, for instance a repaired order."""
         self._counts[name] += number
 
+    def asked(self) -> list[tuple[str, str, list[float]]]:
+        """Return purpose and subject of each question of this step, and how long each of its requests took [s]."""
+        return [(q.purpose, q.subject, [call.seconds for call in answer.calls]) for q, answer in self._noted]
+
     def close_step(self, time: float) -> tuple[dict[str, float], list[dict[str, Any]]]:
         """Return what has been noted since the last step, and begin the next one.
 

@@ -4,6 +4,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from codriving.methods.codriving import CoDriving, perception_at
     from codriving.methods.language_model.model_decider import CheckedDecider
     from codriving.methods.language_model.prompted_model import prompted
     from codriving.methods.learned.features import Features, Observation
@@ -33,18 +34,20 @@ if TYPE_CHECKING:
     )
     from codriving.methods.learned.weights import Purpose, Trained, load, save
     from codriving.methods.madqn import Madqn
+    from codriving.methods.ordered import Ordered
     from codriving.methods.ppo import Ppo
     from codriving.methods.single_vehicle.method import Driver, SingleVehicle
     from codriving.methods.tell import Tell
 
 __all__ = [
     "ACTIONS", "ATTENTION", "EGO", "FAMILIES", "FAR", "FORMS", "HEADS", "NEAR", "PERCEPTRON", "SLOT", "SLOTS",
-    "VERSION", "WIDTH", "AnyNetwork", "Attention", "CheckedDecider", "Driver", "Features", "FloatArray", "Madqn",
-    "Network", "Observation", "Ppo", "Purpose", "SingleVehicle", "Tell", "Trained", "allowed", "feature_count",
-    "greedy", "load", "prompted", "save",
+    "VERSION", "WIDTH", "AnyNetwork", "Attention", "CheckedDecider", "CoDriving", "Driver", "Features", "FloatArray",
+    "Madqn", "Network", "Observation", "Ordered", "Ppo", "Purpose", "SingleVehicle", "Tell", "Trained", "allowed",
+    "feature_count", "greedy", "load", "perception_at", "prompted", "save",
 ]  # fmt: skip
 
 _FILES = {
+    "codriving": ("CoDriving", "perception_at"),
     "language_model.model_decider": ("CheckedDecider",),
     "language_model.prompted_model": ("prompted",),
     "learned.features": ("Features", "Observation"),
@@ -57,6 +60,7 @@ _FILES = {
     ),
     "learned.weights": ("Purpose", "Trained", "load", "save"),
     "madqn": ("Madqn",),
+    "ordered": ("Ordered",),
     "ppo": ("Ppo",),
     "single_vehicle.method": ("Driver", "SingleVehicle"),
     "tell": ("Tell",),

@@ -82,19 +82,19 @@ class CoDriving(ModelMethod):
         negotiation = AgreedOrder(coordinator) if self.cda.negotiation else OwnOrders(self.cda.own_order, seed)
         safety = ThreeLayers() if self.cda.safety_check else NoCheck()
         ledger = self._model.ledger if self._model is not None else None
-        self._pipeline = Pipeline(perception, negotiation, safety, decider, self.margin, self.memory, ledger)
+        self.pipeline = Pipeline(perception, negotiation, safety, decider, self.margin, self.memory, ledger)
         self._road_map = road_map
         self._log = ConflictLog(road_map, model) if self.memory is not None and self.memory.learns else None
 
     def act(self, world: WorldState) -> ReasonedDeliberation:
-        deliberation = self._pipeline.act(world)
+        deliberation = self.pipeline.act(world)
         if self._log is not None:
             self._log.note(world, deliberation.situations, deliberation.decisions)
         return deliberation
 
     def ask_once(self, world: WorldState) -> ReasonedDeliberation:
-        self._pipeline.decider = _ForOne(self._pipeline.decider)
-        return self._pipeline.act(world)
+        self.pipeline.decider = _ForOne(self.pipeline.decider)
+        return self.pipeline.act(world)
 
     def conclude(self, world: WorldState, outcome: Outcome) -> Account:
         if self._log is None or self.memory is None:

@@ -37,4 +37,4 @@ class Control(CoDriving):
         super().reset(road_map, model, seed)
         if self.decider is not None:
             self.decider.reset(seed)
-            self._pipeline.decider = self.decider
+            self.pipeline.decider = self.decider

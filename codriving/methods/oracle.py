@@ -17,7 +17,7 @@ class Oracle(Control):
         """Fill the slots for a new episode."""
         super().reset(road_map, model, seed)
         self._manners: Mapping[str, Manner] = {}
-        self._pipeline.perception.gives_way = self._gives_way
+        self.pipeline.perception.gives_way = self._gives_way
 
     def be_told(self, manners: Mapping[str, Manner]) -> None:
         self._manners = manners

@@ -41,7 +41,7 @@ HOW_A_MODEL_IS_ASKED = (
 
 # Settings of ``llm`` that came later, with the values that change nothing: runs of before are gone on with.
 _CAME_LATER: dict[str, Any] = {"label": None, "max_tokens_field": "max_tokens", "system_role": "system"}
-_CAME_LATER |= {"extra": {}, "headers": {}}
+_CAME_LATER |= {"extra": {}, "headers": {}, "latency": "none"}
 
 # The same for ``memory``.
 _RECALLED: dict[str, Any] = {"control": "none"}
@@ -64,6 +64,8 @@ DRIVERS, ENVIRONMENT = "drivers", "environment"  # Drivers are told by their val
 # Without limits a world is that of a run whose config did not know them yet; without a flow, and with the order that is
 # negotiated, without a filter or without a channel, likewise.
 LIMITS, FLOW, ORDER, FILTER, V2X = "limits", "flow", "order", "filter", "v2x"
+
+THINKING = "thinking"  # Where it takes no time a run is that of before it was known
 
 STEADY = "steady"  # Where it is false a world is that of a run whose config did not know it yet
 
@@ -110,6 +112,8 @@ def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     for key in (LIMITS, FLOW, ORDER, FILTER, V2X):
         if values.get(key) is None:
             values.pop(key, None)
+    if isinstance(thinking := values.get(THINKING), Mapping) and not any(thinking.values()):
+        values.pop(THINKING)
     environment = values.get(ENVIRONMENT)
     if DRIVERS in values and isinstance(environment, Mapping) and environment.get(DRIVERS) == values[DRIVERS]:
         values.pop(DRIVERS)

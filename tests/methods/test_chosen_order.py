@@ -131,7 +131,7 @@ def test_the_order_alone_is_another_one(name: str, cars: tuple[Car, ...], juncti
         assert [a.action for a in ours.assessments] == [a.action for a in theirs.assessments]
     # Told the same order, the pipeline with the negotiation expects, checks and decides the same.
     negotiated = made(junction, "negotiated")
-    negotiated._pipeline.negotiation = Given(order_of_all(ordered))
+    negotiated.pipeline.negotiation = Given(order_of_all(ordered))
     assert negotiated.act(world).as_dict() == ordered.as_dict()
 
 

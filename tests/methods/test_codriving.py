@@ -37,13 +37,13 @@ Make = Callable[..., CoDriving]
 def test_an_ablation_puts_another_object_into_one_slot(
     change: dict[str, Any], slot: str, kind: object, method: Make
 ) -> None:
-    pipeline = method(**change)._pipeline
+    pipeline = method(**change).pipeline
     found = getattr(pipeline if hasattr(pipeline, slot) else pipeline.perception, slot)
     assert kind in (found, type(found))
 
 
 def test_readings_and_binding_reach_the_order(method: Make, junction: Junction) -> None:
-    own = method(negotiation=False, own_order="independent", seed=7)._pipeline.negotiation
+    own = method(negotiation=False, own_order="independent", seed=7).pipeline.negotiation
     assert isinstance(own, OwnOrders)
     assert (own.reading, own.seed) == ("independent", 7)
     world = junction.world(car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "west-east", 60.0, 8.0))

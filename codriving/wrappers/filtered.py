@@ -1,6 +1,6 @@
 """The safety check behind any method: an action that it removes gives way to the nearest one that it allows."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,14 +18,14 @@ from codriving.datatypes import (
 )
 from codriving.errors import require_range
 from codriving.geometry import RoadMap
-from codriving.methods.codriving import CoDriving, perception_at
-from codriving.methods.ordered import Ordered
+from codriving.methods import CoDriving, Ordered, perception_at
 from codriving.reasoning import (
     AgreedOrder,
     CdaLevel,
     Moment,
     OwnOrders,
     RuleCoordinator,
+    SafetyInput,
     ThreeLayers,
     expect_all,
     least_dangerous,
@@ -83,8 +83,8 @@ class FilteredDeliberation(Deliberation):
         return line
 
 
-class Filtered(Wrapped):
-    """A method behind the safety check."""
+class Checked(Wrapped):
+    """A method whose actions are checked; a subclass says what is driven instead of one that is not allowed."""
 
     def __init__(self, method: Method, cda: CdaLevel, margin: float) -> None:
         super().__init__(method)
@@ -95,11 +95,24 @@ class Filtered(Wrapped):
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode."""
-        self.method.reset(road_map, model, seed)
+        super().reset(road_map, model, seed)
         by_zone = self._ordering.by_zone if self._ordering is not None else not self.cda.binding
         self._perception = perception_at(self.cda, road_map, model, by_zone)
         agreed = AgreedOrder(RuleCoordinator(self.cda.binding)) if self.cda.negotiation else None
         self._negotiation = agreed or OwnOrders(self.cda.own_order, seed)
+
+    def _assessed(
+        self, moment: Moment, orders: Mapping[str, PassingOrder], deciding: Collection[str]
+    ) -> dict[str, tuple[SafetyInput, tuple[ActionAssessment, ...]]]:
+        """Check what each CAV may do."""
+        lag = round(self.margin / moment.forecast.sample)
+        expected = expect_all(moment, {ego: orders[ego] for ego in deciding}, lag)
+        given = {ego: safety_input(moment, ego, orders[ego], expected[ego], lag) for ego in deciding}
+        return {ego: (each, self._safety.assess(each)) for ego, each in given.items()}
+
+
+class Filtered(Checked):
+    """A method behind the safety check."""
 
     def act(self, world: WorldState) -> FilteredDeliberation:
         return self._check(world, self.method.act(world))
@@ -110,13 +123,9 @@ class Filtered(Wrapped):
     def _check(self, world: WorldState, deliberation: Deliberation) -> FilteredDeliberation:
         moment, actions = self._perception.perceive(world), deliberation.actions
         orders = self._orders(moment, deliberation)
-        lag = round(self.margin / moment.forecast.sample)
-        expected = expect_all(moment, orders, lag)
         found = {}
-        for ego in world.deciding:
-            scene = moment.scenes[ego]
-            given = safety_input(moment, ego, orders[ego], expected[ego], lag)
-            assessed = self._safety.assess(given)
+        for ego, (given, assessed) in self._assessed(moment, orders, world.deciding).items():
+            scene = given.scene
             near = nearest(actions[ego], assessed, scene.ego.speed, scene.intent.target_speed)
             taken = near[0] if len(near) == 1 else least_dangerous(given, near)
             found[ego] = FilteredAction(actions[ego], taken, assessed)

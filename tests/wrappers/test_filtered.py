@@ -23,11 +23,11 @@ from codriving.environment.environment import Environment
 from codriving.methods.codriving import CoDriving
 from codriving.methods.coop_game_fuzzy.coop_game_fuzzy import JointActions
 from codriving.methods.fcfs import FirstComeFirstServed
-from codriving.methods.filtered import Filtered, FilteredDeliberation, SafetyFilter
 from codriving.methods.idm import Idm
 from codriving.methods.ordered import Ordered
 from codriving.reasoning.execution.planned import Planned
 from codriving.reasoning.sharing.sharing import CdaLevel
+from codriving.wrappers.filtered import Filtered, FilteredDeliberation, SafetyFilter
 
 FILTER = SafetyFilter(CdaLevel(**FULL), 1.5)
 
