@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from codriving.cli.commands import ablate, bound, check, compare, learn, list_choices, replay, run, train
+from codriving.cli.commands import ablate, bound, check, compare, learn, list_choices, replay, run, stress, train
 from codriving.cli.memory import memory
 from codriving.cli.streams import OutputError, give_up_output, mend_streams
 from codriving.errors import UserError
@@ -152,6 +152,7 @@ def _options(
 app.command(epilog="Example: codriving run scenario=intersection episodes=50 seed=0 workers=2 run=first")(run)
 app.command(epilog="Example: codriving ablate scenario=intersection episodes=20")(ablate)
 app.command(epilog="Example: codriving compare baselines scenario=intersection episodes=20")(compare)
+app.command(epilog="Example: codriving stress humans scenario=intersection episodes=60")(stress)
 app.command(epilog="Example: codriving bound scenario=intersection scenario.cavs=12 episodes=40")(bound)
 app.command(epilog="Example: codriving learn scenario=intersection interactions=0,5,20 episodes=50 run=curve")(learn)
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)

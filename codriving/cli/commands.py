@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from codriving.cli.arguments import ConfigDir, Overrides, ShowConfig
-from codriving.cli.completion import PLURALS, complete_format, complete_group, complete_table
+from codriving.cli.completion import PLURALS, complete_axis, complete_format, complete_group, complete_table
 from codriving.errors import ConfigError
 
 
@@ -60,6 +60,27 @@ def compare(
     from codriving.experiment import comparison_command, run_command
 
     raise typer.Exit(run_command(comparison_command(table, bound), overrides or [], config_dir, cfg))
+
+
+def stress(
+    axes: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="AXIS", help="What is made worse: one axis, several as a,b, or all.", autocompletion=complete_axis
+        ),
+    ] = None,
+    overrides: Overrides = None,
+    config_dir: ConfigDir = None,
+    cfg: ShowConfig = False,
+) -> None:
+    """Drive methods at rising levels of an axis, on the same seeds: curves, breaking points, area under each curve.
+
+    codriving list axes shows the axes. method=NAME,NAME takes other methods than the usual ones; controls=false leaves
+    controls out. The same command with the same run=NAME goes on where it was interrupted.
+    """
+    from codriving.experiment import run_command, stress_command
+
+    raise typer.Exit(run_command(stress_command(axes, config_dir), overrides or [], config_dir, cfg))
 
 
 def bound(

@@ -14,6 +14,7 @@ from codriving.config import (
     LISTED,
     PLUGINS,
     ROOT,
+    STRESS,
     SUITE,
     SWEPT,
     TABLES,
@@ -45,6 +46,7 @@ PLURALS = {
     "suites": SUITE,
     "experiments": EXPERIMENTS,
     "trainings": TRAININGS,
+    "axes": STRESS,
 }
 
 
@@ -61,6 +63,16 @@ def complete_format(incomplete: str) -> list[str]:
 def complete_table(incomplete: str) -> list[tuple[str, str]]:
     """Offer the tables of `codriving compare`."""
     return [(name, meaning) for name, meaning in TABLES.items() if name.startswith(incomplete)]
+
+
+def complete_axis(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
+    """Offer the axes of `codriving stress`, after a comma those that have not been named yet."""
+    before, comma, _ = incomplete.rpartition(",")
+    named = before.split(",")
+    files = TypedLine(ctx.params.get("config_dir")).choices(STRESS)
+    found = [(f"{before}{comma}{name}", describe(file)) for name, file in files.items() if name not in named]
+    everything = [] if comma else [(ALL, "Every one of these, a table each.")]
+    return [(word, text) for word, text in [*found, *everything] if word.startswith(incomplete)]
 
 
 def complete_in_line(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:

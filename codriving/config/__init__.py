@@ -7,6 +7,7 @@ from codriving.config.choices import (
     CONTROLS,
     EXPERIMENTS,
     LISTED,
+    STRESS,
     SUITE,
     SWEPT,
     TABLES,
@@ -26,6 +27,7 @@ from codriving.config.locate import conf_dir, experiments_dir
 from codriving.config.overrides import check_choice, parse, written
 from codriving.config.plugins import PLUGINS
 from codriving.config.schema import GROUPS, LARGEST_SEED, ROOT
+from codriving.config.stress import stress_axis
 from codriving.config.suites import changed_worlds, members, sets_scenario, suite_sets
 from codriving.config.sweep import Point, expand
 from codriving.config.target import find_class
@@ -41,6 +43,7 @@ __all__ = [
     "LISTED",
     "PLUGINS",
     "ROOT",
+    "STRESS",
     "SUITE",
     "SWEPT",
     "TABLES",
@@ -67,6 +70,7 @@ __all__ = [
     "parse",
     "sets_scenario",
     "show",
+    "stress_axis",
     "styles",
     "suite_sets",
     "taking_part",

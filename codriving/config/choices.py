@@ -16,6 +16,8 @@ LISTED = (*GROUPS, SUITE, EXPERIMENTS)  # Every group that has choices
 
 TRAININGS = "train"  # The folder of the configs of trainings; no group of a run, which has no training
 
+STRESS = "stress"  # The folder of the axes of `codriving stress`; no group either
+
 # Groups of which one command can take every choice; a snapshot has to be named, so not every memory can be taken; and
 # flows and episodes are not mixed.
 SWEPT = tuple(group for group in GROUPS if group not in ("launcher", "memory", "flow"))
@@ -70,7 +72,7 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
     Raises:
         ConfigError: If there is no such group.
     """
-    if group not in (known := (*LISTED, TRAININGS)):
+    if group not in (known := (*LISTED, TRAININGS, STRESS)):
         raise ConfigError(f"unknown group {group}; groups: {', '.join(known)}")
     roots = [experiments_root() if group == EXPERIMENTS else conf_dir(), *([config_dir] if config_dir else [])]
     found = {file.stem: file for root in roots for file in sorted((root / group).glob("[!_]*.yaml"))}
@@ -82,7 +84,7 @@ def choices(group: str, config_dir: Path | None = None) -> dict[str, Path]:
 
 @cache
 def taking_part(table: str) -> tuple[str, ...]:
-    """Return the methods of a table of ``codriving compare``, in its order: each says its place in its YAML."""
+    """Return the methods of a table of ``compare``, or of ``stress``, in its order: each says its place in its YAML."""
     if table == "orders":
         return taking_part("baselines")[-1:]
     if table == "all":
@@ -171,7 +173,7 @@ def check_config_dir(config_dir: Path) -> None:
         raise ConfigError(
             f"{config_dir / 'config.yaml'} would never be read; put your YAML into {config_dir}/scenario/, ..."
         )
-    for group in LISTED:
+    for group in (*LISTED, STRESS):
         ours = choices(group)
         for name, file in choices(group, config_dir).items():
             if name == ALL:

@@ -78,6 +78,7 @@ from codriving.datatypes.situation import (
     Situation,
     TrackedVehicle,
 )
+from codriving.datatypes.stress import StressAxis, StressLevel
 from codriving.datatypes.world import (
     Action,
     DrivingModel,
@@ -94,12 +95,12 @@ from codriving.datatypes.world import (
 __all__ = [
     "BLOCKER", "Account", "Action", "ActionAssessment", "ActionFilter", "Approach", "ApproachingVehicle", "Arc",
     "Block", "CaseMemory", "Chat", "Collision", "Communication", "Conflict", "Cooperation", "Decision",
-    "Deliberation", "Description", "Drivers", "DrivingModel", "Effect", "Ending", "EpisodeLauncher",
-    "EpisodeRecord", "Experience", "Flow", "FlowArrival", "FlowLog", "Instance", "Intent", "Interaction", "Kind",
-    "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory", "Method", "Metric",
-    "Model", "NamedNumber", "OrderExecutor", "OrderOfCavs", "Outcome", "Pair", "Participant", "PassingOrder", "Pet",
-    "Point", "Precedence", "ReasonedDeliberation", "Relation", "Road", "Role", "Route", "RuleModel", "Scenario",
-    "Scene", "SceneDescription", "Score", "Severity", "Shares", "Simulator", "Sine", "Situation", "Start",
-    "Straight", "ThinkingTime", "Told", "Track", "TrackedVehicle", "Trajectory", "TravelScore", "Turn",
-    "VehicleLimits", "VehicleState", "Verdict", "WorldState", "Wrapped", "beside",
+    "Deliberation", "Description", "Drivers", "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord",
+    "Experience", "Flow", "FlowArrival", "FlowLog", "Instance", "Intent", "Interaction", "Kind", "Lane", "LaneChange",
+    "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory", "Method", "Metric", "Model", "NamedNumber",
+    "OrderExecutor", "OrderOfCavs", "Outcome", "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence",
+    "ReasonedDeliberation", "Relation", "Road", "Role", "Route", "RuleModel", "Scenario", "Scene", "SceneDescription",
+    "Score", "Severity", "Shares", "Simulator", "Sine", "Situation", "Start", "Straight", "StressAxis", "StressLevel",
+    "ThinkingTime", "Told", "Track", "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleLimits",
+    "VehicleState", "Verdict", "WorldState", "Wrapped", "beside",
 ]  # fmt: skip

@@ -13,11 +13,12 @@ if TYPE_CHECKING:
     from codriving.experiment.memory_pages import merge_page, search_page, show_page
     from codriving.experiment.replay import ReplayOptions, run_replay
     from codriving.experiment.run import RUN, Results, run_command, run_frames
+    from codriving.experiment.stress import stress_command
 
 __all__ = [
     "ABLATE", "BUILD", "RUN", "BoundOptions", "Comparison", "ReplayOptions", "Results", "compare_frames",
     "comparison_command", "merge_page", "run_bound", "run_check", "run_command", "run_frames", "run_learn",
-    "run_replay", "search_page", "show_page",
+    "run_replay", "search_page", "show_page", "stress_command",
 ]  # fmt: skip
 
 _FILES = {
@@ -30,6 +31,7 @@ _FILES = {
     "memory_pages": ("merge_page", "search_page", "show_page"),
     "replay": ("ReplayOptions", "run_replay"),
     "run": ("RUN", "Results", "run_command", "run_frames"),
+    "stress": ("stress_command",),
 }
 
 

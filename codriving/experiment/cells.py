@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from codriving.config import LISTED, Point, build
+from codriving.config import LISTED, STRESS, Point, build
 from codriving.datatypes import Scenario
 from codriving.errors import ConfigError
 from codriving.experiment.contents import contents
@@ -45,6 +45,8 @@ class Cell:
     score: str = ""  # Name of its scores in a record; empty for that of the metric
     remark: str = ""  # What a reader of its numbers has to know of the method
     notes: tuple[str, ...] = ()  # What is said of several methods in one line, whose names ``{}`` stands for
+    # What was swept as it was typed, of this point and of those that are the same config.
+    points: tuple[Mapping[str, str], ...] = ()
 
     @property
     def score_name(self) -> str:
@@ -105,7 +107,8 @@ def make_cell(
         remark = f"{remark} {method.name}: it is told how human drivers treat the right of way, {KNOWS}".strip()
     notes = thinking_of(resolved).notes(method)
     told = labels, resolved, scorer.metric.name, swept, chosen, files
-    return Cell(folder_name(labels), *told, remark=remark, notes=notes)
+    points = (point.swept,) if point else ()
+    return Cell(folder_name(labels), *told, remark=remark, notes=notes, points=points)
 
 
 def with_metrics(config: Mapping[str, Any], rows: Sequence[Cell]) -> dict[str, Any]:
@@ -127,7 +130,9 @@ def distinct(cells: Sequence[Cell]) -> tuple[Cell, ...]:
     """Drop cells that are the same config again, and tell the others apart; those that drive alike share a folder."""
     once: dict[tuple[str, str], Cell] = {}
     for cell in cells:
-        once.setdefault(_same(cell), cell)
+        mark = _same(cell)
+        known = once.get(mark)
+        once[mark] = replace(known, points=(*known.points, *cell.points)) if known else cell
     shown = shown_apart([(cell.labels, cell.swept) for cell in once.values()])
     told = [replace(cell, swept=swept) for cell, swept in zip(once.values(), shown, strict=True)]
     alike: dict[str, list[int]] = {}
@@ -168,13 +173,12 @@ def repeated(cells: Sequence[Cell]) -> tuple[str, ...]:
     notes: dict[str, None] = {}
     for cell in cells:
         known = first.setdefault(_same(cell), cell)
-        ours, theirs = (
-            " ".join(f"{key}={one.swept[key]}" for key in cell.swept if cell.swept[key] != known.swept.get(key))
-            for one in (cell, known)
-        )
+        differing = [key for key in cell.swept if cell.swept[key] != known.swept.get(key)]
+        ours, theirs = (" ".join(f"{key}={one.swept[key]}" for key in differing) for one in (cell, known))
         if ours:
-            name = f"{cell.labels.method} {cell.labels.variant}".strip()
-            notes[f"{name}: {ours} is the same configuration as {theirs} and has no row of its own."] = None
+            # What two axes of stress have in common they have for every method.
+            name = "" if differing == [STRESS] else f"{cell.labels.method} {cell.labels.variant}".strip() + ": "
+            notes[f"{name}{ours} is the same configuration as {theirs} and has no row of its own."] = None
     return tuple(notes)
 
 

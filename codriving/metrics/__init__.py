@@ -6,12 +6,13 @@ from codriving.metrics.intervals import (
     holm,
     mcnemar,
     mean_interval,
+    paired_interval,
     rate_interval,
     wilson_interval,
 )
 from codriving.metrics.scorer import Scorer, with_alone
 
 __all__ = [
-    "FEWEST", "RESAMPLES", "Scorer", "holm", "mcnemar", "mean_interval", "rate_interval", "wilson_interval",
-    "with_alone",
+    "FEWEST", "RESAMPLES", "Scorer", "holm", "mcnemar", "mean_interval", "paired_interval", "rate_interval",
+    "wilson_interval", "with_alone",
 ]  # fmt: skip

@@ -57,6 +57,32 @@ def mcnemar(only_first: int, only_second: int) -> float:
     return float(binomtest(only_first, trials).pvalue)
 
 
+def paired_interval(both: int, only_first: int, only_second: int, pairs: int) -> tuple[float, float] | None:
+    """Return the 95 % interval of a difference of two rates on the same seeds (R. G. Newcombe, 1998; method 10).
+
+    It is made of the Wilson intervals of both rates and their correlation. Resampling would give no width at all where
+    both succeed on every seed, and too little where they differ on few.
+
+    Returns:
+        Lower and upper limit of the first rate minus the second; None of fewer than ``FEWEST`` pairs.
+    """
+    if pairs < FEWEST:
+        return None
+    neither = pairs - both - only_first - only_second
+    one, other = both + only_first, both + only_second
+    (low, high), (other_low, other_high) = wilson_interval(one, pairs), wilson_interval(other, pairs)
+    p, q = one / pairs, other / pairs
+    spread = math.sqrt(one * (pairs - one) * other * (pairs - other))
+    product = both * neither - only_first * only_second
+    # With Newcombe's correction for continuity of a positive correlation.
+    phi = (max(product - pairs / 2, 0.0) if product > 0 else product) / spread if spread else 0.0
+
+    def width(a: float, b: float) -> float:
+        return math.sqrt(max(a * a - 2 * phi * a * b + b * b, 0.0))
+
+    return p - q - width(p - low, other_high - q), p - q + width(high - p, q - other_low)
+
+
 def holm(p_values: Sequence[float]) -> list[float]:
     """Correct the p-values of several tests for their number (S. Holm, 1979).
 

@@ -56,7 +56,7 @@ LEVELS: Sequence[Style] = (
 )
 
 # Shift of one line against the next, as a share of the smallest step between loads or of 2, to part the intervals.
-_SPREAD = 0.06
+SPREAD = 0.06
 
 
 @contextmanager
@@ -89,9 +89,9 @@ def load_figure(
     for row in rows:
         setting = [f"{key}={value}" for key, value in setting_of(row.swept).items()]
         panels.setdefault(", ".join([row.scenario, *setting]), []).append(row)
-    labels = _line_labels([(row.name, row.cell, row.swept.get(METHOD_CHOICE, "")) for row in rows if row.cell])
+    labels = line_labels([(row.name, row.cell, row.swept.get(METHOD_CHOICE, "")) for row in rows if row.cell])
     label_of = dict(zip(map(id, rows), labels, strict=True))
-    names, styles = list(dict.fromkeys(labels)), _styles(rows, labels, methods)
+    names, styles = list(dict.fromkeys(labels)), styles_of([row.method for row in rows], labels, methods)
     step = min((b - a for a, b in pairwise(loads)), default=1)
     figure = Figure(figsize=(max(6.4, 4.4 * len(panels)), 6.6), layout="constrained")
     axes = figure.subplots(2, len(panels), sharex=True, sharey="row", squeeze=False)
@@ -100,10 +100,10 @@ def load_figure(
         success.set_title(panel)
         for row in members:
             name = label_of[id(row)]
-            shift = min(step, 2) * _SPREAD * (names.index(name) - (len(names) - 1) / 2)
+            shift = min(step, 2) * SPREAD * (names.index(name) - (len(names) - 1) / 2)
             cells = [(cavs + shift, row.at[cavs]) for cavs in loads if cavs in row.at]
             speeds = [(place, speed) for place, cell in cells if (speed := mean(cell.velocities)) is not None]
-            _draw_rates(success, cells, styles[name], name)
+            draw_rates(success, [(place, cell.success) for place, cell in cells], styles[name], name)
             velocity.plot(*_unzipped(speeds), **_look(styles[name], name))
         success.set_ylim(-3, 103)
         success.set_xticks(loads)
@@ -130,7 +130,7 @@ def learning_figure(
 
     firsts = [row.cell.first for row in rows]
     panels = list(dict.fromkeys(map(_panel, rows)))
-    labels = _line_labels([(_level(row), row.cell, "") for row in rows])
+    labels = line_labels([(_level(row), row.cell, "") for row in rows])
     levels = list(dict.fromkeys(labels))
     sizes = sorted({row.interactions for row in rows})
     figure = Figure(figsize=(max(5.0, 3.4 * len(panels)), 4.4), layout="constrained")
@@ -140,16 +140,16 @@ def learning_figure(
             shift = 0.08 * (index - (len(levels) - 1) / 2)
             members = [row for row, label in zip(rows, labels, strict=True) if label == level]
             cells = [
-                (sizes.index(row.interactions) + shift, row.cell)
+                (sizes.index(row.interactions) + shift, row.cell.success)
                 for row in members
                 if _panel(row) == panel and not row.is_control
             ]
-            _draw_rates(axis, cells, LEVELS[index % len(LEVELS)], level)
+            draw_rates(axis, cells, LEVELS[index % len(LEVELS)], level)
             controls = [row for row in members if _panel(row) == panel and row.is_control]
             for k, row in enumerate(controls, 1):
                 style = (LEVELS[index % len(LEVELS)][0], CONTROL_MARKS[row.control], "none")
                 place = sizes.index(row.interactions) + shift + 0.25 * k
-                _draw_rates(axis, [(place, row.cell)], style, f"control, {row.words}")
+                draw_rates(axis, [(place, row.cell.success)], style, f"control, {row.words}")
         claims = {row.claim for row in rows if _panel(row) == panel}
         for s in paper:
             # Not in a panel of another setting than the paper's.
@@ -183,16 +183,12 @@ def saved(figure: "Figure", handles: Mapping[str, "Artist"], heading: str, name:
     return found
 
 
-def _draw_rates(axis: "Axes", cells: Sequence[tuple[float, CellResults]], style: Style, label: str) -> None:
-    """Draw a line of success rates [%] with an interval at each."""
-    points = []
-    for place, cell in cells:
-        low, high = cell.interval
-        if low is not None and high is not None:
-            points.append((place, 100 * (len(cell.successes) / len(cell.completed)), 100 * low, 100 * high))
-    axis.plot(*_unzipped([point[:2] for point in points]), **_look(style, label))  # type: ignore[arg-type]
-    for x, _, low, high in points:
-        axis.plot([x, x], [low, high], color=style[0], linewidth=1.1, alpha=0.75)
+def draw_rates(axis: "Axes", rates: Sequence[tuple[float, tuple[float | None, ...]]], style: Style, label: str) -> None:
+    """Draw a line of rates [%] with an interval at each; each is a place, and rate with lower and upper limit."""
+    known = [(place, [100 * (number or 0.0) for number in rate]) for place, rate in rates if None not in rate]
+    axis.plot(*_unzipped([(place, rate[0]) for place, rate in known]), **_look(style, label))  # type: ignore[arg-type]
+    for place, (_, low, high) in known:
+        axis.plot([place, place], [low, high], color=style[0], linewidth=1.1, alpha=0.75)
 
 
 def _unzipped(points: Sequence[tuple[float, float]]) -> tuple[list[float], list[float]]:
@@ -213,7 +209,7 @@ def _level(row: LearningRow) -> str:
     return " ".join([row.cell.name, *swept])
 
 
-def _line_labels(lines: Sequence[tuple[str, CellResults, str]]) -> list[str]:
+def line_labels(lines: Sequence[tuple[str, CellResults, str]]) -> list[str]:
     """Name each line; where one name is of several reasoners or choices of a method, these are added.
 
     Args:
@@ -229,11 +225,16 @@ def _line_labels(lines: Sequence[tuple[str, CellResults, str]]) -> list[str]:
     return labels
 
 
-def _styles(rows: Sequence[LoadRow], labels: Sequence[str], methods: Mapping[str, Style]) -> dict[str, Style]:
+def styles_of(drawn: Sequence[str], labels: Sequence[str], methods: Mapping[str, Style]) -> dict[str, Style]:
+    """Give each label a style: that of its method, unless that is taken or there is none.
+
+    Args:
+        drawn: The method of each label.
+    """
     styles: dict[str, Style] = {}
     others = cycle(OTHERS)
-    for row, label in zip(rows, labels, strict=True):
-        usual = methods.get(row.method)
+    for method, label in zip(drawn, labels, strict=True):
+        usual = methods.get(method)
         if label not in styles:
             styles[label] = next(others) if usual is None or usual in styles.values() else usual
     return styles

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from codriving.datatypes import Ending
-from codriving.metrics import FEWEST, holm, mcnemar, mean_interval
+from codriving.metrics import FEWEST, holm, mcnemar, mean_interval, paired_interval
 from codriving.reports.columns import Column, Value, mean
 from codriving.reports.results import CellResults, ScoredEpisode
 from codriving.reports.wording import signed
@@ -43,16 +43,23 @@ class PairedRate:
     gained: int  # The method alone
     lost: int  # What it is compared with alone
     corrected: float | None = None  # p-value corrected for the number of rows; None for one that stands by itself
+    both: int = 0
 
     @classmethod
     def of(cls, pairs: Sequence[tuple[object, object]]) -> "PairedRate":
         """Count the pairs."""
-        return cls(len(pairs), sum(bool(a and not b) for a, b in pairs), sum(bool(b and not a) for a, b in pairs))
+        gained, lost = sum(bool(a and not b) for a, b in pairs), sum(bool(b and not a) for a, b in pairs)
+        return cls(len(pairs), gained, lost, both=sum(bool(a and b) for a, b in pairs))
 
     @property
     def difference(self) -> float | None:
         """Difference of the rates."""
         return (self.gained - self.lost) / self.pairs if self.pairs else None
+
+    @cached_property
+    def interval(self) -> tuple[float, float] | None:
+        """Newcombe's 95 % interval of the difference; None of too few seeds."""
+        return paired_interval(self.both, self.gained, self.lost, self.pairs)
 
     @cached_property
     def p(self) -> float | None:

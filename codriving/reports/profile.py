@@ -64,9 +64,8 @@ def _panels(suites: Sequence[tuple[str, Sequence[Compared]]]) -> Iterator[tuple[
 
 
 def _draw(axis: "Axes", place: int, cell: CellResults) -> None:
-    rates = ((len(cell.successes) / len(cell.completed), *cell.interval) if cell.completed else None, cell.clean)
-    for (label, colour, marker, filled, side), rate in zip(_MARKS, rates, strict=True):
-        if rate is None or None in rate:
+    for (label, colour, marker, filled, side), rate in zip(_MARKS, (cell.success, cell.clean), strict=True):
+        if None in rate:
             continue
         share, low, high = (100 * (number or 0.0) for number in rate)
         y = place + side * _APART

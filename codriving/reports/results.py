@@ -94,6 +94,11 @@ class CellResults:
         """Wilson 95 % interval of the success rate over completed episodes."""
         return success_interval(len(self.successes), len(self.completed))
 
+    @property
+    def success(self) -> tuple[float | None, float | None, float | None]:
+        """Rate of success over the completed episodes, and its Wilson 95 % interval."""
+        return share(len(self.successes), len(self.completed)), *self.interval
+
     @cached_property
     def judged(self) -> "list[ScoredEpisode]":
         """The completed episodes of which it is known whether they are clean."""

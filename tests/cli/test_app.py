@@ -112,6 +112,7 @@ def test_list_without_a_group_shows_all_groups() -> None:
         "suites",
         "experiments",
         "trainings",
+        "axes",
     ]
 
 
@@ -121,6 +122,13 @@ def test_list_without_a_group_shows_all_groups() -> None:
         (("list", "cars"), "unknown group 'cars'; choices: scenarios, "),
         (("compare", "baseline"), "unknown table 'baseline'; write codriving compare TABLE [KEY=VALUE]..., tables: "),
         (("compare",), "compare needs the name of a table; "),
+        (
+            ("stress",),
+            "stress needs the name of an axis; write codriving stress AXIS [KEY=VALUE]..., axes: cavs, humans",
+        ),
+        (("stress", "humans,typo"), "unknown axis 'typo'; write codriving stress AXIS [KEY=VALUE]..., axes: cavs, "),
+        (("stress", "cavs", "scenario.cavs=4"), "scenario.cavs is what the axis cavs varies; leave scenario.cavs out"),
+        (("stress", "cavs", "flow=steady"), "codriving stress pairs episodes, and in flows nothing is paired; "),
         (("compare", "single"), "unknown table 'single'; write codriving compare TABLE [KEY=VALUE]..., tables: base"),
         (("compare", "single-vehicle", "method=typo"), "unknown method 'typo'; choices: fcfs, idfst, mcts, coop_game"),
         (("compare", "all", "episodes=0"), "episodes must be a whole number, 1 to 100000, got 0"),

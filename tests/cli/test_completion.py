@@ -7,7 +7,13 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from codriving.cli.app import app
-from codriving.cli.completion import complete_group, complete_in_line, complete_override, complete_table
+from codriving.cli.completion import (
+    complete_axis,
+    complete_group,
+    complete_in_line,
+    complete_override,
+    complete_table,
+)
 from codriving.config.choices import choices
 
 SCENARIOS = [*choices("scenario"), "all"]
@@ -82,6 +88,23 @@ def test_bash_gets_only_what_follows_the_equals_sign(monkeypatch: pytest.MonkeyP
 def test_groups_of_list() -> None:
     assert complete_group("sce") == ["scenarios"]
     assert "experiments" in complete_group("")
+
+
+def test_axes_of_stress(tmp_path: Path) -> None:
+    commands = get_command(app)
+    assert isinstance(commands, TyperGroup)
+
+    def offered_axes(incomplete: str, *words: str) -> list[str]:
+        line = commands.commands["stress"].make_context("stress", list(words), resilient_parsing=True)
+        return [name for name, _ in complete_axis(line, incomplete)]
+
+    assert offered_axes("") == [*choices("stress"), "all"]
+    assert offered_axes("hum") == ["humans"]
+    assert "cavs,humans" in offered_axes("cavs,")
+    assert not {"cavs,cavs", "cavs,all"} & set(offered_axes("cavs,"))
+    (tmp_path / "stress").mkdir()
+    (tmp_path / "stress" / "mine.yaml").write_text("# Mine.\n")
+    assert offered_axes("mi", "--config-dir", str(tmp_path)) == ["mine"]
 
 
 def test_tables_of_compare() -> None:

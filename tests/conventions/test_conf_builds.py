@@ -8,7 +8,7 @@ import yaml
 from remembered import experience, filled
 
 from codriving.config.build import build, validate
-from codriving.config.choices import EXPERIMENTS, LISTED, SUITE, TRAININGS, choices, describe
+from codriving.config.choices import EXPERIMENTS, LISTED, STRESS, SUITE, TRAININGS, choices, describe
 from codriving.config.compose import compose
 from codriving.config.locate import conf_dir, experiments_dir
 from codriving.config.schema import GROUPS, OPTIONAL
@@ -45,7 +45,7 @@ def test_default_config_is_valid() -> None:
 
 
 def test_every_group_has_a_choice_and_every_folder_is_a_group() -> None:
-    assert {path.name for path in conf_dir().iterdir() if path.is_dir()} == {*GROUPS, SUITE, TRAININGS}
+    assert {path.name for path in conf_dir().iterdir() if path.is_dir()} == {*GROUPS, STRESS, SUITE, TRAININGS}
     assert all(choices(group) for group in LISTED)
 
 

@@ -9,7 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from codriving.metrics import intervals as paired
-from codriving.metrics.intervals import holm, mcnemar, mean_interval, rate_interval, wilson_interval
+from codriving.metrics.intervals import (
+    holm,
+    mcnemar,
+    mean_interval,
+    paired_interval,
+    rate_interval,
+    wilson_interval,
+)
 
 FEWEST = 10
 
@@ -135,3 +142,44 @@ def test_holm_lies_between_the_p_value_and_bonferronis(p_values: list[float]) ->
     assert sorted(range(len(p_values)), key=lambda k: (corrected[k], p_values[k], k)) == sorted(
         range(len(p_values)), key=lambda k: (p_values[k], k)
     )
+
+
+@pytest.mark.parametrize(
+    ("counts", "low", "high"),
+    [
+        ((36, 12, 2, 0), 0.0569, 0.3404),
+        ((36, 14, 0, 0), 0.1528, 0.4167),
+        ((54, 0, 0, 0), -0.0664, 0.0664),
+        ((2, 12, 2, 34), 0.0537, 0.3421),
+    ],
+)
+def test_known_intervals_of_paired_rates(counts: tuple[int, int, int, int], low: float, high: float) -> None:
+    """The first and the third are of Newcombe (1998), table III: pairs with both, the first, the second and neither."""
+    both, first, second, _ = counts
+    assert paired_interval(both, first, second, sum(counts)) == pytest.approx((low, high), abs=6e-5)
+
+
+def test_no_interval_of_paired_rates_of_few_pairs() -> None:
+    assert paired_interval(3, 0, 6, 9) is None
+    assert paired_interval(4, 0, 6, 10) is not None
+
+
+@given(st.integers(0, 30), st.integers(0, 30), st.integers(0, 30), st.integers(10, 30))
+def test_an_interval_of_paired_rates_is_mirrored(both: int, first: int, second: int, neither: int) -> None:
+    pairs = both + first + second + neither
+    low, high = paired_interval(both, first, second, pairs) or (2.0, 2.0)
+    assert -1 <= low <= (first - second) / pairs <= high <= 1
+    assert paired_interval(both, second, first, pairs) == pytest.approx((-high, -low))
+
+
+@pytest.mark.parametrize("differ", [0.05, 0.2, 0.4])
+def test_rates_that_are_equal_are_seldom_called_lower(differ: float) -> None:
+    """All ways in which 60 pairs with equal rates can fall out, weighed: in 2.5 % the upper limit is below 0."""
+    wrong = 0.0
+    for unlike in range(61):
+        likely = math.comb(60, unlike) * differ**unlike * (1 - differ) ** (60 - unlike)
+        for lost in range(unlike + 1):
+            interval = paired_interval(round(0.9 * (60 - unlike)), unlike - lost, lost, 60)
+            if interval is not None and interval[1] < 0:
+                wrong += likely * math.comb(unlike, lost) / 2**unlike
+    assert 0 < wrong < 0.03

@@ -1,6 +1,7 @@
 """All tables of a few made-up episodes, in which everything occurs that a table can show."""
 
 import io
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -8,6 +9,7 @@ from typing import Any, cast
 
 from codriving.config.locate import experiments_dir
 from codriving.datatypes.record import Collision, Ending, EpisodeRecord, Outcome, Participant, Pet, Score, TravelScore
+from codriving.datatypes.stress import StressAxis, StressLevel
 from codriving.reports.built_memory import BuiltMemory, print_built
 from codriving.reports.columns import table
 from codriving.reports.comparison import (
@@ -24,6 +26,7 @@ from codriving.reports.load import load_rows, load_table, print_each_load, print
 from codriving.reports.paper import Paper, read_learning, read_paper
 from codriving.reports.printed import PrintedTable, markdown_text, print_table
 from codriving.reports.results import CellResults
+from codriving.reports.stress import StressCurve, breaking_table, print_stress, stress_notes, stress_table
 from codriving.reports.summary import run_tables
 from codriving.runs.episode_folder import timing_of
 
@@ -142,7 +145,7 @@ def tables() -> dict[str, str]:
     found["load.csv"] = load_table(rows, (4, 8), swept).csv()
     found["load.md"] = markdown_text(print_loads(rows, (4, 8), "standard", swept))
     found["load-printed.txt"] = printed(*print_each_load(rows, (4, 8), "standard", swept))
-    found |= _learning()
+    found |= _learning() | _stress()
     timings = [timing_of(2.0, [0.25, 0.75], [0.125, 0.375]), None, timing_of(1.0, [], [])]
     timed = [TimedEpisode(r, timing, {"scenario.cavs": "8"}) for r, timing in zip(FULL, timings, strict=False)]
     found["timing.csv"] = table(timing_columns(["scenario.cavs"]), timed).csv()
@@ -238,3 +241,50 @@ def _learning() -> dict[str, str]:
         "learn.md": markdown_text(table),
         "learn-printed.txt": printed(table),
     }
+
+
+def _stress() -> dict[str, str]:
+    """Two axes: fcfs breaks in success, codriving in clean success alone, and one curve is of too few seeds."""
+    levels = {"noise": (0.0, 0.3, 1.0, 2.0), "channel": ("perfect", "poor")}
+    axes = [
+        StressAxis(key, f"{key} of messages", "m" if key == "noise" else "", f"What {key} is.", _levels_of(values))
+        for key, values in levels.items()
+    ]
+    lost = {
+        ("codriving", "rules"): ((0, 0), (0, 1), (0, 2), (0, 9)),
+        ("fcfs", "none"): ((1, 1), (1, 1), (6, 2), (9, 2)),
+    }
+    curves = [
+        StressCurve(
+            axis, {k: CellResults(_stressed(*who, *lost[who][k], 12)) for k in range(len(axis.levels))}, {"x": "1"}
+        )
+        for axis in axes
+        for who in lost
+    ]
+    few = {k: CellResults(_stressed("mcts", "none", 0, 0, 9)) for k in range(4)}
+    curves.insert(2, StressCurve(axes[0], few, {"x": "2"}))
+    found = {
+        "stress.csv": stress_table(curves, ["x"]).csv(),
+        "stress-breaking.csv": breaking_table(curves, ["x"]).csv(),
+    }
+    tables = []
+    for axis in axes:
+        own = [curve for curve in curves if curve.axis is axis]
+        tables += print_stress(own, "standard", ["x"], stress_notes(curves) if axis is axes[-1] else ())
+    found["stress.md"] = "\n".join(markdown_text(table, level=2) for table in tables)
+    return found | {"stress-printed.txt": printed(*tables)}
+
+
+def _levels_of(values: Sequence[float | str]) -> tuple[StressLevel, ...]:
+    return tuple(StressLevel(value, ()) for value in values)
+
+
+def _stressed(method: str, reasoner: str, lost: int, unclean: int, seeds: int) -> list[EpisodeRecord]:
+    """Episodes of which the first are timeouts and the next ones not clean."""
+    endings = [Ending.TIMEOUT if seed < lost else Ending.SUCCESS for seed in range(seeds)]
+    made = [record(seed, ending, method, "", reasoner) for seed, ending in enumerate(endings)]
+    clean = [seed >= lost + unclean for seed in range(seeds)]
+    return [
+        replace(r, scores={"standard": replace(r.scores["standard"], clean=c)})
+        for r, c in zip(made, clean, strict=True)
+    ]
