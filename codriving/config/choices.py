@@ -51,6 +51,7 @@ FIRST = {
     SUITE: ("default", "paper", "honest", "standoff", "crowd", "blind", "blocked_exit", "busy_merge"),
     "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),
+    STRESS: ("age", "loss", "range", "noise", "thinking", "humans", "cavs"),
 }
 
 _LINE = re.compile(r"^(\w+):[^\S\n]*([^#\n]*)", re.MULTILINE)

@@ -124,9 +124,9 @@ def test_list_without_a_group_shows_all_groups() -> None:
         (("compare",), "compare needs the name of a table; "),
         (
             ("stress",),
-            "stress needs the name of an axis; write codriving stress AXIS [KEY=VALUE]..., axes: cavs, humans",
+            "stress needs the name of an axis; write codriving stress AXIS [KEY=VALUE]..., axes: age, loss, range",
         ),
-        (("stress", "humans,typo"), "unknown axis 'typo'; write codriving stress AXIS [KEY=VALUE]..., axes: cavs, "),
+        (("stress", "humans,typo"), "unknown axis 'typo'; write codriving stress AXIS [KEY=VALUE]..., axes: age, "),
         (("stress", "cavs", "scenario.cavs=4"), "scenario.cavs is what the axis cavs varies; leave scenario.cavs out"),
         (("stress", "cavs", "flow=steady"), "codriving stress pairs episodes, and in flows nothing is paired; "),
         (("compare", "single"), "unknown table 'single'; write codriving compare TABLE [KEY=VALUE]..., tables: base"),
