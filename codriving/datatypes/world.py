@@ -133,6 +133,8 @@ class Told:
     ahead: float = 0.0  # How far ahead of it [m]
     slower: float = 0.0  # How much slower than it is taken to be it may be [m/s]
     faster: float = 0.0  # How much faster [m/s]
+    # Where it was, and its heading, when this was so; None if its way since is known [m, m, rad].
+    since: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,8 +25,9 @@ class Link:
 
     def __init__(self, settings: ChannelSettings, seed: int, sender: str, receiver: str) -> None:
         self._settings, self._rng = settings, _stream(seed, LINK, sender, receiver)
-        self._recovers = 1 / settings.burst
-        self._fails = min(1.0, self._recovers * settings.loss / (1 - settings.loss))
+        # Not even losses that have nothing to do with one another come one by one.
+        self._recovers = min(1 / settings.burst, 1 - settings.loss)
+        self._fails = self._recovers * settings.loss / (1 - settings.loss)
         self._bad = bool(self._rng.random() < settings.loss)
         self._lost: list[bool] = []
         self._delays: list[float] = []

@@ -117,4 +117,5 @@ class KnownWorld:
             ahead=pedal * age**2 / 2 + speed * age + place,
             slower=min(v.speed, brake * age) + speed,
             faster=pedal * age + speed,
+            since=(v.x, v.y, v.heading) if intent_age is None else None,
         )

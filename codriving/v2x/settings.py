@@ -14,10 +14,10 @@ class ChannelSettings:
     """
 
     rate: float  # Messages of each kind that a CAV sends a second [Hz]
-    age: float  # Mean time from making a message to its use by a receiver [s]
+    age: float  # Mean time from making a message to its arrival [s]
     age_shape: float  # Shape of the Gamma distribution of that time; 0 for always the same
     loss: float  # Share of messages that are lost
-    burst: float  # Mean number of messages that are lost in a row (Gilbert-Elliott); at least 1
+    burst: float  # Mean number of messages lost in a row (Gilbert-Elliott), at least as many as without any memory
     range: float  # Distance up to which a message is received [m]
     noise: float  # Standard deviation of positions in messages, each coordinate, cut off at three times that [m]
     speed_noise: float  # The same for speeds [m/s]

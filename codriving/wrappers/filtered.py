@@ -13,6 +13,7 @@ from codriving.datatypes import (
     Method,
     PassingOrder,
     ReasonedDeliberation,
+    Shares,
     WorldState,
     Wrapped,
 )
@@ -75,7 +76,8 @@ class FilteredDeliberation(Deliberation):
     def as_dict(self) -> dict[str, Any]:
         line = self.inner.as_dict()
         for entry in line.get("cavs", ()):
-            found = self.filtered[entry["id"]]
+            if (found := self.filtered.get(entry["id"])) is None:
+                continue  # Another CAV decides for that one
             entry["filter"] = found.as_dict()
             if found.taken is not found.wanted:
                 why = f"{found.taken} in the place of {found.wanted}, which the safety check removed"
@@ -90,6 +92,8 @@ class Checked(Wrapped):
         super().__init__(method)
         self.cda, self.margin = cda, margin
         self.variant, self.is_checked = f"{method.variant} filtered".strip(), True
+        told = method.shares
+        self.shares = Shares(told.states or cda.state_sharing, told.intents or cda.intent_sharing, told.orders)
         self._ordering = method if isinstance(method, Ordered | CoDriving) and method.orders else None
         self._safety = ThreeLayers()
 

@@ -14,7 +14,7 @@ from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.config.locate import conf_dir
 from codriving.datatypes.order import PassingOrder
-from codriving.datatypes.parts import Account, Method, RuleModel
+from codriving.datatypes.parts import Account, Method, RuleModel, Shares
 from codriving.datatypes.record import Ending, Outcome
 from codriving.datatypes.road import Road
 from codriving.datatypes.situation import Decision, Deliberation, ReasonedDeliberation
@@ -128,6 +128,15 @@ def test_all_else_is_the_methods_own(junction: Junction) -> None:
     assert filtered.unfinished_step(1.0) == ({"paid": 1}, [])
     assert filtered.is_checked
     assert filtered.ask_once(junction.world(*CARS)).actions.keys() == {"CAV1", "CAV2"}
+
+
+def test_what_the_check_knows_has_to_be_told() -> None:
+    alone = SafetyFilter(CdaLevel(**{**FULL, "intent_sharing": False, "negotiation": False}), 1.5)
+    assert FILTER.around(Steady(Action.IDLE)).shares == Shares(states=True, intents=True)
+    assert alone.around(Steady(Action.IDLE)).shares == Shares(states=True)
+    tells = Steady(Action.IDLE)
+    tells.shares = Shares(intents=True, orders=True)
+    assert alone.around(tells).shares == Shares(states=True, intents=True, orders=True)
 
 
 def test_methods_with_a_check_or_without_actions_are_left_as_they_are() -> None:

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from codriving.datatypes import Kind, TrackedVehicle, VehicleState, WorldState
+from codriving.datatypes import Kind, Told, TrackedVehicle, VehicleState, WorldState
 from codriving.geometry import RoadMap
 from codriving.reasoning import Places, Tracking
 
@@ -28,7 +28,7 @@ class Knowledge:
                 for cav in cavs
             }
         known = [
-            self._partner(v, world) if v.kind is Kind.CAV else self._human(v)
+            self._partner(v, world) if v.kind is Kind.CAV else self._human(v, world)
             for v in vehicles
             if v.kind is Kind.CAV or world.known_to_cavs(v, self._range)
         ]
@@ -48,15 +48,16 @@ class Knowledge:
             places = ((intent.route, s), *self._road_map.changes.covered(intent.route, lane, v.x, v.y))
         return replace(_detected(v), kind=v.kind, lane=v.lane, routes=places, intent=intent)
 
-    def _human(self, v: VehicleState) -> TrackedVehicle:
+    def _human(self, v: VehicleState, world: WorldState) -> TrackedVehicle:
         """A human driver whom all CAVs watch together."""
-        return replace(self._stranger(SHARED, v), kind=v.kind, acceleration=v.acceleration)
+        human = self._stranger(SHARED, v, world.told.get(v.id))
+        return replace(human, kind=v.kind, acceleration=v.acceleration)
 
-    def _stranger(self, watcher: str, v: VehicleState) -> TrackedVehicle:
-        seen = _detected(v)
+    def _stranger(self, watcher: str, v: VehicleState, told: Told | None = None) -> TrackedVehicle:
+        seen = _detected(v, told)
         return replace(seen, routes=self._tracking.places(watcher, seen, None)) if self._routes else seen
 
 
-def _detected(v: VehicleState) -> TrackedVehicle:
+def _detected(v: VehicleState, told: Told | None = None) -> TrackedVehicle:
     """What sensors tell of a vehicle."""
-    return TrackedVehicle(v.id, None, v.x, v.y, v.speed, v.heading, None, None, v.length)
+    return TrackedVehicle(v.id, None, v.x, v.y, v.speed, v.heading, None, None, v.length, told=told)

@@ -191,7 +191,10 @@ class Forecast:
         if told is None or told.seen:
             return self.reach(speed, is_cav, where)
         least = self.reach(max(speed - told.slower, 0.0), is_cav, where).least - told.behind
-        most = self.reach(min(speed + told.faster, self.fastest(is_cav)), is_cav, where).most + told.ahead
+        fast = max(speed, min(speed + told.faster, self.fastest(is_cav)))
+        # It may be past a curve that it is taken to be in.
+        farther = self.reach(fast, is_cav, (where[0], where[1] + told.ahead)).most
+        most = np.maximum(self.reach(fast, is_cav, where).most, farther) + told.ahead
         return Reach(least, self.reach(speed, is_cav, where).steady, most)
 
     def fastest(self, is_cav: bool) -> float:

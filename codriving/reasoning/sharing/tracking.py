@@ -48,11 +48,16 @@ class Tracking:
                 s, _ = self.road_map.project(*told)
                 self._shared[told] = ((intent.route, s), *self._covered(intent.route, s, seen.x, seen.y))
             return self._shared[told]
-        key = ((seen.x, seen.y, seen.heading), self._routes.get((ego, seen.id)), signal)
+        spot: Spot = (seen.x, seen.y, seen.heading)
+        way = 0.0
+        if seen.told is not None and seen.told.since is not None:
+            # Which ways it may have taken since is told by where it was.
+            spot, way = seen.told.since, seen.speed * seen.told.age
+        key = (spot, self._routes.get((ego, seen.id)), signal)
         if key not in self._narrowed:
             self._narrowed[key] = self._narrow(*key)
         self._routes[ego, seen.id], places = self._narrowed[key]
-        return places
+        return places if not way else tuple((route, s + way) for route, s in places)
 
     def _narrow(self, spot: Spot, before: frozenset[str] | None, signal: str) -> tuple[frozenset[str], Places]:
         """Return the routes that are still possible, and these with the lanes beside onto which the body reaches."""
