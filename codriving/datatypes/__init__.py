@@ -1,5 +1,16 @@
 """The data types of all rooms: frozen dataclasses, and the base classes of what a config can name."""
 
+from codriving.datatypes.cooperation import (
+    EACH,
+    NEAREST,
+    UNITS,
+    Coordination,
+    OrderAgreement,
+    OrderMessage,
+    Party,
+    Proposal,
+    Response,
+)
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Memory, Verdict
 from codriving.datatypes.flow import Flow
 from codriving.datatypes.limits import VehicleLimits
@@ -93,14 +104,15 @@ from codriving.datatypes.world import (
 )
 
 __all__ = [
-    "BLOCKER", "Account", "Action", "ActionAssessment", "ActionFilter", "Approach", "ApproachingVehicle", "Arc",
-    "Block", "CaseMemory", "Chat", "Collision", "Communication", "Conflict", "Cooperation", "Decision",
-    "Deliberation", "Description", "Drivers", "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord",
-    "Experience", "Flow", "FlowArrival", "FlowLog", "Instance", "Intent", "Interaction", "Kind", "Lane", "LaneChange",
-    "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory", "Method", "Metric", "Model", "NamedNumber",
-    "OrderExecutor", "OrderOfCavs", "Outcome", "Pair", "Participant", "PassingOrder", "Pet", "Point", "Precedence",
-    "ReasonedDeliberation", "Relation", "Road", "Role", "Route", "RuleModel", "Scenario", "Scene", "SceneDescription",
-    "Score", "Severity", "Shares", "Simulator", "Sine", "Situation", "Start", "Straight", "StressAxis", "StressLevel",
-    "ThinkingTime", "Told", "Track", "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleLimits",
-    "VehicleState", "Verdict", "WorldState", "Wrapped", "beside",
+    "BLOCKER", "EACH", "NEAREST", "UNITS", "Account", "Action", "ActionAssessment", "ActionFilter", "Approach",
+    "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat", "Collision", "Communication", "Conflict", "Cooperation",
+    "Coordination", "Decision", "Deliberation", "Description", "Drivers", "DrivingModel", "Effect", "Ending",
+    "EpisodeLauncher", "EpisodeRecord", "Experience", "Flow", "FlowArrival", "FlowLog", "Instance", "Intent",
+    "Interaction", "Kind", "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory",
+    "Method", "Metric", "Model", "NamedNumber", "OrderAgreement", "OrderExecutor", "OrderMessage", "OrderOfCavs",
+    "Outcome", "Pair", "Participant", "Party", "PassingOrder", "Pet", "Point", "Precedence", "Proposal",
+    "ReasonedDeliberation", "Relation", "Response", "Road", "Role", "Route", "RuleModel", "Scenario", "Scene",
+    "SceneDescription", "Score", "Severity", "Shares", "Simulator", "Sine", "Situation", "Start", "Straight",
+    "StressAxis", "StressLevel", "ThinkingTime", "Told", "Track", "TrackedVehicle", "Trajectory", "TravelScore", "Turn",
+    "VehicleLimits", "VehicleState", "Verdict", "WorldState", "Wrapped", "beside",
 ]  # fmt: skip

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from codriving.datatypes.cooperation import Coordination, Party
 from codriving.datatypes.experience import Experience, Interaction, Memory
 from codriving.datatypes.record import Outcome, Score, Trajectory
 from codriving.datatypes.road import Road, Route
@@ -194,6 +195,8 @@ class Method(ABC):
     hands_over: bool = False  # Whether its CAVs drive as human drivers do, so that it gives no actions
     knows_drivers: bool = False  # Whether it is told what no vehicle can know: how human drivers treat the right of way
     shares: Shares = Shares()
+    coordination: Coordination | None = None  # How its one CAV agrees with others by messages; None if it does not
+    party: Party | None = None  # What does so for it; only from ``reset`` on
     observer: "Callable[[WorldState], None] | None" = None  # Wants to be shown the world at each simulation step
 
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
@@ -231,6 +234,14 @@ class Method(ABC):
             seed: For what the method draws at random. It is not the seed of the episode, from which the scene with the
                 routes of human drivers could be made again.
         """
+
+    def cooperate(self, coordination: Coordination) -> None:
+        """Agree with others on orders by messages, from the next ``reset`` on; only if it shares orders.
+
+        Raises:
+            ConfigError: If it cannot be coordinated so.
+        """
+        self.coordination = coordination
 
     def be_told(self, manners: Mapping[str, Manner]) -> None:
         """Hear how human drivers treat the right of way, before each decision; only if ``knows_drivers``."""
@@ -278,6 +289,10 @@ class Wrapped(Method):
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         self.method.reset(road_map, model, seed)
+        self.party = self.method.party
+
+    def cooperate(self, coordination: Coordination) -> None:
+        self.method.cooperate(coordination)
 
     def be_told(self, manners: Mapping[str, Manner]) -> None:
         self.method.be_told(manners)

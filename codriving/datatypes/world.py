@@ -154,7 +154,7 @@ class WorldState:
         default_factory=dict
     )  # ``left`` or ``right`` of each vehicle that signals a turn
     hidden: tuple[tuple[str, str], ...] = ()  # Pairs between which a building stands, in the order of names
-    viewer: str | None = None  # The CAV whose knowledge this is; None for the world as it is
+    viewer: str | None = None  # The CAV, or the unit, whose knowledge this is; None for the world as it is
     told: Mapping[str, Told] = field(default_factory=dict)  # What the viewer knows by messages, by id of the vehicle
 
     @property
@@ -180,5 +180,5 @@ class WorldState:
 
     @property
     def deciding(self) -> tuple[str, ...]:
-        """The CAVs that are decided for: all, or the one whose knowledge this is."""
-        return tuple(cav.id for cav in self.cavs) if self.viewer is None else (self.viewer,)
+        """The CAVs that are decided for: all, or the one whose knowledge this is; none if it is that of no CAV."""
+        return tuple(cav.id for cav in self.cavs if self.viewer in (None, cav.id))

@@ -1,7 +1,21 @@
 """An order rule in the place of the negotiation: its order is what all CAVs of ``codriving`` agree on."""
 
-from codriving.datatypes import PassingOrder
-from codriving.reasoning import HEADWAY, PAD, Coordinator, JointPlans, Moment, OrderRule, agreement, pose
+from collections.abc import Mapping
+
+from codriving.datatypes import Pair, PassingOrder
+from codriving.protocol import with_given
+from codriving.reasoning import (
+    HEADWAY,
+    PAD,
+    Coordinator,
+    Executor,
+    JointPlanner,
+    JointPlans,
+    Moment,
+    OrderRule,
+    agreement,
+    pose,
+)
 
 
 class ChosenOrder(Coordinator):
@@ -10,16 +24,24 @@ class ChosenOrder(Coordinator):
     What a rule grants or holds back beyond an order, lane changes and earliest times, is left to the pipeline.
     """
 
-    def __init__(self, rule: OrderRule, binding: bool, margin: float) -> None:
+    def __init__(self, rule: OrderRule, binding: bool, margin: float, executor: Executor | None = None) -> None:
         self.rule, self.binding, self.margin = rule, binding, margin
+        self.executor = executor  # What drives by the order, if that is not the pipeline
 
-    def negotiate(self, moment: Moment) -> PassingOrder:
+    def negotiate(self, moment: Moment, given: Mapping[Pair, str] | None = None) -> PassingOrder:
         """Return the order of the rule, and who of a CAV and a human driver goes first in its schedule."""
-        problem = pose(moment)
-        # For rules that look at plans: with the margins of the pipeline.
-        planner = JointPlans(moment, {}, self.margin, PAD, HEADWAY)
+        given = given or {}
+        problem = with_given(pose(moment) if self.executor is None else pose(moment, self.executor.gap), given)
+        # For rules that look at plans: with the margins of the pipeline, or those of the executor.
+        planner: JointPlanner = JointPlans(moment, {}, self.margin, PAD, HEADWAY)
+        if self.executor is not None:
+            planner = self.executor.planner(moment)
         ordering = self.rule.order(problem.instance, planner)
-        return agreement(moment, problem, ordering.times, ordering.reason, self.binding)
+
+        def reason(first: str, second: str) -> str:
+            return given.get((first, second)) or ordering.reason(first, second)
+
+        return agreement(moment, problem, ordering.times, reason, self.binding)
 
 
 def order_variant(cda: str, rule: OrderRule | None) -> str:

@@ -1,10 +1,15 @@
 """CoDrivingLLM: the paper's method, with its CDA level, its reasoner and its memory put into the slots."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from codriving.datatypes import (
+    EACH,
+    NEAREST,
+    UNITS,
     Account,
     CaseMemory,
+    Coordination,
     Decision,
     DrivingModel,
     Model,
@@ -20,6 +25,7 @@ from codriving.methods.chosen_order import ChosenOrder, order_variant
 from codriving.methods.experience_log import ConflictLog, learn
 from codriving.methods.language_model.prompted_model import ModelMethod, PromptedModel
 from codriving.methods.pipeline import Pipeline
+from codriving.protocol import ByMessages, Negotiator
 from codriving.reasoning import (
     CONTINUATIONS,
     HIDDEN_INTENTS,
@@ -29,6 +35,7 @@ from codriving.reasoning import (
     Coordinator,
     Decider,
     Forecast,
+    Negotiation,
     NoCheck,
     OrderRule,
     OwnOrders,
@@ -71,6 +78,14 @@ class CoDriving(ModelMethod):
         self.is_checked, self.by_zone = cda.safety_check, by_zone and not cda.binding
         self.asked = ("negotiate", "decide") if order is None else ("decide",)
 
+    def cooperate(self, coordination: Coordination) -> None:
+        require(
+            coordination.by not in (NEAREST, EACH) or not self.cda.binding,
+            f"cda.binding=true needs one who may direct, and v2x.coordination.by={coordination.by} has none; choose "
+            "v2x.coordination.by=road_side_unit or fleet, or a cda= that does not bind",
+        )
+        super().cooperate(coordination)
+
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Fill the slots for a new episode."""
         super().reset(road_map, model, seed)
@@ -79,7 +94,12 @@ class CoDriving(ModelMethod):
             self.order.reset(seed)
             coordinator = ChosenOrder(self.order, self.cda.binding, self.margin)
         perception = perception_at(self.cda, road_map, model, self.by_zone)
-        negotiation = AgreedOrder(coordinator) if self.cda.negotiation else OwnOrders(self.cda.own_order, seed)
+        own = OwnOrders(self.cda.own_order, seed)
+        negotiation: Negotiation = AgreedOrder(coordinator) if self.cda.negotiation else own
+        if self.coordination is not None:
+            authority = UNITS[self.coordination.by] if self.cda.binding else ""
+            self.party = Negotiator(replace(self.coordination, authority=authority), coordinator)
+            negotiation = ByMessages(self.party, own)
         safety = ThreeLayers() if self.cda.safety_check else NoCheck()
         ledger = self._model.ledger if self._model is not None else None
         self.pipeline = Pipeline(perception, negotiation, safety, decider, self.margin, self.memory, ledger)

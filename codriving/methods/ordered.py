@@ -1,5 +1,7 @@
 """Methods that order: a rule says who passes first, an executor drives; everything else is shared by all of them."""
 
+from copy import deepcopy
+
 from codriving.datatypes import (
     Action,
     ActionAssessment,
@@ -13,6 +15,8 @@ from codriving.datatypes import (
     WorldState,
 )
 from codriving.geometry import RoadMap
+from codriving.methods.chosen_order import ChosenOrder
+from codriving.protocol import Negotiator
 from codriving.reasoning import (
     CONTINUATIONS,
     LONGITUDINAL,
@@ -38,7 +42,7 @@ class Ordered(Method):
     States and intents are shared as in the full framework. Only the choice of the order differs between such methods.
     """
 
-    shares = Shares(states=True, intents=True)
+    shares = Shares(states=True, intents=True, orders=True)
 
     def __init__(self, rule: OrderRule, executor: Executor) -> None:
         self.rule, self.executor, self.name = rule, executor, rule.name
@@ -54,11 +58,18 @@ class Ordered(Method):
         self._requests, self._lag = LaneRequests(), round(self.executor.margin / forecast.sample)
         self.rule.reset(seed)
         self.executor.reset()
+        if self.coordination is not None:
+            coordinator = ChosenOrder(deepcopy(self.rule), True, self.executor.margin, self.executor)
+            self.party = Negotiator(self.coordination, coordinator)
 
     def act(self, world: WorldState) -> ReasonedDeliberation:
         """Order all CAVs, and decide for every CAV on the road."""
         moment = self._perception.perceive(world)
         problem = pose(moment, self.executor.gap)
+        if isinstance(self.party, Negotiator):
+            problem = self.party.agreed_problem(moment, problem)
+            if not world.deciding:
+                return ReasonedDeliberation(world.time, world.step, (), (), {})
         ordering = self.rule.order(problem.instance, self.executor.planner(moment))
         agreed = agreement(moment, problem, ordering.times, ordering.reason, True)
         drive = self.executor.drive(moment, ordering)

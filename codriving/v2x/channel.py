@@ -1,7 +1,7 @@
 """The channel of one episode: what is sent at each tick, and what of it has reached whom."""
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import hypot
 
@@ -16,6 +16,10 @@ from codriving.v2x.messages import (
 )
 from codriving.v2x.settings import ChannelSettings
 
+Place = tuple[float, float]  # x and y [m]
+
+NO_UNITS: Mapping[str, Place | None] = {}
+
 
 @dataclass(frozen=True, slots=True)
 class Packet:
@@ -25,14 +29,22 @@ class Packet:
     time: float  # [s]
     tick: int
     messages: tuple[V2xMessage, ...]
-    heard_by: frozenset[str]  # The CAVs within the range
+    heard_by: frozenset[str]  # Who is within the range
 
 
 class Channel:
     """Everything that is on the air."""
 
-    def __init__(self, settings: ChannelSettings, shares: Shares, model: DrivingModel, seed: int) -> None:
+    def __init__(
+        self,
+        settings: ChannelSettings,
+        shares: Shares,
+        model: DrivingModel,
+        seed: int,
+        units: Mapping[str, Place | None] = NO_UNITS,
+    ) -> None:
         self.settings, self._shares, self._model, self._seed = settings, shares, model, seed
+        self._units = units  # Who coordinates and is no CAV, and where [m]; None for one that reaches all CAVs
         self._sent: dict[str, deque[Packet]] = {}
         self._links: dict[tuple[str, str], Link] = {}
         self._errors: dict[tuple[str, str], Errors] = {}
@@ -41,13 +53,13 @@ class Channel:
 
     def hear(self, world: WorldState) -> None:
         """Let every CAV send what is due at this time."""
-        tick = int(world.time * self.settings.rate + 1e-6)
+        tick = self.tick_of(world.time)
         if tick == self._tick:
             return
         self._tick = tick
         cavs = world.cavs
         for cav in cavs:
-            near = (c.id for c in cavs if c.id != cav.id and hypot(c.x - cav.x, c.y - cav.y) <= self.settings.range)
+            near = self.reached(cav.id, world)
             messages = tuple(self._messages(world, cav))
             self.messages += len(messages)
             self.bytes += sum(message.size for message in messages)
@@ -56,6 +68,15 @@ class Channel:
         for packets in self._sent.values():
             while packets and packets[0].time < world.time - self.settings.validity - 1e-9:
                 packets.popleft()
+
+    def reached(self, sender: str, world: WorldState) -> list[str]:
+        """Return who is within the range of a sender."""
+        places = {**{cav.id: (cav.x, cav.y) for cav in world.cavs}, **self._units}
+        here = places.pop(sender, None)
+        return [name for name, there in places.items() if self._near(here, there)]
+
+    def _near(self, one: Place | None, other: Place | None) -> bool:
+        return one is None or other is None or hypot(one[0] - other[0], one[1] - other[1]) <= self.settings.range
 
     def _messages(self, world: WorldState, cav: VehicleState) -> Iterator[V2xMessage]:
         settings, reach = self.settings, self._model.detection_range
@@ -73,6 +94,16 @@ class Channel:
             intent, available = world.intents[cav.id], world.available[cav.id]
             yield ManoeuvreCoordination(*about, settings.mcm_bytes, intent, available)
 
+    def tick_of(self, time: float) -> int:
+        """Return the tick at or before a time [s]."""
+        return int(time * self.settings.rate + 1e-6)
+
+    def link(self, sender: str, receiver: str) -> Link:
+        """Return what chance does to messages from one to another."""
+        if (sender, receiver) not in self._links:
+            self._links[sender, receiver] = Link(self.settings, self._seed, sender, receiver)
+        return self._links[sender, receiver]
+
     def _measured(self, by: str, vehicle: VehicleState) -> VehicleState:
         """Return a state as a CAV writes it into a message."""
         if (by, vehicle.id) not in self._errors:
@@ -84,9 +115,7 @@ class Channel:
         """Return the newest packet of each sender that has reached a CAV and is still valid, by sender."""
         found = []
         for sender in sorted(self._sent.keys() - {receiver}):
-            if (sender, receiver) not in self._links:
-                self._links[sender, receiver] = Link(self.settings, self._seed, sender, receiver)
-            link = self._links[sender, receiver]
+            link = self.link(sender, receiver)
             newest = (
                 packet
                 for packet in reversed(self._sent[sender])

@@ -20,7 +20,8 @@ from codriving.datatypes import (
 from codriving.geometry import RoadMap
 from codriving.v2x.channel import Channel
 from codriving.v2x.knowledge import KnownWorld
-from codriving.v2x.settings import ChannelSettings
+from codriving.v2x.negotiations import Negotiations, coordination, units
+from codriving.v2x.settings import NONE, ChannelSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +33,7 @@ class ConnectedDeliberation(Deliberation):
     each: Mapping[str, Deliberation]  # By id of the CAV
     counts: Mapping[str, float]
     transcript: tuple[dict[str, Any], ...]
+    said: Mapping[str, Any] | None = None  # Messages about orders, and what each CAV holds; None where none are sent
 
     @property
     def actions(self) -> dict[str, Action]:
@@ -44,7 +46,12 @@ class ConnectedDeliberation(Deliberation):
             for entry in deliberation.as_dict()["cavs"]
             if entry["id"] == name
         ]
-        return {"time": self.time, "step": self.step, "cavs": cavs}
+        line = {"time": self.time, "step": self.step, "cavs": cavs}
+        if self.said is None:
+            return line
+        for entry in cavs:
+            entry["agreements"] = self.said["held"][entry["id"]]
+        return {**line, "said": self.said["said"]}
 
 
 class V2X(ChannelSettings, Communication):
@@ -63,46 +70,69 @@ class Connected(Wrapped):
         super().__init__(method)
         self.settings, self._shared = settings, shared
         self.observer = self._hear
+        orders = settings.coordination
+        self._orders = orders if method.shares.orders and orders is not None and orders.by != NONE else None
+        if self._orders is not None:
+            method.cooperate(coordination(self._orders, ""))  # Refuses what cannot be before anything is driven
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; every CAV begins with what it sees and what it has heard at its first step."""
         self._begin = road_map, model, seed
-        self._channel = Channel(self.settings, self.shares, model, seed)
+        orders = self._orders
+        self._channel = Channel(self.settings, self.shares, model, seed, units(orders, road_map) if orders else {})
+        self._negotiations = Negotiations(orders, self._channel, road_map) if orders else None
         self._knowledge: dict[str, KnownWorld] = {}
         self._copies: dict[str, Method] = {}
         self._manners: Mapping[str, Manner] = {}
 
     def _hear(self, world: WorldState) -> None:
         self._channel.hear(world)
+        if self._negotiations is not None:
+            self._negotiations.deliver(world, self._copies)
 
     def be_told(self, manners: Mapping[str, Manner]) -> None:
         self._manners = manners
 
     def act(self, world: WorldState) -> ConnectedDeliberation:
         """Let each CAV on the road decide by what it knows."""
-        channel = self._channel
-        channel.hear(world)
+        channel, negotiations = self._channel, self._negotiations
+        self._hear(world)
+        made: list[Deliberation] = []
+        if negotiations is not None and negotiations.unit is not None:
+            made.append(self._decided(negotiations.unit, self._known(negotiations.unit, world), world))
         each: dict[str, Deliberation] = {}
         ages, uses = 0.0, 0
         for cav in world.cavs:
-            knowledge = self._knowledge_of(cav.id)
-            knowledge.hear(channel.received(cav.id, world.time), world.time)
-            known = knowledge.of(world)
-            copy = self._copy(cav.id)
-            if copy.knows_drivers:
-                copy.be_told(self._manners)
-            each[cav.id] = copy.act(known)
+            known = self._known(cav.id, world)
+            each[cav.id] = self._decided(cav.id, known, world)
             used = [age for told in known.told.values() for age in (told.intent_age, None if told.seen else told.age)]
             ages, uses = ages + sum(age for age in used if age is not None), uses + len(used) - used.count(None)
         counts: dict[str, float] = {}
-        for deliberation in each.values():
-            for name, number in deliberation.counts.items():
+        made += each.values()
+        counted, said = (None, None) if negotiations is None else negotiations.noted({n: self._copies[n] for n in each})
+        told: dict[str, float] = {"messages": channel.messages, "message_bytes": channel.bytes}
+        told |= {"message_age": round(ages, 9), "message_uses": uses}
+        for found in (*(deliberation.counts for deliberation in made), told, counted or {}):
+            for name, number in found.items():
                 counts[name] = counts.get(name, 0) + number
-        counts |= {"messages": channel.messages, "message_bytes": channel.bytes}
-        counts |= {"message_age": round(ages, 9), "message_uses": uses}
         channel.messages = channel.bytes = 0
-        transcript = tuple(line for deliberation in each.values() for line in deliberation.transcript)
-        return ConnectedDeliberation(world.time, world.step, each, counts, transcript)
+        transcript = tuple(line for deliberation in made for line in deliberation.transcript)
+        return ConnectedDeliberation(world.time, world.step, each, counts, transcript, said)
+
+    def _known(self, name: str, world: WorldState) -> WorldState:
+        """Return what a CAV, or a unit, knows of a world."""
+        knowledge = self._knowledge_of(name)
+        knowledge.hear(self._channel.received(name, world.time), world.time)
+        return knowledge.of(world)
+
+    def _decided(self, name: str, known: WorldState, world: WorldState) -> Deliberation:
+        copy = self._copy(name)
+        if copy.knows_drivers:
+            copy.be_told(self._manners)
+        deliberation = copy.act(known)
+        if self._negotiations is not None:
+            self._negotiations.collect(copy, world)
+        return deliberation
 
     def conclude(self, world: WorldState, outcome: Outcome) -> Account:
         return _together([copy.conclude(world, outcome) for copy in self._copies.values()])
@@ -119,6 +149,8 @@ class Connected(Wrapped):
     def _copy(self, name: str) -> Method:
         if name not in self._copies:
             self._copies[name] = deepcopy(self.method, {id(part): part for part in self._shared})
+            if self._negotiations is not None:
+                self._negotiations.join(name, self._copies[name])
             self._copies[name].reset(*self._begin)
         return self._copies[name]
 

@@ -1,4 +1,4 @@
-"""What one CAV knows: what its own sensors see, and for the rest what has reached it, brought up to the present."""
+"""What one CAV, or a unit, knows: what its sensors see, and else what has reached it, brought up to the present."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ class _Heard:
 
 
 class KnownWorld:
-    """What one CAV has heard and sees, from one decision to the next."""
+    """What one CAV has heard and sees, from one decision to the next; a unit at the road side has no sensors."""
 
     def __init__(self, ego: str, settings: ChannelSettings, road_map: RoadMap, model: DrivingModel) -> None:
         self.ego, self._settings, self._road_map, self._model = ego, settings, road_map, model
@@ -50,12 +50,12 @@ class KnownWorld:
             self._heard[state.id] = _Heard(state, signal, time)
 
     def of(self, world: WorldState) -> WorldState:
-        """Return what the CAV knows of a world."""
-        own = next(cav for cav in world.cavs if cav.id == self.ego)
-        vehicles, signals, told = [own], {}, {}
-        intents, available = {own.id: world.intents[own.id]}, {own.id: world.available[own.id]}
+        """Return what is known of a world."""
+        own = [cav for cav in world.cavs if cav.id == self.ego]
+        vehicles, signals, told = [*own], {}, {}
+        intents, available = dict[str, Intent](), dict[str, tuple[Action, ...]]()
         for v in world.vehicles:
-            if v.id != own.id and world.senses(own, v, self._model.detection_range):
+            if any(v.id != cav.id and world.senses(cav, v, self._model.detection_range) for cav in own):
                 vehicles.append(self._named(v))
                 if v.id in world.signals:
                     signals[v.id] = world.signals[v.id]
@@ -74,12 +74,14 @@ class KnownWorld:
                 signals[name] = heard.signal
             intent = self._intents.get(name)
             told[name] = self._told(heard.state, age, None if intent is None else world.time - intent[2])
-        for v in vehicles[1:]:
-            if v.kind is Kind.CAV:
+        for v in vehicles:
+            if v.id == self.ego:
+                intents[v.id], available[v.id] = world.intents[v.id], world.available[v.id]
+            elif v.kind is Kind.CAV:
                 intents[v.id], available[v.id], _ = self._intents[v.id]
-        hidden = tuple(pair for pair in world.hidden if own.id in pair)
+        hidden = tuple(pair for pair in world.hidden if self.ego in pair)
         ordered = tuple(sorted(vehicles, key=lambda v: v.id))
-        return WorldState(world.time, world.step, ordered, intents, available, signals, hidden, own.id, told)
+        return WorldState(world.time, world.step, ordered, intents, available, signals, hidden, self.ego, told)
 
     def _named(self, v: VehicleState) -> VehicleState:
         """Take a vehicle whose intent is not known for one that a human drives."""

@@ -1,8 +1,37 @@
 """The settings of a channel; with ``v2x=perfect`` there is none, and no message is sent at all."""
 
 from dataclasses import dataclass
+from typing import Literal
 
-from codriving.errors import require_range
+from codriving.errors import require, require_range
+
+NONE = "none"  # Each CAV computes the order by itself, and no message carries one
+
+
+@dataclass(frozen=True, slots=True)
+class OrderSettings:
+    """How CAVs agree on who goes first.
+
+    Raises:
+        ConfigError: If a value is out of its range, or an emergency vehicle is named without one who coordinates.
+    """
+
+    by: Literal["road_side_unit", "fleet", "cav", "distributed", "none"]  # Who coordinates
+    rounds: int  # Proposals that are made at most before one negotiation ends
+    validity: float  # How long a proposal and an agreement hold [s]
+    emergency: str | None  # The CAV that is let through first
+    order_bytes: int  # Size of a message about an order, without its pairs
+    pair_bytes: int  # Size of one pair
+
+    def __post_init__(self) -> None:
+        require_range("rounds", self.rounds, 1, 100)
+        require_range("validity", self.validity, 0.1, 60, " s")
+        for key in ("order_bytes", "pair_bytes"):
+            require_range(key, getattr(self, key), 0, 100_000)
+        require(
+            self.emergency is None or self.by != NONE,
+            "emergency takes one who coordinates; set by=road_side_unit, fleet, cav or distributed",
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +55,7 @@ class ChannelSettings:
     cpm_bytes: int  # Size of a message about vehicles that are seen, without these
     object_bytes: int  # Size of one such vehicle
     mcm_bytes: int  # Size of a message about an intent
+    coordination: OrderSettings | None = None  # How orders are agreed on; None if each CAV computes them by itself
 
     def __post_init__(self) -> None:
         require_range("rate", self.rate, 0.5, 100, " Hz")

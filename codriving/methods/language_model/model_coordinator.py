@@ -7,6 +7,7 @@ from typing import cast
 from codriving.datatypes import Conflict, Pair, PassingOrder, SceneDescription
 from codriving.llm import Names, OrderReply, Question, first_of_pairs, negotiation_view, order_reply
 from codriving.methods.language_model.prompted_model import PromptedModel
+from codriving.protocol import with_given
 from codriving.reasoning import (
     Coordinator,
     Moment,
@@ -43,21 +44,22 @@ class ModelCoordinator(Coordinator):
         self.model, self.rules = model, RuleCoordinator(binding)
         self._agreed: tuple[Premise, AgreedPairs] | None = None
 
-    def negotiate(self, moment: Moment) -> PassingOrder:
+    def negotiate(self, moment: Moment, given: Mapping[Pair, str] | None = None) -> PassingOrder:
         """Return an order without cycles for all conflicts."""
-        problem = pose(moment)
+        given = given or {}
+        problem = with_given(pose(moment), given)
         urgent = _most_urgent(problem, moment.conflicts)
         asked = open_pairs(problem.instance, urgent)
         if not asked:
             self._agreed = None
-            return self.rules.settle(moment, problem, {})
+            return self.rules.settle(moment, problem, given)
         now = premise(problem.instance, asked)
         agreed = self._kept(problem, now)
         if agreed is not None:
             self.model.ledger.count("kept_orders")
-            return self.rules.settle(moment, problem, agreed)
+            return self.rules.settle(moment, problem, {**agreed, **given})
         agreed = self._ask(moment.scenes, problem, [urgent[pair] for pair in asked])
-        order = self.rules.settle(moment, problem, agreed or {})
+        order = self.rules.settle(moment, problem, {**(agreed or {}), **given})
         # Without an answer nothing has been agreed on, and the next step asks again.
         self._agreed = None if agreed is None else (now, _decided(order, asked))
         return order

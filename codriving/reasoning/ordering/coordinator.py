@@ -28,8 +28,8 @@ class Coordinator(ABC):
     """Decides who goes first: one call for all vehicles."""
 
     @abstractmethod
-    def negotiate(self, moment: Moment) -> PassingOrder:
-        """Return an order without cycles for all conflicts."""
+    def negotiate(self, moment: Moment, given: Mapping[Pair, str] | None = None) -> PassingOrder:
+        """Return an order without cycles for all conflicts; of some pairs it may be given, each with its reason."""
 
 
 class RuleCoordinator(Coordinator):
@@ -39,9 +39,9 @@ class RuleCoordinator(Coordinator):
         self.binding = binding
         self.previous: PassingOrder | None = None
 
-    def negotiate(self, moment: Moment) -> PassingOrder:
+    def negotiate(self, moment: Moment, given: Mapping[Pair, str] | None = None) -> PassingOrder:
         """Return an order without cycles for all conflicts."""
-        return self.settle(moment, pose(moment), {})
+        return self.settle(moment, pose(moment), given or {})
 
     def settle(self, moment: Moment, problem: Problem, given: Mapping[Pair, str]) -> PassingOrder:
         """Return an order without cycles in which some pairs are given, each with its reason."""

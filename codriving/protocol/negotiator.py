@@ -1,0 +1,143 @@
+"""One party of a negotiation: what it answers, what it proposes if it coordinates, and which agreements it holds."""
+
+from collections.abc import Mapping, Sequence
+from math import hypot
+
+from codriving.datatypes import (
+    EACH,
+    NEAREST,
+    Coordination,
+    OrderAgreement,
+    OrderMessage,
+    Pair,
+    Party,
+    Precedence,
+    Proposal,
+    Response,
+)
+from codriving.protocol.proposals import Proposals
+from codriving.protocol.refusal import fixed, refused, with_given, without_circles
+from codriving.reasoning import Coordinator, Moment, Problem
+
+
+class Negotiator(Party):
+    """A CAV, or a unit that only coordinates.
+
+    Between two decisions it answers at once, by what it knew at the last one.
+    """
+
+    def __init__(self, coordination: Coordination, coordinator: Coordinator) -> None:
+        self.settings = coordination
+        self._proposals = Proposals(coordination, coordinator, coordination.by == EACH, self._answer_to)
+        self._problem: Problem | None = None
+        self._held: dict[str, OrderAgreement] = {}
+        self._out: list[OrderMessage] = []
+        self._heard: dict[str, float] = {}  # When each CAV that coordinates was heard last, itself included [s]
+
+    @property
+    def held(self) -> Mapping[str, OrderAgreement]:
+        return self._held
+
+    def hear(self, messages: Sequence[OrderMessage], time: float) -> None:
+        """Take in what has arrived, and answer it by what was known at the last decision."""
+        me = self.settings.party
+        for message in messages:
+            if isinstance(message, Response):
+                if message.to == me:
+                    self._say(self._proposals.hear(message, time))
+                continue
+            self._heard[message.sender] = time
+            if isinstance(message, Proposal) and me in message.to and self._problem is not None:
+                if time <= message.time + message.validity:
+                    self._out.append(self._answer_to(message, time))
+            elif isinstance(message, OrderAgreement):
+                self._hold(message)
+
+    def speak(self) -> list[OrderMessage]:
+        """Return what it wants to send since it was asked last."""
+        said, self._out = self._out, []
+        return said
+
+    def step(self, moment: Moment, problem: Problem) -> dict[Pair, str]:
+        """Return the pairs that are agreed on, with the reasons, and propose what is new if this one coordinates."""
+        self._problem = problem
+        self._held = {sender: a for sender, a in self._held.items() if a.holds(moment.time)}
+        for agreement in self._held.values():
+            self._withdraw(agreement, problem, moment.time)
+        if self._coordinates(moment, problem):
+            self._heard[self.settings.party] = moment.time
+            self._say(self._proposals.step(moment, problem))
+        return self.agreed(moment.time)
+
+    def agreed_problem(self, moment: Moment, problem: Problem) -> Problem:
+        """Do so for one that orders all CAVs by a rule: return a problem in which what is agreed on is fixed."""
+        agreed, there = self.step(moment, problem), problem.instance.vehicles.keys()
+        given = {pair: why for pair, why in agreed.items() if there >= set(pair)}
+        return with_given(problem, without_circles(given, problem.instance, given))
+
+    def agreed(self, time: float) -> dict[Pair, str]:
+        """Return the pairs of all agreements in force, those of a newer one in the place of an older one's."""
+        found: dict[frozenset[str], tuple[Pair, str]] = {}
+        for agreement in sorted(self._held.values(), key=lambda a: (a.time, a.sender)):
+            told = f"directed by {agreement.sender}, {agreement.authority}"
+            how = told if agreement.authority else f"agreed with {agreement.sender}"
+            for p in agreement.pairs:
+                found[frozenset((p.first, p.second))] = (p.first, p.second), f"{how}: {p.reason}"
+        return dict(found.values())
+
+    def directed(self, ego: str) -> bool:
+        """Whether a CAV goes by an instruction."""
+        return any(a.authority and any(ego in (p.first, p.second) for p in a.pairs) for a in self._held.values())
+
+    def _say(self, messages: list[OrderMessage]) -> None:
+        self._out += messages
+        for message in messages:
+            if isinstance(message, OrderAgreement):
+                self._hold(message)
+
+    def _hold(self, agreement: OrderAgreement) -> None:
+        known = self._held.get(agreement.sender)
+        if known is None or known.time < agreement.time:
+            self._held[agreement.sender] = agreement
+
+    def _answer_to(self, proposal: Proposal, time: float | None = None) -> Response:
+        """Accept a proposal, or say what has to be instead."""
+        me, problem = self.settings.party, self._problem
+        pairs = refused(proposal, me, problem) if problem is not None else []
+        mine = self._proposals.current
+        if self.settings.by == EACH and mine is not None and me < proposal.sender:
+            why = f"{me} has proposed otherwise, and of two proposals that of the smaller name counts"
+            ours = {(p.second, p.first) for p in mine.pairs} - {(p.second, p.first) for p in pairs}
+            pairs += [Precedence(p.second, p.first, why) for p in proposal.pairs if (p.first, p.second) in ours]
+        now = proposal.time if time is None else time
+        return Response(me, now, proposal.number, proposal.round, tuple(pairs), proposal.sender, not pairs)
+
+    def _withdraw(self, agreement: OrderAgreement, problem: Problem, now: float) -> None:
+        """Tell the one that coordinates what cannot be kept any more."""
+        me = self.settings.party
+        turned = [(p.second, p.first) for p in agreement.pairs if me in (p.first, p.second)]
+        pairs = tuple(Precedence(*pair, why) for pair in turned if (why := fixed(problem.instance, *pair)))
+        if pairs and agreement.sender != me and not agreement.authority:
+            about = agreement.number, agreement.round, pairs
+            self._out.append(Response(me, now, *about, agreement.sender, False))
+
+    def _coordinates(self, moment: Moment, problem: Problem) -> bool:
+        """Whether this party is the one that coordinates.
+
+        If a CAV does: the one that has been heard to, of several the smallest name; if none has, the one that is
+        nearest to the middle of the junction of those that still have a conflict ahead.
+        """
+        settings, there = self.settings, problem.instance.vehicles.keys()
+        if settings.by != NEAREST:
+            return settings.by in (EACH, settings.party)
+        since = moment.time - settings.validity
+        heard = [name for name, time in self._heard.items() if time >= since and name in there]
+        return settings.party == (
+            min(heard) if heard else min(there, key=lambda name: _far(moment, name, settings), default="")
+        )
+
+
+def _far(moment: Moment, name: str, settings: Coordination) -> tuple[float, str]:
+    """Return how far a CAV is from the middle of the junction [m], and its name."""
+    ego, (x, y) = moment.scenes[name].ego, settings.centre
+    return hypot(ego.x - x, ego.y - y), name
