@@ -12,12 +12,14 @@ from codriving.config import (
     Point,
     check_choice,
     choices,
+    compose,
     expand,
     parse,
     sets_scenario,
     stress_axis,
     styles,
     taking_part,
+    validate,
     written,
 )
 from codriving.datatypes import StressAxis
@@ -62,7 +64,7 @@ def stress_command(axes: str | None, config_dir: Path | None = None) -> Command:
     names = list(known) if axes == ALL else list(dict.fromkeys(axes.split(",")))
     found = [stress_axis(name, config_dir) for name in names]
     return Command(
-        f"stress {axes}", partial(stress_points, found), partial(refuse_flows, NO_FLOWS), partial(make_stress, found)
+        f"stress {axes}", partial(_checked_points, found), partial(refuse_flows, NO_FLOWS), partial(make_stress, found)
     )
 
 
@@ -78,14 +80,27 @@ def stress_points(axes: Sequence[StressAxis], overrides: Sequence[str], config_d
     methods = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
     rows = _rows(methods, any(key.partition(".")[0] == "cda" for key in keys), config_dir)
     rows += [(name,) for name in taking_part(CONTROLS) if controlled and (name,) not in rows]
-    points = []
+    settings, points = expand(others, config_dir), []
     for axis in axes:
-        for point in expand(others, config_dir):
+        for point in settings:
             for method, *cda in rows:
                 row = {"method": method, **dict(token.split("=") for token in cda)}
                 for level, mark in zip(axis.levels, _marks(axis), strict=True):
                     tokens = (*base, *point.overrides, f"method={method}", *cda, *level.overrides)
                     points.append(Point(tokens, {**point.swept, **row, STRESS: mark}, point.removed))
+    return points
+
+
+def _checked_points(axes: Sequence[StressAxis], overrides: Sequence[str], config_dir: Path | None) -> list[Point]:
+    """Refuse what is wrong with the first and the last cell alike before hundreds of others are composed."""
+    points, said = stress_points(axes, overrides, config_dir), []
+    for point in (points[0], points[-1]):
+        try:
+            validate(compose(point.overrides, config_dir))
+        except ConfigError as err:
+            said.append(err)
+    if len(said) > 1 and str(said[0]) == str(said[1]):
+        raise said[0]
     return points
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from codriving.config.compose import compose
 from codriving.config.stress import stress_axis
 from codriving.config.sweep import Point
 from codriving.errors import ConfigError
@@ -107,6 +108,20 @@ def test_several_axes_come_one_after_the_other() -> None:
 def test_what_an_axis_varies_cannot_be_set(key: str) -> None:
     with pytest.raises(ConfigError, match=r"drivers\S* is what the axis humans varies; leave drivers\S* out, or the"):
         points(key)
+
+
+def test_a_slip_is_told_without_composing_every_cell(monkeypatch: pytest.MonkeyPatch) -> None:
+    composed = []
+
+    def noted(overrides: tuple[str, ...], config_dir: Path | None) -> dict[str, object]:
+        composed.append(overrides)
+        return compose(overrides, config_dir)
+
+    monkeypatch.setattr("codriving.experiment.stress.compose", noted)
+    for slip, said in (("scenario.cvas=4", "^unknown key scenario.cvas; did you"), ("episodes=0", "^episodes must be")):
+        with pytest.raises(ConfigError, match=said):
+            stress_command("humans").points([slip], None)
+    assert len(composed) == 4
 
 
 def test_what_an_axis_leaves_alone_can_be_set() -> None:
