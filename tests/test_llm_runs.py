@@ -1,6 +1,7 @@
 """Whole runs over HTTP, against a server on loopback that answers from the prompt alone."""
 
 import json
+import sqlite3
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -248,3 +249,85 @@ def test_a_server_that_is_not_there_leaves_nothing_behind(closed: Loopback, tmp_
     assert (result.exit_code, result.stdout) == (2, "")
     assert result.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+LATE = ("llm.latency=measured", "suite=standoff", "scenario.time_limit=4", "episodes=1", "seed=20000")
+
+
+def counts_of(folder: Path) -> dict[str, float]:
+    (record,) = folder.glob("episodes/*/*/record.json")
+    counts: dict[str, float] = json.loads(record.read_text())["counts"]
+    return counts
+
+
+def test_times_are_measured_kept_and_replayed(tmp_path: Path) -> None:
+    cache = f"llm.cache_file={tmp_path / 'answers.sqlite'}"
+    with Loopback() as server:
+        live = run(server, tmp_path / "live", "llm.cache=use", cache, *LATE)
+    assert live.exit_code == 0, live.output
+    assert "Thinking takes time (llm.latency=measured)" in live.stdout
+    assert "Not repeatable: llm.latency=measured" in live.stdout
+    again = run(server, tmp_path / "again", "llm.cache=replay", cache, *LATE)
+    assert again.exit_code == 0, again.output
+    assert "Not repeatable" not in again.stdout
+    folders = [tmp_path / name / "run" / "mine" for name in ("live", "again")]
+    first, second = map(lasting, folders)
+    assert {name for name in first if first[name] != second[name]} == {"summary.csv", "summary.md"}
+    assert b"repeatable" in first["summary.csv"]
+    assert b"repeatable" not in second["summary.csv"]
+    marks = [json.loads((folder / "manifest.json").read_text())["cells"][0].get("repeatable") for folder in folders]
+    assert marks == [False, None]
+    # An answer that took milliseconds is one step late, one that took 1.2 s three steps: as the cache has it.
+    with sqlite3.connect(tmp_path / "answers.sqlite") as connection:
+        stored = connection.execute("SELECT key, reply FROM answers").fetchall()
+        slower = [(json.dumps({**json.loads(reply), "seconds": 1.2}), key) for key, reply in stored]
+        connection.executemany("UPDATE answers SET reply = ? WHERE key = ?", slower)
+    connection.close()
+    slow = run(server, tmp_path / "slow", "llm.cache=replay", cache, *LATE, "scenario.time_limit=1.5")
+    assert slow.exit_code == 0, slow.output
+    folder = tmp_path / "slow" / "run" / "mine"
+    lines = [json.loads(line) for line in next(folder.glob("episodes/*/*/transcript.jsonl")).read_text().splitlines()]
+    assert {line["time"] for line in lines} == {0.0}
+    assert {call["seconds"] for line in lines for call in line["calls"]} == {1.2}
+    assert counts_of(folder)["late_decisions"] == counts_of(folder)["late_orders"] == 0
+    assert counts_of(folders[1])["late_decisions"] > 4
+
+
+def test_a_run_with_measured_times_is_not_extended(tmp_path: Path) -> None:
+    cache = f"llm.cache_file={tmp_path / 'answers.sqlite'}"
+    short = (*LATE, "scenario.time_limit=1", "llm.cache=use", cache)
+    with Loopback() as server:
+        assert run(server, tmp_path, *short).exit_code == 0
+        more, replayed = run(server, tmp_path, *short, "episodes=2"), run(server, tmp_path, *short, "llm.cache=replay")
+        beside = run(server, tmp_path, "llm.latency=0.7,measured", *short[1:])
+    (line,) = more.stderr.splitlines()
+    assert (more.exit_code, more.stdout) == (2, "")
+    assert line.startswith("error: intersection-codriving-full in ")
+    assert (
+        "with llm.latency=measured and a model that is asked, so that it cannot be repeated and is not extended" in line
+    )
+    # What is complete is printed again, marked as it was driven; and other rows may stand beside it.
+    assert replayed.exit_code == beside.exit_code == 0, replayed.output + beside.output
+    assert "Nothing to do" in replayed.stdout
+    assert "Not repeatable" in replayed.stdout
+    cells = json.loads((tmp_path / "run" / "mine" / "manifest.json").read_text())["cells"]
+    assert [cell.get("repeatable") for cell in cells] == [False, None]
+
+
+def test_a_replayed_run_is_not_extended_by_measuring(tmp_path: Path) -> None:
+    cache = f"llm.cache_file={tmp_path / 'answers.sqlite'}"
+    short = (*LATE, "scenario.time_limit=1", cache)
+    with Loopback() as server:
+        assert run(server, tmp_path / "live", *short, "llm.cache=use").exit_code == 0
+        assert run(server, tmp_path, *short, "llm.cache=replay").exit_code == 0
+        more = run(server, tmp_path, *short, "llm.cache=use", "episodes=2")
+    assert more.exit_code == 2
+    assert "is not extended" in more.stderr
+
+
+@pytest.mark.parametrize("latency", ["sometimes", "-1", "61"])
+def test_a_time_that_is_none_is_refused(latency: str, closed: Loopback, tmp_path: Path) -> None:
+    result = run(closed, tmp_path, f"llm.latency={latency}")
+    assert result.exit_code == 2
+    said = f"error: llm.latency must be none, measured or a time of 0 to 60 s, got {latency}"
+    assert result.stderr.splitlines()[0].startswith(said), result.stderr

@@ -18,7 +18,8 @@ def results_of(
     """Give the episodes of a cell to the tables."""
     setting = _is_papers_setting(cell)
     with_seeds = setting and [record.seed for record in records] == SEEDS
-    return CellResults(records, swept, cpu, cell.score_name, setting, with_seeds, cell.remark)
+    repeatable = cell.repeatable is not False
+    return CellResults(records, swept, cpu, cell.score_name, setting, with_seeds, cell.remark, repeatable)
 
 
 def _is_papers_setting(cell: Cell) -> bool:

@@ -44,6 +44,7 @@ class Cell:
     files: tuple[NamedFile, ...] = ()
     score: str = ""  # Name of its scores in a record; empty for that of the metric
     remark: str = ""  # What a reader of its numbers has to know of the method
+    repeatable: bool | None = None  # False where the times of a language model are measured, not replayed
     notes: tuple[str, ...] = ()  # What is said of several methods in one line, whose names ``{}`` stands for
     # What was swept as it was typed, of this point and of those that are the same config.
     points: tuple[Mapping[str, str], ...] = ()
@@ -82,6 +83,7 @@ class Cell:
             settings=settings_of(self.resolved),
             choices={group: name for group, name in self.choices.items() if group in (*CHOICES, "cda")},
             files=self.files,
+            repeatable=self.repeatable,
         )
 
 
@@ -91,7 +93,8 @@ def make_cell(
     """Make the cell of a config; its labels are what its objects call themselves."""
     scenario = build(resolved["scenario"], Scenario, "scenario", resolved["plugins"])
     memory = memory_of(resolved)
-    method = make_method(resolved, model_of(resolved), memory)
+    llm = model_of(resolved)
+    method = make_method(resolved, llm, memory)
     (scorer,) = scorers_of(resolved).values()
     check_flow(resolved, method, scorer.metric, memory)
     method.check_road(scenario.road, scenario.pace.target_speeds, 1 / scenario.pace.decision_frequency)
@@ -108,7 +111,8 @@ def make_cell(
     notes = thinking_of(resolved).notes(method)
     told = labels, resolved, scorer.metric.name, swept, chosen, files
     points = (point.swept,) if point else ()
-    return Cell(folder_name(labels), *told, remark=remark, notes=notes, points=points)
+    repeatable = False if llm is not None and llm.latency == "measured" and llm.cache != "replay" else None
+    return Cell(folder_name(labels), *told, remark=remark, repeatable=repeatable, notes=notes, points=points)
 
 
 def with_metrics(config: Mapping[str, Any], rows: Sequence[Cell]) -> dict[str, Any]:

@@ -162,7 +162,9 @@ def drive(
         # A cell that is there already keeps its folder, whatever it would be called in this run.
         names = dict(zip((cell.folder for cell in plan.driven), folder.manifest.rows, strict=True))
         cells = [replace(cell, folder=names[cell.folder]) for cell in plan.driven]
+        measured = {cell.folder for cell in folder.manifest.cells if cell.repeatable is False}
         shown = [replace(cell, folder=names[cell.folder]) for cell in plan.cells]
+        shown = [replace(cell, repeatable=False if cell.folder in measured else None) for cell in shown]
         damaged: list[DamagedEpisodeError] = []
         records = _records(folder, cells, plan.seeds, damaged=damaged)
         if damaged:

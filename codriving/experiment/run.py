@@ -62,11 +62,17 @@ def run_command(
         return 0
     plan = make_plan(points, config_dir)
     command.check(plan)
+    # What cannot be repeated is not gone on with, but begun again.
+    anew = any(cell.repeatable is False for cell in plan.cells)
+
+    def again(folder: Path) -> str:
+        return resume_command(command.name, overrides, config_dir, None if anew else folder.name)
+
     try:
         finished = drive(plan, command.make_outputs)
     except (Interrupted, HaltedError) as stop:
-        return stopped(stop, resume_command(command.name, overrides, config_dir, stop.folder.name))
-    return report(finished, resume_command(command.name, overrides, config_dir, finished.folder.name))
+        return stopped(stop, again(stop.folder))
+    return report(finished, again(finished.folder))
 
 
 def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> int:
@@ -113,11 +119,11 @@ def stopped(stop: Interrupted | HaltedError, again: str) -> int:
     return STOPPED + stop.signal
 
 
-def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None, run: str) -> str:
-    """Return the command that goes on with a run."""
+def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None, run: str | None) -> str:
+    """Return the command that goes on with a run, or drives it anew under the name of its time."""
     kept = [override for override in overrides if not override.lstrip("+").startswith("run=")]
     folder = ["--config-dir", str(config_dir)] if config_dir else []
-    return shlex.join(["codriving", *name.split(), *kept, f"run={run}", *folder])
+    return shlex.join(["codriving", *name.split(), *kept, *([f"run={run}"] if run else []), *folder])
 
 
 def report(finished: Finished, again: str) -> int:

@@ -13,7 +13,7 @@ from codriving.llm.settings import ModelSettings
 if TYPE_CHECKING:
     from codriving.llm.client import ModelChat
 
-_NOT_THE_CLIENTS = ("failures_in_a_row", "ask_plain", "prompts")
+_NOT_THE_CLIENTS = ("failures_in_a_row", "ask_plain", "prompts", "latency")
 
 
 class Offline(RuleModel):

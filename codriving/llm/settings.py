@@ -12,6 +12,8 @@ from codriving.errors import ConfigError, ModelError
 
 CACHE_MODES = ("off", "use", "replay")
 
+LONGEST = 60.0  # Beyond this an episode is over before a question is answered [s]
+
 _VARIABLE = re.compile(r"[A-Z][A-Z0-9_]*")
 _ADDRESS = "an address such as http://127.0.0.1:8000/v1"
 _RANGES = {
@@ -68,6 +70,7 @@ class ModelSettings:
     headers: Mapping[str, str]  # Further headers of the request, none of them a key
     api_key_header: str | None  # Header that carries the key, as it is; None takes the provider's own
     fallbacks_at_first: int  # The batch stops if the first so many questions had no usable answer
+    latency: str | float  # How long a question takes in the world: ``none``, ``measured`` or a time [s]
 
     def __post_init__(self) -> None:
         prices = self.input_cost_per_token, self.output_cost_per_token
@@ -83,6 +86,11 @@ class ModelSettings:
             value = getattr(self, name)
             _require(value is None or low <= value <= high, f"{name} must be {low:g} to {high:g}{unit}, got {value}")
         _require(self.cache in CACHE_MODES, f"cache must be one of {', '.join(CACHE_MODES)}, got {self.cache}")
+        stated = not isinstance(self.latency, str) and 0 <= self.latency <= LONGEST
+        _require(
+            stated or self.latency in ("none", "measured"),
+            f"latency must be none, measured or a time of 0 to {LONGEST:g} s, got {self.latency}",
+        )
         _require(self.cache_file.strip(), "cache_file must be the name of a file, got an empty text")
         for name, unit in (("max_cost", " USD"), ("max_tokens_total", "")):
             limit = getattr(self, name)

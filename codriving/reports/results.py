@@ -58,6 +58,7 @@ class CellResults:
     papers_setting: bool = True
     as_in_paper: bool = True
     remark: str = ""  # What a reader of its numbers has to know of the method
+    repeatable: bool = True  # Whether the same command gives the same numbers
 
     @property
     def first(self) -> EpisodeRecord:

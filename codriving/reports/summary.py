@@ -121,6 +121,16 @@ MEMORY: Column[CellResults] = Column(
     sparse=True,
 )
 
+# Where a row is not repeatable: the times of its language model were measured.
+REPEATABLE: Column[CellResults] = Column(
+    "repeatable", lambda c: "yes" if c.repeatable else "no", "repeatable", words=True
+)
+
+MEASURED_NOTE = (
+    "Not repeatable: llm.latency=measured with a model that was asked, whose times no second run measures alike; with "
+    "llm.cache=replay they are replayed."
+)
+
 FALLBACKS: Column[CellResults] = Column(FALLBACK_RATE, lambda c: c.fallback_rate, "fallbacks", percent, rank=5)
 
 _LABELS = [column.of(lambda c: c.first) for column in LABELS]
@@ -151,6 +161,7 @@ def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Ta
         *(replace(column, head="") for column in values),
         *FURTHER,
         *([MEMORY] if any(record.memory for record in records) else []),
+        *([] if all(cell.repeatable for cell in cells) else [REPEATABLE]),
     ]
     known += number_columns(named_numbers(cells), known)
     counters = counter_columns(records, known)
@@ -204,8 +215,9 @@ def clean_notes(cells: Iterable[CellResults]) -> list[str]:
 
 
 def remarks(cells: Iterable[CellResults]) -> list[str]:
-    """Say what has to be known of methods, once each."""
-    return list(dict.fromkeys(cell.remark for cell in cells if cell.remark))
+    """Say what has to be known of methods, and of rows that are not repeatable, once each."""
+    said = (text for cell in cells for text in (cell.remark, "" if cell.repeatable else MEASURED_NOTE))
+    return list(dict.fromkeys(text for text in said if text))
 
 
 def number_notes(cells: Iterable[CellResults]) -> list[str]:

@@ -27,7 +27,10 @@ def continued(folder: Path, there: Manifest, here: Manifest) -> Manifest:
         )
     taken = {cell.folder.casefold() for cell in there.cells}
     asked = {
-        (old or cell).folder: replace(cell, folder=old.folder if old else _free(cell, taken)) for old, cell in pairs
+        (old or cell).folder: replace(cell, folder=old.folder, repeatable=old.repeatable)
+        if old
+        else replace(cell, folder=_free(cell, taken))
+        for old, cell in pairs
     }
     held = {cell.folder: cell for cell in there.cells}
     rows = tuple(cell.folder for cell in asked.values())
@@ -46,6 +49,14 @@ def other_behaviour(folder: Path, there: Manifest) -> RunFolderError:
     return RunFolderError(
         f"{folder} was driven by codriving {release} (behaviour {there.behaviour}, here {BEHAVIOUR}), so it can be "
         f"replayed and reported but not extended; extend it with codriving {release}, or choose another run=<name>"
+    )
+
+
+def measured(folder: Path, cell: str) -> RunFolderError:
+    """Return the error for a cell of which no further episode would be like those that are there."""
+    return RunFolderError(
+        f"{cell} in {folder} was driven, or would be, with llm.latency=measured and a model that is asked, so that it "
+        "cannot be repeated and is not extended; choose another run=<name> (llm.cache=use keeps the times of answers)"
     )
 
 

@@ -99,6 +99,7 @@ class CellEntry:
     settings: dict[str, str]  # The values that drive, as JSON by dotted key
     choices: dict[str, str]  # Name of the YAML of each group; empty for a cell of release 0.1
     files: tuple[NamedFile, ...]
+    repeatable: bool | None = None  # False where times were measured in it, which no second run measures alike
 
     @property
     def labels(self) -> tuple[str, str, str, str]:

@@ -28,7 +28,7 @@ _HARMFUL = re.compile(
 
 
 # Fields that came later, and are written where they hold something: other files are as before.
-_CAME_LATER = ("flow",)
+_CAME_LATER = ("flow", "repeatable")
 
 
 @functools.cache

@@ -13,7 +13,7 @@ from filelock import FileLock, Timeout
 from codriving.datatypes import Ending, EpisodeRecord
 from codriving.errors import DamagedEpisodeError, RunFolderError
 from codriving.runs.atomic import PARTIAL, sweep, write_text
-from codriving.runs.continuation import continued, other_behaviour
+from codriving.runs.continuation import continued, measured, other_behaviour
 from codriving.runs.episode_folder import EPISODES, episode_folder, read_record
 from codriving.runs.identity import BEHAVIOUR, CellEntry
 from codriving.runs.intact import RECORD, check_files
@@ -71,6 +71,12 @@ class RunFolder:
         manifest = asked if there is None else continued(self.path, there, asked)
         if there is not None and there.behaviour != BEHAVIOUR and not self._complete(manifest):
             raise other_behaviour(self.path, there)
+        for name, cell in zip(manifest.rows, asked.cells, strict=True):
+            # Where times are measured a further episode is like none that is there.
+            held = [old for old in there.cells if old.folder == name] if there is not None else []
+            times = [one.repeatable for one in (*held, cell)]
+            if held and False in times and not self._complete(replace(manifest, rows=(name,))):
+                raise measured(self.path, name)
         for place in (*self.path.iterdir(), *self.path.glob(f"{EPISODES}/*")):
             within(self.path, place)
         self.clean()

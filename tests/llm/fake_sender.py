@@ -97,6 +97,7 @@ SETTINGS = ModelSettings(
     output_cost_per_token=2e-6,
     failures_in_a_row=5,
     ask_plain=False,
+    latency="none",
     prompts=None,
     label=None,
     model_prefix=None,
