@@ -1,8 +1,8 @@
 """What decides and orders in tests of thinking time, and notes when it is asked."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from codriving.datatypes.order import Instance, PassingOrder
+from codriving.datatypes.order import Instance, Pair, PassingOrder
 from codriving.datatypes.situation import Decision, Situation
 from codriving.datatypes.world import Action
 from codriving.reasoning.decision.rules import Decider
@@ -30,7 +30,7 @@ class Told(Coordinator):
         self.orders = orders
         self.asked: list[float] = []
 
-    def negotiate(self, moment: Moment) -> PassingOrder:
+    def negotiate(self, moment: Moment, given: Mapping[Pair, str] | None = None) -> PassingOrder:
         self.asked.append(moment.time)
         return self.orders[min(len(self.asked), len(self.orders)) - 1]
 

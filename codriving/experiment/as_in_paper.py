@@ -26,9 +26,15 @@ def _is_papers_setting(cell: Cell) -> bool:
     """Whether scenario and number of vehicles are those of the shipped YAMLs, and the world is the paper's."""
     scenario = cell.labels.scenario
     # Looked at first, since a second config takes as long to compose as half an episode to drive.
-    if cell.resolved.get("limits") is not None or scenario not in choices("scenario"):
+    if cell.resolved.get("limits") is not None or _thinks(cell.resolved) or scenario not in choices("scenario"):
         return False
     return all(cell.resolved.get(key) == node for key, node in _shipped(scenario).items())
+
+
+def _thinks(resolved: Mapping[str, Any]) -> bool:
+    """Whether it takes time to think; the paper waits for its model."""
+    thinking, llm = resolved.get("thinking") or {}, resolved.get("llm") or {}
+    return bool(thinking.get("mind") or thinking.get("order")) or llm.get("latency", "none") != "none"
 
 
 @cache

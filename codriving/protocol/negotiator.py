@@ -35,6 +35,15 @@ class Negotiator(Party):
         self._heard: dict[str, float] = {}  # When each CAV that coordinates was heard last, itself included [s]
 
     @property
+    def coordinator(self) -> Coordinator:
+        """What is asked who goes first, if this party proposes."""
+        return self._proposals.coordinator
+
+    @coordinator.setter
+    def coordinator(self, coordinator: Coordinator) -> None:
+        self._proposals.coordinator = coordinator
+
+    @property
     def held(self) -> Mapping[str, OrderAgreement]:
         return self._held
 
@@ -71,7 +80,12 @@ class Negotiator(Party):
 
     def agreed_problem(self, moment: Moment, problem: Problem) -> Problem:
         """Do so for one that orders all CAVs by a rule: return a problem in which what is agreed on is fixed."""
-        agreed, there = self.step(moment, problem), problem.instance.vehicles.keys()
+        self.step(moment, problem)
+        return self.with_agreed(problem, moment.time)
+
+    def with_agreed(self, problem: Problem, time: float) -> Problem:
+        """Return a problem in which what is agreed on is fixed."""
+        agreed, there = self.agreed(time), problem.instance.vehicles.keys()
         given = {pair: why for pair, why in agreed.items() if there >= set(pair)}
         return with_given(problem, without_circles(given, problem.instance, given))
 

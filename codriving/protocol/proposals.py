@@ -22,7 +22,7 @@ class Proposals:
     """The negotiation that one party leads."""
 
     def __init__(self, coordination: Coordination, coordinator: Coordinator, only_own: bool, answer: Answer) -> None:
-        self._coordination, self._coordinator, self._answer = coordination, coordinator, answer
+        self._coordination, self.coordinator, self._answer = coordination, coordinator, answer
         self._only_own = only_own  # Whether it proposes for its own conflicts alone
         self._number, self._begun = 0, 0.0
         self._current: Proposal | None = None
@@ -129,7 +129,7 @@ class Proposals:
         """Return who goes first of each two CAVs, by what is known now and by what CAVs have said."""
         said = {pair: why for pair, (why, _) in self._given.items()}
         given = without_circles(self._emergency() | said, self._problem.instance, said)
-        order = self._coordinator.negotiate(self._moment, given)
+        order = self.coordinator.negotiate(self._moment, given)
         cavs, me = self._moment.scenes.keys(), self._coordination.party
         pairs = (p for p in order.precedences if p.first in cavs and p.second in cavs)
         return tuple(p for p in pairs if not self._only_own or me in (p.first, p.second))

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 from codriving.datatypes import Instance, Pair, PassingOrder
+from codriving.protocol import with_given
 from codriving.reasoning import (
-    AgreedOrder,
+    Coordinator,
     JointPlanner,
     Moment,
     Negotiation,
@@ -99,36 +100,54 @@ def by_arrival(instance: Instance, besides: Sequence[str] = ()) -> list[str]:
     return [vehicle.id for vehicle in sorted(others, key=lambda v: (v.eta, v.id))]
 
 
-class LateOrders(Negotiation):
-    """The negotiation of ``codriving``, whose order comes late; before the first one each CAV goes by its own."""
+class LateCoordinator(Coordinator):
+    """A coordinator whose order comes late; before the first one there is none."""
 
     def __init__(
         self,
-        agreed: AgreedOrder,
-        own: OwnOrders,
+        coordinator: Coordinator,
         binding: bool,
         delays: Delays,
         asked: Callable[[], Asked],
         counts: Counter[str],
+        gap: float | None = None,
     ) -> None:
-        self.agreed, self._own, self._binding, self._delays = agreed, own, binding, delays
+        self.coordinator, self._binding, self._delays, self._gap = coordinator, binding, delays, gap
         self._asked, self._standing = asked, StandingOrder(counts)
+
+    def negotiate(self, moment: Moment, given: Mapping[Pair, str] | None = None) -> PassingOrder:
+        """Return the order that stands, which is empty before the first one."""
+        return self.standing(moment, given or {}) or PassingOrder((), ())
+
+    def standing(self, moment: Moment, given: Mapping[Pair, str]) -> PassingOrder | None:
+        """Return the order that stands; None before the first one."""
+        problem = with_given(pose(moment) if self._gap is None else pose(moment, self._gap), given)
+        self._standing.arrive(problem.instance)
+        if not self._standing.thinks:
+            order = self.coordinator.negotiate(moment, given)
+            self._standing.begin(problem.instance, ordering_of(order), self._delays.of_order(self._asked()))
+            if not self._standing.thinks:
+                return order
+        ordering = self._standing.now(problem.instance)
+        if ordering is None:
+            return None
+
+        def reason(first: str, second: str) -> str:
+            return given.get((first, second)) or ordering.reason(first, second)
+
+        return agreement(moment, problem, ordering.times, reason, self._binding)
+
+
+class LateOrders(Negotiation):
+    """The negotiation of ``codriving``, whose order comes late; before the first one each CAV goes by its own."""
+
+    def __init__(self, coordinator: LateCoordinator, own: OwnOrders) -> None:
+        self.coordinator, self._own = coordinator, own
 
     def orders(self, moment: Moment) -> Mapping[str, PassingOrder]:
         """Return the order that stands, for every CAV."""
-        problem = pose(moment)
-        self._standing.arrive(problem.instance)
-        if not self._standing.thinks:
-            found = self.agreed.orders(moment)
-            order = next(iter(found.values()), PassingOrder((), ()))
-            self._standing.begin(problem.instance, ordering_of(order), self._delays.of_order(self._asked()))
-            if not self._standing.thinks:
-                return found
-        ordering = self._standing.now(problem.instance)
-        if ordering is None:
-            return self._own.orders(moment)
-        order = agreement(moment, problem, ordering.times, ordering.reason, self._binding)
-        return dict.fromkeys(moment.scenes, order)
+        order = self.coordinator.standing(moment, {})
+        return self._own.orders(moment) if order is None else dict.fromkeys(moment.scenes, order)
 
 
 def ordering_of(order: PassingOrder) -> Ordering:

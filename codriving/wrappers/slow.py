@@ -19,6 +19,7 @@ from codriving.datatypes import (
 )
 from codriving.geometry import RoadMap
 from codriving.methods import CoDriving, Ordered
+from codriving.protocol import Negotiator
 from codriving.reasoning import (
     AgreedOrder,
     CdaLevel,
@@ -34,9 +35,14 @@ from codriving.reasoning import (
 from codriving.wrappers.delays import Asked, Delays
 from codriving.wrappers.filtered import Checked
 from codriving.wrappers.late_decisions import LateAnswers, LateDecider
-from codriving.wrappers.late_orders import LateOrders, LateRule
+from codriving.wrappers.late_orders import LateCoordinator, LateOrders, LateRule
 
 COUNTED = ("dropped_decisions", "dropped_orders", "late_decisions", "late_orders", "reflexes")
+
+
+def nothing() -> Asked:
+    """Return what rules ask of a language model."""
+    return ()
 
 
 def taken_off(counts: Counter[str]) -> dict[str, float]:
@@ -60,10 +66,14 @@ class SlowCoDriving(Wrapped):
         pipeline, cda, delays = self.codriving.pipeline, self.codriving.cda, self.delays
         self._counts.clear()
         self._decider: LateDecider | None = None
-        if isinstance(pipeline.negotiation, AgreedOrder) and (delays.order > 0 or delays.by_model):
-            own = OwnOrders(cda.own_order, seed)
-            late = pipeline.negotiation, own, cda.binding, delays, self._asked, self._counts
-            pipeline.negotiation = LateOrders(*late)
+        if delays.order > 0 or delays.by_model:
+            late = cda.binding, delays, self._asked, self._counts
+            if isinstance(pipeline.negotiation, AgreedOrder):
+                coordinator = LateCoordinator(pipeline.negotiation.coordinator, *late)
+                pipeline.negotiation = LateOrders(coordinator, OwnOrders(cda.own_order, seed))
+            elif isinstance(self.party, Negotiator):
+                # By messages it is what is proposed that comes late.
+                self.party.coordinator = LateCoordinator(self.party.coordinator, *late)
         if delays.mind > 0 or delays.by_model:
             pipeline.decider = self._decider = LateDecider(pipeline.decider, delays, self._asked, self._counts)
 
@@ -96,12 +106,21 @@ class Slow(Checked):
         super().__init__(method, cda, margin)
         self.delays, self._counts = delays, Counter[str]()
         self._rule: LateRule | None = None
-        if isinstance(method, Ordered):
+        if isinstance(method, Ordered) and method.orders:
             method.rule = self._rule = LateRule(method.rule, delays.order, self._counts)
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode, with nothing thought of yet."""
+        method, rule = self.method, self._rule
+        if isinstance(method, Ordered) and rule is not None:
+            method.rule = rule.rule
         super().reset(road_map, model, seed)
+        if isinstance(method, Ordered) and rule is not None:
+            method.rule = rule
+            rule.reset(seed)
+            if isinstance(self.party, Negotiator) and self.delays.order > 0:
+                late = True, self.delays, nothing, self._counts, method.executor.gap
+                self.party.coordinator = LateCoordinator(self.party.coordinator, *late)
         self._counts.clear()
         self._answers = LateAnswers(self._counts)
 
@@ -150,6 +169,8 @@ class Slow(Checked):
         if self._ordering is None or self._rule is None or not isinstance(self.method, Ordered):
             return self._negotiation.orders(moment)
         problem = pose(moment, self.method.executor.gap)
+        if isinstance(self.party, Negotiator):
+            problem = self.party.with_agreed(problem, moment.time)
         ordering = self._rule.now(problem.instance)
         order = agreement(moment, problem, ordering.times, ordering.reason, not self._ordering.by_zone)
         return dict.fromkeys(moment.scenes, order)

@@ -55,5 +55,7 @@ class Thinking(ThinkingTime):
 
     def _takes(self, method: Method, delays: Delays) -> bool:
         """Whether it takes a method time to think."""
-        orders = isinstance(method, Ordered) or (isinstance(method, CoDriving) and method.cda.negotiation)
+        orders = (
+            method.cda.negotiation if isinstance(method, CoDriving) else isinstance(method, Ordered) and method.orders
+        )
         return delays.mind > 0 or delays.by_model or (orders and delays.order > 0)

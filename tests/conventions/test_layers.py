@@ -17,7 +17,7 @@ MAY_IMPORT = {
     "llm": set(),
     "memory": {"llm"},
     "methods": {"geometry", "reasoning", "protocol", "memory", "llm"},
-    "wrappers": {"geometry", "reasoning", "methods"},
+    "wrappers": {"geometry", "reasoning", "protocol", "methods"},
     "protocol": {"reasoning"},
     "v2x": {"geometry"},
     "bound": {"geometry", "environment"},

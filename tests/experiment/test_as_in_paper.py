@@ -36,6 +36,7 @@ def test_other_seeds_are_not(seeds: range) -> None:
         "drivers.headway=1.2",
         "drivers=attentive",
         "limits=road",
+        "thinking.order=1",
         "suite=default",
         "environment.corrections.no_reverse=false",
     ],

@@ -14,7 +14,6 @@ from codriving.datatypes.parts import RuleModel
 from codriving.datatypes.situation import ReasonedDeliberation
 from codriving.methods.codriving import CoDriving
 from codriving.methods.ordered import Ordered
-from codriving.reasoning.ordering.negotiation import AgreedOrder
 from codriving.reasoning.ordering.problem import pose
 from codriving.reasoning.ordering.protocol import JointPlanner, Ordering
 from codriving.reasoning.sharing.sharing import CdaLevel
@@ -34,7 +33,7 @@ def slow(junction: Junction, seconds: float, told: Told | None = None, **change:
     if told is not None:
         negotiation = made.codriving.pipeline.negotiation
         assert isinstance(negotiation, LateOrders)
-        negotiation.agreed = AgreedOrder(told)
+        negotiation.coordinator.coordinator = told
     return made
 
 

@@ -175,3 +175,24 @@ def test_late_answers_are_counted_in_record_and_tables(tmp_path: Path) -> None:
     refused = CliRunner().invoke(app, ["run", "thinking.mind=long"])
     assert refused.exit_code == 2
     assert refused.stderr.splitlines() == ["error: thinking.mind must be a number, got 'long'"]
+
+
+def first_proposal(environment: Environment, *overrides: str) -> float | None:
+    """When the first order is proposed in 3 s, of those that are sent as messages."""
+    method = make_method(compose(["v2x=good", *overrides]), RuleModel(), None)
+    environment.observer = method.observer
+    world = environment.reset(20001)
+    method.reset(environment.road_map, environment.driving_model, 3)
+    for _ in range(6):
+        deliberation = method.act(world)
+        if deliberation.as_dict()["said"]:
+            return world.time
+        world = environment.step(deliberation.actions)
+    return None
+
+
+@pytest.mark.parametrize("name", ["codriving", "fcfs"])
+def test_what_is_proposed_by_messages_comes_late(name: str, environment: Environment) -> None:
+    begin = first_proposal(environment, f"method={name}")
+    assert begin is not None
+    assert first_proposal(environment, f"method={name}", "thinking.order=1.2") == begin + 1.5
