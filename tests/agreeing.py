@@ -7,7 +7,8 @@ from typing import Any
 
 from worlds import FULL, Car, Junction
 
-from codriving.datatypes.cooperation import OrderMessage
+from codriving.datatypes.cooperation import Coordination, OrderMessage, Proposal
+from codriving.datatypes.order import Precedence
 from codriving.datatypes.parts import Method
 from codriving.datatypes.situation import Situation
 from codriving.llm.language_model import Offline
@@ -46,10 +47,11 @@ class Talk:
     loses: Callable[[OrderMessage, str], bool] = lambda message, receiver: False
     orders: dict[str, Any] = field(default_factory=dict)
     channel: dict[str, Any] = field(default_factory=dict)
+    shared: tuple[object, ...] = ()
 
     def __post_init__(self) -> None:
         settings = V2X(**{**EXACT, **self.channel}, coordination=OrderSettings(**{**ORDERS, **self.orders}))
-        connected = settings.between(self.method, ())
+        connected = settings.between(self.method, self.shared)
         assert isinstance(connected, Connected)
         self.connected = connected
         self.connected.reset(self.junction.road_map, self.junction.model, 0)
@@ -100,3 +102,21 @@ class Talk:
         there = negotiations.exchange._under_way
         there[:] = [(inf if self.loses(message, to) else at, k, to, message) for at, k, to, message in there]
         there.sort()
+
+
+def coordination(name: str, **change: Any) -> Coordination:
+    """How a party agrees, with a road side unit unless something else is said."""
+    told: dict[str, Any] = {"by": "RSU", "rounds": 3, "validity": 3.0, "centre": (0.0, 0.0), **change}
+    return Coordination(name, **told)
+
+
+def precedence(pair: str) -> Precedence:
+    """``"CAV1 CAV2"``: first, then second."""
+    return Precedence(*pair.split(), "told so")
+
+
+def proposal(
+    *pairs: str, sender: str = "RSU", to: tuple[str, ...] = (), humans: tuple[str, ...] = (), time: float = 0.0
+) -> Proposal:
+    """A first proposal, which holds for 3 s."""
+    return Proposal(sender, time, 1, 1, tuple(map(precedence, pairs)), to, humans, 3.0)

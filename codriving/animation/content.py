@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from codriving.animation.talk import Talk
 from codriving.datatypes import Action, Kind, Outcome, Relation, Severity, Track, Trajectory
 from codriving.geometry import RoadMap
 
@@ -61,12 +62,13 @@ class FrameContent:
     arrived: Mapping[str, float | None] = field(default_factory=dict)
     outcome: Outcome | None = None
     routes: Mapping[str, str] = field(default_factory=dict)
+    talk: tuple[str, ...] = ()  # Who proposed an order, who accepted it and who holds it
 
 
 def deliberated(line: Mapping[str, Any], road_map: RoadMap) -> FrameContent:
     """Read a line."""
     cavs = {name: entry for entry in _maps(line, "cavs") if (name := _text(entry, "id"))}
-    order, title = _order([_map(entry, "order") for entry in cavs.values()])
+    order, title = _order(list(cavs.values()))
     routes = {name: _text(_map(_map(entry, "scene"), "intent"), "route") for name, entry in cavs.items()}
     return FrameContent(
         time=_number(line, "time") or 0.0,
@@ -117,11 +119,14 @@ def _thought(name: str, entry: Mapping[str, Any]) -> DrawnDecision:
     return DrawnDecision(action_named(_text(entry, "action")), _text(entry, "reason"), tuple(filter(None, firsts)))
 
 
-def _order(orders: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, ...] | None, str]:
+def _order(entries: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, ...] | None, str]:
+    orders = [_map(entry, "order") for entry in entries]
     sequences = [_texts(order, "sequence") for order in orders]
     if not any(sequences):
         return None, ""
     if len(set(sequences)) > 1:
+        if any("agreements" in entry for entry in entries):
+            return None, "Orders differ: every CAV goes by what has reached it"
         return None, "No common order: every CAV makes up its own"
     return sequences[0], "Passing order, binding" if orders[0].get("binding") is True else "Passing order"
 
@@ -171,7 +176,8 @@ class StoredFrames:
     ) -> None:
         self._trajectory, self._outcome = trajectory, outcome
         self._headings = {track.id: np.unwrap(track.heading) for track in trajectory.tracks}
-        self._decided = [deliberated(line, road_map) for line in decisions]
+        talk = Talk()
+        self._decided = [replace(deliberated(line, road_map), talk=talk.after(line)) for line in decisions]
         self._times = np.array([d.time for d in self._decided])
         self.duration = max((t.first_step + len(t.x) - 1) * trajectory.step for t in trajectory.tracks)
 

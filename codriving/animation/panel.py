@@ -150,7 +150,7 @@ class SidePanel:
         """Draw it."""
         a = self._area
         here = tuple((body.id, body.kind) for body in moment.bodies)
-        key = (here, moment.thoughts, moment.meetings, moment.order, moment.order_title, moment.arrived)
+        key = (here, moment.thoughts, moment.meetings, moment.order, moment.order_title, moment.arrived, moment.talk)
         if self._kept is None or self._kept[0] != key:
             cards = self._still(canvas, moment)
             self._kept = (key, canvas.part(a.left, a.top, a.width, a.height).copy(), cards)
@@ -196,6 +196,10 @@ class SidePanel:
             words = shortened(canvas, name, 11, wide - 24, bold=True)
             canvas.text(left + wide / 2 + 6, top + _CHIP / 2, words, 11, INK, bold=True, anchor=0.5)
         y += -(-len(sequence) // _PER_ROW) * (_CHIP + 4) + 4
+        for words in moment.talk:
+            for line in wrapped(canvas, words, _SMALL, inner.width, 2):
+                canvas.text(inner.left, y + 6, line, _SMALL, FAINT)
+                y += _LINE
         _rule(canvas, inner, y)
         return y
 

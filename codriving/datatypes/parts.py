@@ -71,7 +71,8 @@ class Simulator(ABC):
 
     road_map: RoadMap
     driving_model: DrivingModel  # How a CAV answers to actions
-    observer: "Callable[[WorldState], None] | None" = None  # Is shown the world at each simulation step
+    # Is shown the world at each simulation step, with the routes of human drivers, some of whom may tell them.
+    observer: "Callable[[WorldState], None] | None" = None
 
     @property
     @abstractmethod

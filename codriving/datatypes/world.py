@@ -156,6 +156,7 @@ class WorldState:
     hidden: tuple[tuple[str, str], ...] = ()  # Pairs between which a building stands, in the order of names
     viewer: str | None = None  # The CAV, or the unit, whose knowledge this is; None for the world as it is
     told: Mapping[str, Told] = field(default_factory=dict)  # What the viewer knows by messages, by id of the vehicle
+    routes: Mapping[str, str] = field(default_factory=dict)  # Routes that human drivers have told the viewer, by id
 
     @property
     def cavs(self) -> tuple[VehicleState, ...]:
@@ -177,6 +178,10 @@ class WorldState:
     def known_to_cavs(self, vehicle: VehicleState, reach: float) -> bool:
         """Whether the CAVs know of a vehicle if they share what their sensors see within a reach [m]."""
         return vehicle.id in self.told or any(self.senses(cav, vehicle, reach) for cav in self.cavs)
+
+    def way_of(self, name: str, speed: float) -> Intent | None:
+        """Return the route that a human driver has told, as an intent to keep its speed [m/s]; None if it has not."""
+        return Intent(self.routes[name], speed, ("", "", 0)) if name in self.routes else None
 
     @property
     def deciding(self) -> tuple[str, ...]:

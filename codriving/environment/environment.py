@@ -26,7 +26,7 @@ from codriving.environment.cav import ConnectedVehicle
 from codriving.environment.counting import Counting
 from codriving.environment.drivers.style import DriverMix
 from codriving.environment.network import build_network
-from codriving.environment.recorder import Recorder, snapshot
+from codriving.environment.recorder import Recorder, human_routes, snapshot
 from codriving.environment.settings import ControlGains, Corrections, DriverProfile
 from codriving.environment.termination import Termination
 from codriving.environment.traffic.human_driver import HumanDriver
@@ -124,7 +124,8 @@ class Environment(Simulator):
             self._steps += 1
             self._recorder.record(self._steps, self._traffic.vehicles, in_force)
             if self.observer is not None:
-                self.observer(snapshot(self._traffic, self._time, self._decisions))
+                seen = snapshot(self._traffic, self._time, self._decisions)
+                self.observer(replace(seen, routes=human_routes(self._traffic)))
             self._outcome = self._termination.check(self._traffic, self._time)
             if self._outcome is not None:
                 break

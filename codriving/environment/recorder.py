@@ -68,3 +68,8 @@ def snapshot(traffic: Traffic, time: float, step: int) -> WorldState:
     signals = {v.id: v.signal for v in vehicles if v.signal} if traffic.past is not None else {}
     pairs = ((v.id, w.id) for v, unseen in traffic.hidden.items() for w in unseen if v.id < w.id)
     return WorldState(time, step, states, intents, available, signals, tuple(sorted(pairs)))
+
+
+def human_routes(traffic: Traffic) -> dict[str, str]:
+    """Return the route of each human driver, of which none but those who observe the world for them may know."""
+    return {v.id: v.route_path.route.id for v in traffic.vehicles if v.kind is Kind.HDV}

@@ -60,6 +60,9 @@ class Proposals:
         current = self._current
         if current is None or (response.number, response.round) != (current.number, current.round):
             return []
+        known = self._answers.get(response.sender)
+        if known is not None and known.pairs == response.pairs:
+            return []  # Said again, since it was asked again
         self._answers[response.sender] = response
         if not _parties(current.pairs) <= self._answers.keys():
             return []

@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 from math import hypot
 
 from codriving.datatypes import DrivingModel, Shares, VehicleState, WorldState
-from codriving.v2x.draws import Errors, Link
+from codriving.v2x.draws import Errors, Link, tells
 from codriving.v2x.messages import (
     CollectivePerception,
     CooperativeAwareness,
     ManoeuvreCoordination,
     PerceivedObject,
+    RouteSharing,
     V2xMessage,
 )
 from codriving.v2x.settings import ChannelSettings
@@ -52,28 +53,40 @@ class Channel:
         self.messages = self.bytes = 0  # Since they were counted last
 
     def hear(self, world: WorldState) -> None:
-        """Let every CAV send what is due at this time."""
+        """Let every CAV, and each human driver who tells a route, send what is due at this time."""
         tick = self.tick_of(world.time)
         if tick == self._tick:
             return
         self._tick = tick
-        cavs = world.cavs
-        for cav in cavs:
-            near = self.reached(cav.id, world)
-            messages = tuple(self._messages(world, cav))
-            self.messages += len(messages)
-            self.bytes += sum(message.size for message in messages)
-            packet = Packet(cav.id, world.time, tick, messages, frozenset(near))
-            self._sent.setdefault(cav.id, deque()).append(packet)
+        for cav in world.cavs:
+            self._send(cav, tuple(self._messages(world, cav)), world)
+        for human in world.hdvs:
+            # Only an observer is shown routes of human drivers.
+            if human.id in world.routes and tells(self._seed, human.id, self.settings.telling_humans):
+                self._send(human, tuple(self._told_by(human, world)), world)
         for packets in self._sent.values():
             while packets and packets[0].time < world.time - self.settings.validity - 1e-9:
                 packets.popleft()
 
+    def _send(self, sender: VehicleState, messages: tuple[V2xMessage, ...], world: WorldState) -> None:
+        near = self.reached(sender.id, world)
+        self.messages += len(messages)
+        self.bytes += sum(message.size for message in messages)
+        packet = Packet(sender.id, world.time, self._tick, messages, frozenset(near))
+        self._sent.setdefault(sender.id, deque()).append(packet)
+
+    def _told_by(self, human: VehicleState, world: WorldState) -> Iterator[V2xMessage]:
+        about = human.id, world.time, self.settings.validity
+        if self._shares.states:
+            yield CooperativeAwareness(*about, self.settings.cam_bytes, self._measured(human.id, human))
+        if self._shares.intents:
+            yield RouteSharing(*about, self.settings.mcm_bytes, world.routes[human.id])
+
     def reached(self, sender: str, world: WorldState) -> list[str]:
         """Return who is within the range of a sender."""
         places = {**{cav.id: (cav.x, cav.y) for cav in world.cavs}, **self._units}
-        here = places.pop(sender, None)
-        return [name for name, there in places.items() if self._near(here, there)]
+        here = next(((v.x, v.y) for v in world.vehicles if v.id == sender), self._units.get(sender))
+        return [name for name, there in places.items() if name != sender and self._near(here, there)]
 
     def _near(self, one: Place | None, other: Place | None) -> bool:
         return one is None or other is None or hypot(one[0] - other[0], one[1] - other[1]) <= self.settings.range

@@ -11,13 +11,18 @@ BLOCK = 256  # Ticks that are drawn at once
 
 CUT = 3.0  # Noise is cut off at so many standard deviations
 
-LINK, SENDER = 1, 2  # What a stream of numbers is for
+LINK, SENDER, TELLS = 1, 2, 4  # What a stream of numbers is for
 
 
 def _stream(seed: int, use: int, *names: str) -> np.random.Generator:
     return np.random.default_rng(
         np.random.SeedSequence(entropy=seed, spawn_key=(use, *(crc32(n.encode()) for n in names)))
     )
+
+
+def tells(seed: int, driver: str, share: float) -> bool:
+    """Whether a human driver tells its route; the same drivers do so at a larger share, and others with them."""
+    return share > 0 and bool(_stream(seed, TELLS, driver).random() < share)
 
 
 class Link:

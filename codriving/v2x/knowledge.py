@@ -8,7 +8,7 @@ from codriving.datatypes import Action, DrivingModel, Intent, Kind, Told, Vehicl
 from codriving.geometry import RoadMap
 from codriving.v2x.channel import Packet
 from codriving.v2x.draws import CUT
-from codriving.v2x.messages import CollectivePerception, CooperativeAwareness, ManoeuvreCoordination
+from codriving.v2x.messages import CollectivePerception, CooperativeAwareness, ManoeuvreCoordination, RouteSharing
 from codriving.v2x.settings import ChannelSettings
 
 
@@ -26,6 +26,7 @@ class KnownWorld:
         self.ego, self._settings, self._road_map, self._model = ego, settings, road_map, model
         self._heard: dict[str, _Heard] = {}
         self._intents: dict[str, tuple[Intent, tuple[Action, ...], float]] = {}
+        self._routes: dict[str, tuple[str, float]] = {}  # Of human drivers
 
     def hear(self, packets: Iterable[Packet], time: float) -> None:
         """Take in what has reached the CAV, and forget what is no longer valid."""
@@ -36,6 +37,8 @@ class KnownWorld:
                 elif isinstance(message, CollectivePerception):
                     for seen in message.objects:
                         self._note(seen.state, seen.signal, message.time)
+                elif isinstance(message, RouteSharing):
+                    self._routes[message.sender] = (message.route, message.time)
                 elif isinstance(message, ManoeuvreCoordination):
                     known = self._intents.get(message.sender)
                     if known is None or known[2] < message.time:
@@ -43,6 +46,7 @@ class KnownWorld:
         oldest = time - self._settings.validity - 1e-9
         self._heard = {name: heard for name, heard in self._heard.items() if heard.time >= oldest}
         self._intents = {name: intent for name, intent in self._intents.items() if intent[2] >= oldest}
+        self._routes = {name: route for name, route in self._routes.items() if route[1] >= oldest}
 
     def _note(self, state: VehicleState, signal: str, time: float) -> None:
         known = self._heard.get(state.id)
@@ -59,8 +63,8 @@ class KnownWorld:
                 vehicles.append(self._named(v))
                 if v.id in world.signals:
                     signals[v.id] = world.signals[v.id]
-                if v.id in self._intents:
-                    told[v.id] = Told(0.0, world.time - self._intents[v.id][2], seen=True)
+                if (way := self._way(v.id)) is not None:
+                    told[v.id] = Told(0.0, world.time - way[1], seen=True)
         seen = {v.id for v in vehicles}
         for name, heard in self._heard.items():
             if name in seen:
@@ -72,8 +76,8 @@ class KnownWorld:
             vehicles.append(self._named(state))
             if heard.signal:
                 signals[name] = heard.signal
-            intent = self._intents.get(name)
-            told[name] = self._told(heard.state, age, None if intent is None else world.time - intent[2])
+            way = self._way(name)
+            told[name] = self._told(heard.state, age, None if way is None else world.time - way[1])
         for v in vehicles:
             if v.id == self.ego:
                 intents[v.id], available[v.id] = world.intents[v.id], world.available[v.id]
@@ -81,7 +85,14 @@ class KnownWorld:
                 intents[v.id], available[v.id], _ = self._intents[v.id]
         hidden = tuple(pair for pair in world.hidden if self.ego in pair)
         ordered = tuple(sorted(vehicles, key=lambda v: v.id))
-        return WorldState(world.time, world.step, ordered, intents, available, signals, hidden, self.ego, told)
+        routes = {v.id: self._routes[v.id][0] for v in ordered if v.kind is Kind.HDV and v.id in self._routes}
+        return WorldState(world.time, world.step, ordered, intents, available, signals, hidden, self.ego, told, routes)
+
+    def _way(self, name: str) -> tuple[str, float] | None:
+        """Return the route that a vehicle has told, and when [s]; None if it has told none."""
+        intent = self._intents.get(name)
+        way = self._routes.get(name) if intent is None else (intent[0].route, intent[2])
+        return way if way is not None and way[0] in self._road_map.routes else None
 
     def _named(self, v: VehicleState) -> VehicleState:
         """Take a vehicle whose intent is not known for one that a human drives."""
@@ -93,10 +104,10 @@ class KnownWorld:
         if age <= 1e-9:
             return v
         way = v.speed * age
-        intent = self._intents.get(v.id)
-        if intent is None or intent[0].route not in self._road_map.routes:
+        told = self._way(v.id)
+        if told is None:
             return replace(v, x=v.x + way * cos(v.heading), y=v.y + way * sin(v.heading))
-        route = intent[0].route
+        route = told[0]
         place = self._road_map.project(route, v.x, v.y)[0] + way
         if place > self._road_map.routes[route].goal:
             return None

@@ -38,6 +38,13 @@ class CollectivePerception(V2xMessage):
 
 
 @dataclass(frozen=True, slots=True)
+class RouteSharing(V2xMessage):
+    """Where a human driver means to go, told by a device that does not drive."""
+
+    route: str
+
+
+@dataclass(frozen=True, slots=True)
 class ManoeuvreCoordination(V2xMessage):
     """What the sender means to do: MCM (ETSI TR 103 578)."""
 

@@ -55,6 +55,7 @@ class ChannelSettings:
     cpm_bytes: int  # Size of a message about vehicles that are seen, without these
     object_bytes: int  # Size of one such vehicle
     mcm_bytes: int  # Size of a message about an intent
+    telling_humans: float = 0.0  # Share of human drivers who tell their state and their route
     coordination: OrderSettings | None = None  # How orders are agreed on; None if each CAV computes them by itself
 
     def __post_init__(self) -> None:
@@ -70,5 +71,6 @@ class ChannelSettings:
         ):
             require_range(key, value, 0, most, unit)
         require_range("burst", self.burst, 1, 1000)
+        require_range("telling_humans", self.telling_humans, 0, 1)
         for key in ("cam_bytes", "cpm_bytes", "object_bytes", "mcm_bytes"):
             require_range(key, getattr(self, key), 0, 100_000)

@@ -158,7 +158,7 @@ def _neighbour(
     # A vehicle that shares an intent has said that it is a CAV.
     kind = Kind.CAV if intent is not None else n.kind
     n = replace(n, told=world.told.get(n.id)) if world.told else n
-    routes = tracking.places(ego, n, intent, world.signals.get(n.id, ""))
+    routes = tracking.places(ego, n, intent or world.way_of(n.id, n.speed), world.signals.get(n.id, ""))
     standing = tracking.standing(ego, n, world.time)
     motion = (n.x, n.y, n.speed, n.heading, n.acceleration, n.lane, n.length)
     return TrackedVehicle(n.id, kind, *motion, routes, intent, standing, told=n.told)
