@@ -32,14 +32,14 @@ levels:
   - value: 3
     set: [scenario.cavs=3, 'scenario.hdvs=[1,1]']
 """
-STRICT = """# No room for a near miss.
-name: shortest PET
-unit: s
+SIGHT = """# CAVs see less far.
+name: sight
+unit: m
 levels:
-  - value: 1.5
-    set: []
-  - value: 3
-    set: [scenario.detection_range=60.0]
+  - value: 50
+    set: [scenario.cavs=2]
+  - value: 30
+    set: [scenario.cavs=2, scenario.detection_range=30.0]
 """
 
 
@@ -128,10 +128,10 @@ def test_what_an_axis_leaves_alone_can_be_set() -> None:
     assert "drivers.signals=0.5" in points("drivers.signals=0.5")[0].overrides
 
 
-def run(folder: Path, *tokens: str) -> Path:
+def run(folder: Path, *tokens: str, axes: str = "few,sight") -> Path:
     short = ("launcher=serial", "scenario.time_limit=3", "seed=10000", "controls=false", "run=x", f"output={folder}")
     own = folder / "conf"
-    assert run_command(stress_command("few,strict", own), [*short, *tokens], own) == 0
+    assert run_command(stress_command(axes, own), [*short, *tokens], own) == 0
     return folder / "stress" / "x"
 
 
@@ -142,11 +142,11 @@ def table(file: Path) -> list[dict[str, str]]:
 
 @pytest.fixture(scope="module")
 def driven(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two methods at the levels of two axes; the first level of one is the default, and so is none of the other's."""
+    """Two methods at the levels of two axes whose first level is the same."""
     folder = tmp_path_factory.mktemp("stress")
     (folder / "conf" / "stress").mkdir(parents=True)
     (folder / "conf" / "stress" / "few.yaml").write_text(FEW)
-    (folder / "conf" / "stress" / "strict.yaml").write_text(STRICT.replace("set: []", "set: [scenario.cavs=2]"))
+    (folder / "conf" / "stress" / "sight.yaml").write_text(SIGHT)
     return run(folder, "episodes=1", "method=codriving,fcfs")
 
 
@@ -154,7 +154,7 @@ def test_every_level_of_every_curve_has_a_row(driven: Path) -> None:
     rows = table(driven / "stress.csv")
     assert [(row["axis"], row["method"], row["level"], row["value"]) for row in rows] == [
         (axis, method, str(level), value)
-        for axis, values in (("few", ("2", "3")), ("strict", ("1.5", "3")))
+        for axis, values in (("few", ("2", "3")), ("sight", ("50", "30")))
         for method in ("codriving", "fcfs")
         for level, value in enumerate(values)
     ]
@@ -162,10 +162,10 @@ def test_every_level_of_every_curve_has_a_row(driven: Path) -> None:
     assert [row["success_pairs"] for row in rows] == ["", "1"] * 4
     breaking = table(driven / "breaking.csv")
     assert [(row["axis"], row["method"]) for row in breaking] == [
-        (axis, method) for axis in ("few", "strict") for method in ("codriving", "fcfs")
+        (axis, method) for axis in ("few", "sight") for method in ("codriving", "fcfs")
     ]
     assert {path.name for path in (driven / "figures").iterdir()} == {
-        f"stress-{axis}.{kind}" for axis in ("few", "strict") for kind in ("png", "svg")
+        f"stress-{axis}.{kind}" for axis in ("few", "sight") for kind in ("png", "svg")
     }
 
 
@@ -173,7 +173,7 @@ def test_levels_that_are_the_same_config_are_driven_once(driven: Path) -> None:
     """The first level of both axes is two CAVs."""
     assert len(list((driven / "episodes").iterdir())) == 6
     summary, page = (driven / "summary.md").read_text(), (driven / "stress.md").read_text()
-    note = "stress=strict 1.5 s is the same configuration as stress=few 2 and has no row of its own."
+    note = "stress=sight 50 m is the same configuration as stress=few 2 and has no row of its own."
     assert summary.count(note) == 1
     assert note not in page
 
@@ -181,7 +181,7 @@ def test_levels_that_are_the_same_config_are_driven_once(driven: Path) -> None:
 def test_the_page_has_tables_and_notes_of_each_axis(driven: Path) -> None:
     page = (driven / "stress.md").read_text()
     assert page.count("# stress: ") == 2
-    assert page.count("Two and three CAVs.") == page.count("No room for a near miss.") == 1
+    assert page.count("Two and three CAVs.") == page.count("CAVs see less far.") == 1
     assert page.count("Breaks at: the first level at which success is 5 points") == 1
 
 
@@ -192,3 +192,8 @@ def test_a_run_is_resumed_and_repeats_to_the_byte(driven: Path, capsys: pytest.C
     assert out.startswith("Nothing to do: all 6 episodes")
     assert "stress: CAVs - intersection - reasoner: rules (llm=offline), none - success (95 %)" in out
     assert {path: path.read_bytes() for path in files} == files
+    # In another order the shared level is called after the other axis.
+    run(driven.parents[1], "episodes=1", "method=codriving,fcfs", axes="sight,few")
+    assert capsys.readouterr().out.startswith("Nothing to do: all 6 episodes")
+    assert [row["axis"] for row in table(driven / "breaking.csv")] == ["sight", "sight", "few", "few"]
+    assert len(list((driven / "episodes").iterdir())) == 6
