@@ -106,7 +106,10 @@ class Proposals:
         return self._begin(pairs, now) if last else self._propose(pairs, now, current.round + 1)
 
     def _rejections(self) -> list[Precedence]:
-        return [p for _, answer in sorted(self._answers.items()) for p in answer.pairs]
+        """Return what has to be instead of pairs that are proposed now."""
+        proposed = _named(self._current.pairs) if self._current is not None else set()
+        said = (p for _, answer in sorted(self._answers.items()) for p in answer.pairs)
+        return [p for p in said if (p.second, p.first) in proposed]
 
     def _agreed(self, current: Proposal, now: float) -> list[OrderMessage]:
         kept = tuple(p for p in current.pairs if self._accepts(p.first, p) and self._accepts(p.second, p))

@@ -118,6 +118,18 @@ def test_rounds_are_bounded(junction: Junction) -> None:
     assert list(rounds) == [(1, 1), (1, 2), (2, 1), (2, 2)]
 
 
+def test_a_rejection_of_a_pair_that_is_no_longer_open_is_none(junction: Junction) -> None:
+    made = proposals(rounds=1)
+    step(junction, made, 0.0, FIRST, SECOND, THIRD)
+    said(made, "CAV1")
+    said(made, "CAV2")
+    said(made, "CAV3", "CAV3 CAV1")
+    past = car("CAV3", "east-west", 130.0, 8.0)
+    step(junction, made, 0.5, FIRST, SECOND, past)
+    [agreement] = step(junction, made, 4.0, FIRST, SECOND, past)
+    assert (agreement.number, pairs(agreement)) == (1, [("CAV1", "CAV2")])
+
+
 def test_an_order_that_changes_is_proposed_anew(junction: Junction) -> None:
     made = proposals()
     step(junction, made, 0.0, FIRST, SECOND)
