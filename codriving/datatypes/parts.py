@@ -338,7 +338,15 @@ class Communication:
         Args:
             shared: What all copies use together, for instance the language model.
         """
-        raise NotImplementedError
+        return method
+
+    def notes(self, method: Method, brief: bool) -> tuple[str, ...]:
+        """Say what it means for a method that ``between`` has returned, ``{}`` standing for names of such methods.
+
+        Args:
+            brief: Whether the settings are told elsewhere.
+        """
+        return ()
 
 
 class ThinkingTime:

@@ -14,7 +14,7 @@ from codriving.errors import ConfigError
 from codriving.experiment.contents import contents
 from codriving.experiment.episode import Labels
 from codriving.experiment.flows import check_flow
-from codriving.experiment.objects import make_method, memory_of, model_of, thinking_of
+from codriving.experiment.objects import communication_of, make_method, memory_of, model_of, thinking_of
 from codriving.experiment.scoring import names_of_scores, scorers_of, settings_of_metric
 from codriving.reports import FILTERED
 from codriving.runs import CHOICES, CellEntry, NamedFile, fingerprint, redact, settings_of
@@ -108,7 +108,9 @@ def make_cell(
     if method.knows_drivers and not remark.endswith(KNOWS):
         # Whatever a method says of itself.
         remark = f"{remark} {method.name}: it is told how human drivers treat the right of way, {KNOWS}".strip()
-    notes = thinking_of(resolved).notes(method)
+    # What a table has a column of need not be said below it.
+    brief = point is not None and any(key == STRESS or key.partition(".")[0] == "v2x" for key in point.swept)
+    notes = thinking_of(resolved).notes(method) + communication_of(resolved).notes(method, brief)
     told = labels, resolved, scorer.metric.name, swept, chosen, files
     points = (point.swept,) if point else ()
     repeatable = False if llm is not None and llm.latency == "measured" and llm.cache != "replay" else None

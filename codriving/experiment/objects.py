@@ -31,9 +31,13 @@ def make_method(config: Mapping[str, Any], llm: Model | None, memory: CaseMemory
     if (filtered := config.get("filter")) is not None:
         method = build(filtered, ActionFilter, "filter", plugins).around(method)
     method = thinking_of(config).around(method, llm)
-    if (v2x := config.get("v2x")) is not None:
-        method = build(v2x, Communication, "v2x", plugins).between(method, [part for part in (llm, memory) if part])
-    return method
+    return communication_of(config).between(method, [part for part in (llm, memory) if part])
+
+
+def communication_of(config: Mapping[str, Any]) -> Communication:
+    """Build what says how the CAVs of a config hear of one another."""
+    node = config.get("v2x")
+    return Communication() if node is None else build(node, Communication, "v2x", config["plugins"])
 
 
 def thinking_of(config: Mapping[str, Any]) -> ThinkingTime:

@@ -7,6 +7,7 @@ from codriving.datatypes import Ending
 from codriving.metrics import FEWEST, mean_interval, rate_interval
 from codriving.reports.columns import Column, Table, Value, mean, swept_columns, table
 from codriving.reports.episodes import MEMORY, counter_columns, number_columns
+from codriving.reports.messages import message_columns
 from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.results import LABELS, CellResults, ScoredEpisode, named_numbers
 from codriving.reports.summary import ASKED_COLUMNS, BY_KEY, CPU, RunTables, labels, model_notes, remarks
@@ -63,7 +64,7 @@ def flow_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Table
         Column("cpu", lambda c: "" if c.cpu is None else milliseconds(c.cpu), CPU, csv=False, page=False, sparse=True),
     ]
     records = [record for cell in cells for record in cell.records]
-    columns += number_columns(_others(cells), columns)
+    columns += [*number_columns(_others(cells), columns), *message_columns(cells)]
     columns += counter_columns(records, columns)
     return table([*columns, *(ASKED_COLUMNS if any(cell.asked for cell in cells) else ())], cells)
 

@@ -11,6 +11,7 @@ from codriving.datatypes import Ending
 from codriving.reports.columns import Column, Row, Table, Value, mean, share, swept_columns, table
 from codriving.reports.episodes import counter_columns, episode_columns, number_columns, number_head
 from codriving.reports.fitting import METHOD, PAPER
+from codriving.reports.messages import message_columns
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.printed import PrintedTable, markdown_text, printed
 from codriving.reports.results import ASKED, COST, LABELS, SECONDS, CellResults, named_numbers, success_interval
@@ -162,6 +163,7 @@ def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Ta
         *FURTHER,
         *([MEMORY] if any(record.memory for record in records) else []),
         *([] if all(cell.repeatable for cell in cells) else [REPEATABLE]),
+        *message_columns(cells),
     ]
     known += number_columns(named_numbers(cells), known)
     counters = counter_columns(records, known)

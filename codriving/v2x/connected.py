@@ -62,6 +62,12 @@ class V2X(ChannelSettings, Communication):
         told = method.shares
         return Connected(method, self, shared) if told.states or told.intents else method
 
+    def notes(self, method: Method, brief: bool) -> tuple[str, ...]:
+        if not isinstance(method, Connected):
+            return ("v2x={v2x} has no effect on {}: the CAVs tell one another nothing.",)
+        said = "" if brief else f" ({self})"
+        return (f"v2x={{v2x}}{said}: each CAV of {{}} decides by what it sees and what messages have told it.",)
+
 
 class Connected(Wrapped):
     """A method, copied for each CAV, and the channel between the copies."""
@@ -95,7 +101,7 @@ class Connected(Wrapped):
 
     def act(self, world: WorldState) -> ConnectedDeliberation:
         """Let each CAV on the road decide by what it knows."""
-        channel, negotiations = self._channel, self._negotiations
+        negotiations = self._negotiations
         self._hear(world)
         made: list[Deliberation] = []
         if negotiations is not None and negotiations.unit is not None:
@@ -110,12 +116,10 @@ class Connected(Wrapped):
         counts: dict[str, float] = {}
         made += each.values()
         counted, said = (None, None) if negotiations is None else negotiations.noted({n: self._copies[n] for n in each})
-        told: dict[str, float] = {"messages": channel.messages, "message_bytes": channel.bytes}
-        told |= {"message_age": round(ages, 9), "message_uses": uses}
+        told = {**self._sent()[0], "message_age": round(ages, 9), "message_uses": uses}
         for found in (*(deliberation.counts for deliberation in made), told, counted or {}):
             for name, number in found.items():
                 counts[name] = counts.get(name, 0) + number
-        channel.messages = channel.bytes = 0
         transcript = tuple(line for deliberation in made for line in deliberation.transcript)
         return ConnectedDeliberation(world.time, world.step, each, counts, transcript, said)
 
@@ -135,10 +139,16 @@ class Connected(Wrapped):
         return deliberation
 
     def conclude(self, world: WorldState, outcome: Outcome) -> Account:
-        return _together([copy.conclude(world, outcome) for copy in self._copies.values()])
+        return _together([self._sent(), *(copy.conclude(world, outcome) for copy in self._copies.values())])
 
     def unfinished_step(self, time: float) -> Account:
-        return _together([copy.unfinished_step(time) for copy in self._copies.values()])
+        return _together([self._sent(), *(copy.unfinished_step(time) for copy in self._copies.values())])
+
+    def _sent(self) -> Account:
+        """Count what has been sent since the last decision."""
+        counts: dict[str, float] = {"messages": self._channel.messages, "message_bytes": self._channel.bytes}
+        self._channel.messages = self._channel.bytes = 0
+        return counts, []
 
     def _knowledge_of(self, name: str) -> KnownWorld:
         if name not in self._knowledge:

@@ -11,6 +11,8 @@ from codriving.v2x.draws import CUT
 from codriving.v2x.messages import CollectivePerception, CooperativeAwareness, ManoeuvreCoordination, RouteSharing
 from codriving.v2x.settings import ChannelSettings
 
+PULLS_AWAY = 3.0  # How hard a human driver without limits accelerates from a standstill at most (IDM) [m/s2]
+
 
 @dataclass(frozen=True, slots=True)
 class _Heard:
@@ -121,6 +123,8 @@ class KnownWorld:
         brake = model.speed_gain * model.top_speed if model.limits is None else model.limits.braking
         if v.kind is Kind.HDV:
             pedal, brake = model.human_acceleration, model.human_braking
+            if model.limits is None:
+                pedal = max(pedal, PULLS_AWAY)
         place, speed = CUT * sqrt(2.0) * settings.noise, CUT * settings.speed_noise
         braked = min(age, v.speed / brake)
         return Told(

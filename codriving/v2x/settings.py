@@ -58,6 +58,15 @@ class ChannelSettings:
     telling_humans: float = 0.0  # Share of human drivers who tell their state and their route
     coordination: OrderSettings | None = None  # How orders are agreed on; None if each CAV computes them by itself
 
+    def __str__(self) -> str:
+        """Say how messages are, in a few words."""
+        spread = "Gamma" if self.age_shape > 0 and self.age > 0 else "always"
+        late = f"{self.age:g} s late ({spread})" if self.age > 0 else "at once"
+        lost = f"{100 * self.loss:g} % lost"
+        return (
+            f"{self.rate:g} Hz, {late}, {lost}, {self.range:g} m far, noise {self.noise:g} m, {self.speed_noise:g} m/s"
+        )
+
     def __post_init__(self) -> None:
         require_range("rate", self.rate, 0.5, 100, " Hz")
         for key, value, most, unit in (

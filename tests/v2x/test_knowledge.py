@@ -152,13 +152,13 @@ def test_bounds_say_what_can_have_happened_since(junction: Junction, kind: str) 
     radio.send(0.0, EGO, by, there)
     told = radio.look(1.0, EGO, by, there).told[kind]
     # Without limits a CAV changes its speed by up to 9 m/s times the gain of 1 / 0.6 s; a human driver brakes by 6 m/s2
-    # and accelerates by 1.5 m/s2 at most.
+    # and pulls away with 3 m/s2 at most.
     place, speed = 0.3 * sqrt(2), 0.15
     heard = vehicle(radio.look(1.0, EGO, by, there), kind).speed
     if kind == "CAV2":
         pedal = brake = junction.model.speed_gain * 9.0
     else:
-        pedal, brake = 1.5, 6.0
+        pedal, brake = 3.0, 6.0
     stops = heard**2 / (2 * brake) if heard / brake < 1 else heard - brake / 2
     assert told.age == 1.0
     assert told.ahead >= pedal / 2 + speed + place
