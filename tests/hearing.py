@@ -10,6 +10,7 @@ from codriving.datatypes.parts import Shares
 from codriving.datatypes.world import WorldState
 from codriving.v2x.channel import Channel
 from codriving.v2x.knowledge import KnownWorld
+from codriving.v2x.misbehaviour import Misconduct
 from codriving.v2x.settings import ChannelSettings
 
 FLAWLESS: dict[str, Any] = {
@@ -49,7 +50,8 @@ class Radio:
 
     def __post_init__(self) -> None:
         j = self.junction
-        self.channel = Channel(self.settings, self.shares, j.model, self.seed)
+        self.misconduct = Misconduct(self.settings.misbehaviour, j.road_map, j.model, self.seed)
+        self.channel = Channel(self.settings, self.shares, j.model, self.seed, self.misconduct)
         self.known = KnownWorld(self.ego, self.settings, j.road_map, j.model)
 
     def send(self, time: float, *cars: Car, hidden: tuple[tuple[str, str], ...] = ()) -> WorldState:

@@ -51,7 +51,10 @@ FIRST = {
     SUITE: ("default", "paper", "honest", "standoff", "crowd", "blind", "blocked_exit", "busy_merge"),
     "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),
-    STRESS: ("age", "loss", "range", "noise", "thinking", "humans", "cavs"),
+    STRESS: (
+        *("age", "loss", "range", "noise", "thinking", "humans", "cavs"),
+        *("not_yielding", "false_intents", "false_positions", "ghosts", "silent"),
+    ),
 }
 
 _LINE = re.compile(r"^(\w+):[^\S\n]*([^#\n]*)", re.MULTILINE)

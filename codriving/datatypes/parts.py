@@ -260,6 +260,11 @@ class Method(ABC):
         """Learn from an episode that has come to its end."""
         return {}, []
 
+    @property
+    def misbehaving(self) -> Mapping[str, str]:
+        """How each CAV of the episode misbehaves that does, by id; it stands in the record and reaches no decision."""
+        return {}
+
     def unfinished_step(self, time: float) -> Account:
         """Return what was asked in a step that an error broke off, so that its cost is not lost.
 
@@ -300,6 +305,10 @@ class Wrapped(Method):
 
     def conclude(self, world: WorldState, outcome: Outcome) -> Account:
         return self.method.conclude(world, outcome)
+
+    @property
+    def misbehaving(self) -> Mapping[str, str]:
+        return self.method.misbehaving
 
     def unfinished_step(self, time: float) -> Account:
         return self.method.unfinished_step(time)

@@ -158,7 +158,7 @@ class Participant:
     kind: str  # ``CAV`` or ``HDV``
     route: str
     arrived: float | None  # Time of arrival [s], or None
-    style: str = ""  # Style of a human driver, where drivers have one
+    style: str = ""  # Style of a human driver, where drivers have one; how a CAV misbehaves, if it does
 
 
 @dataclass(frozen=True, slots=True)

@@ -126,7 +126,10 @@ def run_episode(
             with suppress(Exception):
                 trajectory = environment.trajectory()
     return EpisodeResult(
-        _record(labels, seed, outcome, scores, trajectory, len(log.seconds), dict(sorted(log.counts.items()))),
+        _record(
+            *(labels, seed, outcome, scores, trajectory, len(log.seconds), dict(sorted(log.counts.items()))),
+            misbehaving=method.misbehaving if log.begun else {},
+        ),
         trajectory,
         tuple(log.decisions),
         perf_counter() - started,
@@ -155,14 +158,18 @@ def _record(
     trajectory: Trajectory | None = None,
     decisions: int = 0,
     counts: dict[str, int | float] | None = None,
+    misbehaving: Mapping[str, str] | None = None,
 ) -> EpisodeRecord:
     tracks = sorted(trajectory.tracks, key=lambda track: track.id) if trajectory else ()
+    styles = misbehaving or {}
     return EpisodeRecord(
         **asdict(labels),
         seed=seed,
         outcome=outcome,
         scores=scores or {},
-        participants=tuple(Participant(t.id, t.kind.value, t.route, t.arrived, t.style) for t in tracks),
+        participants=tuple(
+            Participant(t.id, t.kind.value, t.route, t.arrived, styles.get(t.id, t.style)) for t in tracks
+        ),
         decisions=decisions,
         counts=counts or {},
     )

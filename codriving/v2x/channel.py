@@ -15,6 +15,7 @@ from codriving.v2x.messages import (
     RouteSharing,
     V2xMessage,
 )
+from codriving.v2x.misbehaviour import Misconduct, with_ghost
 from codriving.v2x.settings import ChannelSettings
 
 Place = tuple[float, float]  # x and y [m]
@@ -42,9 +43,11 @@ class Channel:
         shares: Shares,
         model: DrivingModel,
         seed: int,
+        misconduct: Misconduct,
         units: Mapping[str, Place | None] = NO_UNITS,
     ) -> None:
         self.settings, self._shares, self._model, self._seed = settings, shares, model, seed
+        self._misconduct = misconduct
         self._units = units  # Who coordinates and is no CAV, and where [m]; None for one that reaches all CAVs
         self._sent: dict[str, deque[Packet]] = {}
         self._links: dict[tuple[str, str], Link] = {}
@@ -58,22 +61,31 @@ class Channel:
         if tick == self._tick:
             return
         self._tick = tick
+        ghosts = {cav.id: (ghost, speaks) for cav, ghost, speaks in self._misconduct.ghosts(world)}
         for cav in world.cavs:
-            self._send(cav, tuple(self._messages(world, cav)), world)
+            messages = self._misconduct.sent(cav, tuple(self._messages(world, cav)), world)
+            if cav.id in ghosts and self._shares.states:
+                ghost, speaks = ghosts[cav.id]
+                if speaks:
+                    about = ghost.id, world.time, self.settings.validity
+                    self._send(cav, ghost.id, (CooperativeAwareness(*about, self.settings.cam_bytes, ghost),), world)
+                else:
+                    messages = with_ghost(messages, ghost, self.settings.object_bytes)
+            self._send(cav, cav.id, messages, world)
         for human in world.hdvs:
             # Only an observer is shown routes of human drivers.
             if human.id in world.routes and tells(self._seed, human.id, self.settings.telling_humans):
-                self._send(human, tuple(self._told_by(human, world)), world)
+                self._send(human, human.id, tuple(self._told_by(human, world)), world)
         for packets in self._sent.values():
             while packets and packets[0].time < world.time - self.settings.validity - 1e-9:
                 packets.popleft()
 
-    def _send(self, sender: VehicleState, messages: tuple[V2xMessage, ...], world: WorldState) -> None:
-        near = self.reached(sender.id, world)
+    def _send(self, cav: VehicleState, sender: str, messages: tuple[V2xMessage, ...], world: WorldState) -> None:
+        """Send what a CAV tells, in its own name or another one."""
         self.messages += len(messages)
         self.bytes += sum(message.size for message in messages)
-        packet = Packet(sender.id, world.time, self._tick, messages, frozenset(near))
-        self._sent.setdefault(sender.id, deque()).append(packet)
+        packet = Packet(sender, world.time, self._tick, messages, frozenset(self.reached(cav.id, world)))
+        self._sent.setdefault(sender, deque()).append(packet)
 
     def _told_by(self, human: VehicleState, world: WorldState) -> Iterator[V2xMessage]:
         about = human.id, world.time, self.settings.validity

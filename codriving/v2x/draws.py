@@ -11,10 +11,11 @@ BLOCK = 256  # Ticks that are drawn at once
 
 CUT = 3.0  # Noise is cut off at so many standard deviations
 
-LINK, SENDER, TELLS = 1, 2, 4  # What a stream of numbers is for
+LINK, SENDER, TELLS, MISCONDUCT = 1, 2, 4, 7  # What a stream of numbers is for
 
 
-def _stream(seed: int, use: int, *names: str) -> np.random.Generator:
+def stream(seed: int, use: int, *names: str) -> np.random.Generator:
+    """Return what is drawn for one use and some names, which does not depend on what is drawn for others."""
     return np.random.default_rng(
         np.random.SeedSequence(entropy=seed, spawn_key=(use, *(crc32(n.encode()) for n in names)))
     )
@@ -22,14 +23,14 @@ def _stream(seed: int, use: int, *names: str) -> np.random.Generator:
 
 def tells(seed: int, driver: str, share: float) -> bool:
     """Whether a human driver tells its route; the same drivers do so at a larger share, and others with them."""
-    return share > 0 and bool(_stream(seed, TELLS, driver).random() < share)
+    return share > 0 and bool(stream(seed, TELLS, driver).random() < share)
 
 
 class Link:
     """Whether and when the messages of one CAV reach another one."""
 
     def __init__(self, settings: ChannelSettings, seed: int, sender: str, receiver: str) -> None:
-        self._settings, self._rng = settings, _stream(seed, LINK, sender, receiver)
+        self._settings, self._rng = settings, stream(seed, LINK, sender, receiver)
         # Not even losses that have nothing to do with one another come one by one.
         self._recovers = min(1 / settings.burst, 1 - settings.loss)
         self._fails = self._recovers * settings.loss / (1 - settings.loss)
@@ -58,7 +59,7 @@ class Errors:
 
     def __init__(self, settings: ChannelSettings, seed: int, sender: str, vehicle: str) -> None:
         self._scale = np.array([settings.noise, settings.noise, settings.speed_noise])
-        self._rng = _stream(seed, SENDER, sender, vehicle)
+        self._rng = stream(seed, SENDER, sender, vehicle)
         self._drawn: NDArray[np.float64] = np.empty((0, 3))
 
     def at(self, tick: int) -> tuple[float, float, float]:

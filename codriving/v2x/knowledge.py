@@ -8,7 +8,13 @@ from codriving.datatypes import Action, DrivingModel, Intent, Kind, Told, Vehicl
 from codriving.geometry import RoadMap
 from codriving.v2x.channel import Packet
 from codriving.v2x.draws import CUT
-from codriving.v2x.messages import CollectivePerception, CooperativeAwareness, ManoeuvreCoordination, RouteSharing
+from codriving.v2x.messages import (
+    CollectivePerception,
+    CooperativeAwareness,
+    ManoeuvreCoordination,
+    RouteSharing,
+    V2xMessage,
+)
 from codriving.v2x.settings import ChannelSettings
 
 PULLS_AWAY = 3.0  # How hard a human driver without limits accelerates from a standstill at most (IDM) [m/s2]
@@ -19,6 +25,7 @@ class _Heard:
     state: VehicleState
     signal: str
     time: float  # When it was so [s]
+    sender: str
 
 
 class KnownWorld:
@@ -35,10 +42,10 @@ class KnownWorld:
         for packet in packets:
             for message in packet.messages:
                 if isinstance(message, CooperativeAwareness):
-                    self._note(message.state, "", message.time)
+                    self._note(message.state, "", message)
                 elif isinstance(message, CollectivePerception):
                     for seen in message.objects:
-                        self._note(seen.state, seen.signal, message.time)
+                        self._note(seen.state, seen.signal, message)
                 elif isinstance(message, RouteSharing):
                     self._routes[message.sender] = (message.route, message.time)
                 elif isinstance(message, ManoeuvreCoordination):
@@ -50,10 +57,16 @@ class KnownWorld:
         self._intents = {name: intent for name, intent in self._intents.items() if intent[2] >= oldest}
         self._routes = {name: route for name, route in self._routes.items() if route[1] >= oldest}
 
-    def _note(self, state: VehicleState, signal: str, time: float) -> None:
+    def _note(self, state: VehicleState, signal: str, message: V2xMessage) -> None:
         known = self._heard.get(state.id)
-        if state.id != self.ego and (known is None or known.time < time):
-            self._heard[state.id] = _Heard(state, signal, time)
+        if state.id != self.ego and (known is None or known.time < message.time):
+            self._heard[state.id] = _Heard(state, signal, message.time, message.sender)
+
+    def forget(self, sender: str) -> None:
+        """Forget all that a CAV has told."""
+        self._heard = {name: heard for name, heard in self._heard.items() if heard.sender != sender}
+        self._intents.pop(sender, None)
+        self._routes.pop(sender, None)
 
     def of(self, world: WorldState) -> WorldState:
         """Return what is known of a world."""
@@ -79,7 +92,7 @@ class KnownWorld:
             if heard.signal:
                 signals[name] = heard.signal
             way = self._way(name)
-            told[name] = self._told(heard.state, age, None if way is None else world.time - way[1])
+            told[name] = self.told_of(heard.state, age, None if way is None else world.time - way[1])
         for v in vehicles:
             if v.id == self.ego:
                 intents[v.id], available[v.id] = world.intents[v.id], world.available[v.id]
@@ -116,7 +129,7 @@ class KnownWorld:
         x, y, heading = self._road_map.paths[route].place(place)
         return replace(v, x=x, y=y, heading=heading, lane=self._road_map.lane_at(route, place))
 
-    def _told(self, v: VehicleState, age: float, intent_age: float | None) -> Told:
+    def told_of(self, v: VehicleState, age: float, intent_age: float | None) -> Told:
         """Say how far from where it is taken to be a vehicle may be, whatever it has done since."""
         model, settings = self._model, self._settings
         pedal = model.speed_gain * model.top_speed if model.limits is None else model.limits.acceleration

@@ -1,6 +1,6 @@
 """The settings of a channel; with ``v2x=perfect`` there is none, and no message is sent at all."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal
 
 from codriving.errors import require, require_range
@@ -35,6 +35,40 @@ class OrderSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class Misbehaviour:
+    """Shares of CAVs that misbehave, a kind each; a CAV does so in one way at most.
+
+    Raises:
+        ConfigError: If a value is out of its range, or the shares add up to more than 1.
+    """
+
+    lies_position: float  # Tell a false position
+    lies_intent: float  # Tell another route and target speed than theirs
+    ghost: float  # Tell of vehicles that are not there
+    does_not_yield: float  # Agree to an order, and drive as if they went first
+    never_answers: float  # Tell their state, but no intent, and take no part in orders
+    along: float  # How far ahead of or behind the true position a false one is [m]
+    across: float  # How far beside it [m]
+
+    def __post_init__(self) -> None:
+        for kind, share in self.shares.items():
+            require_range(kind, share, 0, 1)
+        total = sum(self.shares.values())
+        names = ", ".join(self.shares)
+        require(total <= 1 + 1e-9, f"{names} must add up to at most 1, since a CAV is of one kind, got {total:g}")
+        require_range("along", self.along, 0, 200, " m")
+        require_range("across", self.across, 0, 50, " m")
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """The share of each kind."""
+        return {field.name: getattr(self, field.name) for field in fields(self)[:5]}
+
+
+HONEST = Misbehaviour(0.0, 0.0, 0.0, 0.0, 0.0, along=15.0, across=3.5)
+
+
+@dataclass(frozen=True, slots=True)
 class ChannelSettings:
     """How messages reach other CAVs: how often, how late, how far and how surely.
 
@@ -56,6 +90,12 @@ class ChannelSettings:
     object_bytes: int  # Size of one such vehicle
     mcm_bytes: int  # Size of a message about an intent
     telling_humans: float = 0.0  # Share of human drivers who tell their state and their route
+    misbehaviour: Misbehaviour = HONEST
+    plausibility: bool = False  # Whether what a message says is compared with what the receiver's sensors see
+    distrust: float = 5.0  # How long a sender is not believed whose message does not agree with that [s]
+    place_tolerance: float = 1.0  # How much farther than age and noise explain a place may be wrong [m]
+    route_tolerance: float = 2.5  # How far beside the route that it tells a vehicle may drive [m]
+    speed_tolerance: float = 0.5  # How much harder it may accelerate than its target speed asks for [m/s2]
     coordination: OrderSettings | None = None  # How orders are agreed on; None if each CAV computes them by itself
 
     def __str__(self) -> str:
@@ -77,6 +117,10 @@ class ChannelSettings:
             ("noise", self.noise, 10, " m"),
             ("speed_noise", self.speed_noise, 10, " m/s"),
             ("validity", self.validity, 60, " s"),
+            ("distrust", self.distrust, 600, " s"),
+            ("place_tolerance", self.place_tolerance, 50, " m"),
+            ("route_tolerance", self.route_tolerance, 20, " m"),
+            ("speed_tolerance", self.speed_tolerance, 20, " m/s2"),
         ):
             require_range(key, value, 0, most, unit)
         require_range("burst", self.burst, 1, 1000)
