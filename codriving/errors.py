@@ -6,6 +6,7 @@ CodrivingError                      anything this program raises on purpose
 │   │   └── ScenarioError           a scenario whose vehicles cannot be placed or whose road is broken
 │   ├── RunFolderError              a run folder that is unwritable, of another config, or damaged
 │   │   └── DamagedEpisodeError     an episode whose files are not as they were written; it is driven again
+│   ├── RecordingError              a file of trajectories that cannot be read
 │   ├── FilmError                   a film that cannot be written
 │   ├── MemoryFileError             a file of memories that is missing, damaged, or of another embedder or version
 │   ├── WeightsError                trained weights that are missing, damaged, or meant for something else
@@ -39,6 +40,10 @@ class RunFolderError(UserError):
 
 class DamagedEpisodeError(RunFolderError):
     """Raised when the files of a stored episode are missing, damaged, or of another one; a run drives it again."""
+
+
+class RecordingError(UserError):
+    """Raised when a file of trajectories cannot be read; the message names file, sheet and column."""
 
 
 class FilmError(UserError):

@@ -13,7 +13,20 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from codriving.cli.commands import ablate, bound, check, compare, learn, list_choices, replay, run, stress, train
+from codriving.cli.commands import (
+    ablate,
+    bound,
+    check,
+    compare,
+    export,
+    learn,
+    list_choices,
+    replay,
+    run,
+    score,
+    stress,
+    train,
+)
 from codriving.cli.memory import memory
 from codriving.cli.streams import OutputError, give_up_output, mend_streams
 from codriving.errors import UserError
@@ -157,6 +170,8 @@ app.command(epilog="Example: codriving bound scenario=intersection scenario.cavs
 app.command(epilog="Example: codriving learn scenario=intersection interactions=0,5,20 episodes=50 run=curve")(learn)
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
+app.command(epilog="Example: codriving score recording.csv outputs/run/first metrics=authors --csv scores.csv")(score)
+app.command(epilog="Example: codriving export outputs/run/first --to fcd --episode 3")(export)
 app.add_typer(memory, name="memory")
 app.command(epilog="Example: codriving train madqn --family junction seed=1")(train)
 app.command("list", epilog="Example: codriving list scenarios")(list_choices)

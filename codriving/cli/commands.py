@@ -9,7 +9,14 @@ from typing import Annotated
 import typer
 
 from codriving.cli.arguments import ConfigDir, Overrides, ShowConfig
-from codriving.cli.completion import PLURALS, complete_axis, complete_format, complete_group, complete_table
+from codriving.cli.completion import (
+    PLURALS,
+    complete_axis,
+    complete_format,
+    complete_group,
+    complete_layout,
+    complete_table,
+)
 from codriving.errors import ConfigError
 
 
@@ -157,6 +164,48 @@ def replay(
 
     options = ReplayOptions(cell, episode, format, out, speed, fps, scale, frame, config_dir, tuple(overrides or ()))
     print(run_replay(run, options))
+
+
+def score(
+    words: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="FILE|RUN... [metrics=NAME]",
+            help="Files with trajectories, or run folders; and the metric, standard if not given, with its keys.",
+        ),
+    ] = None,
+    csv: Annotated[Path | None, typer.Option("--csv", metavar="OUT", help="Write a row each, and one of all.")] = None,
+    pets: Annotated[Path | None, typer.Option("--pets", metavar="OUT", help="Write every PET, a row each.")] = None,
+    config_dir: ConfigDir = None,
+) -> None:
+    """Score trajectories from anywhere, or a finished run by another metric, without driving.
+
+    Files: trajectory.csv of an episode, a tidy CSV (time, id, x, y), tracks of INTERACTION or inD, SUMO's --fcd-output,
+    or an .xlsx of the paper's authors.
+    """
+    from codriving.experiment import ScoreOptions, run_score
+
+    run_score(words or [], ScoreOptions(csv, pets, config_dir))
+
+
+def export(
+    run: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder, or the name of one under outputs/.")],
+    to: Annotated[
+        str, typer.Option("--to", metavar="fcd|interhub|csv", help="The layout.", autocompletion=complete_layout)
+    ],
+    episode: Annotated[int | None, typer.Option(metavar="N", help="Its seed; all if not given.")] = None,
+    cell: Annotated[str | None, typer.Option(metavar="NAME", help="A row of the table, or a part of its name.")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="exported/ in the run folder if not given.")] = None,
+    config_dir: ConfigDir = None,
+) -> None:
+    """Write the episodes of a run for other programs.
+
+    fcd: floating car data as SUMO's --fcd-output. interhub: the interactions, in the columns of InterHub's table.
+    csv: a tidy table with sizes and routes.
+    """
+    from codriving.experiment import ExportOptions, run_export
+
+    print(run_export(run, ExportOptions(to, cell, episode, out, config_dir)))
 
 
 def train(

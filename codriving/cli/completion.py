@@ -60,6 +60,11 @@ def complete_format(incomplete: str) -> list[str]:
     return [name for name in ("mp4", "gif") if name.startswith(incomplete)]
 
 
+def complete_layout(incomplete: str) -> list[str]:
+    """Offer the layouts of `codriving export`."""
+    return [name for name in ("fcd", "interhub", "csv") if name.startswith(incomplete)]
+
+
 def complete_table(incomplete: str) -> list[tuple[str, str]]:
     """Offer the tables of `codriving compare`."""
     return [(name, meaning) for name, meaning in TABLES.items() if name.startswith(incomplete)]

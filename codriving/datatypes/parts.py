@@ -384,3 +384,7 @@ class Metric(ABC):
     @abstractmethod
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
         """Return the score of an episode."""
+
+    def score_recording(self, trajectory: Trajectory, outcome: Outcome) -> Score | None:
+        """Return the score of trajectories of whose road nothing is known; None if it takes a road."""
+        return None

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from codriving.config import SUITE, TARGET, build, check_choice, choices, compose
-from codriving.datatypes import Road, Scenario
+from codriving.datatypes import EpisodeRecord, Road, Scenario, Trajectory
 from codriving.errors import RunFolderError
 from codriving.runs import (
     EPISODES,
@@ -15,6 +15,7 @@ from codriving.runs import (
     TRAJECTORY,
     CellEntry,
     Manifest,
+    check_files,
     nested,
     read_decisions,
     read_manifest,
@@ -64,10 +65,7 @@ def find_episode(
     run, manifest = find_run(run)
     cells = manifest.cells if suite is None else _driven_in(run, manifest.cells, suite, config_dir)
     entry = _cell(run, cells, cell)
-    episodes = within(run, run / EPISODES / entry.folder)
-    seeds = sorted(
-        int(path.name) for path in episodes.glob("*") if path.is_dir() and path.name.isascii() and path.name.isdigit()
-    )
+    episodes, seeds = _seeds(run, entry)
     if not seeds:
         raise RunFolderError(
             f"no episode of {entry.folder} in {run} is finished yet; the command of the run with the same run=<name> "
@@ -78,6 +76,42 @@ def find_episode(
     driven = [s for s in seeds if (episodes / str(s) / TRAJECTORY).exists()]
     chosen = [*driven, *seeds][0] if seed is None else seed
     return StoredEpisode(entry, chosen, within(run, episodes / str(chosen)))
+
+
+def _seeds(run: Path, cell: CellEntry) -> tuple[Path, list[int]]:
+    """The folder of the episodes of a cell, and their seeds."""
+    episodes = within(run, run / EPISODES / cell.folder)
+    names = [path.name for path in episodes.glob("*") if path.is_dir()]
+    return episodes, sorted(int(name) for name in names if name.isascii() and name.isdigit())
+
+
+def all_episodes(run: Path, cell: str | None = None, seed: int | None = None) -> list[StoredEpisode]:
+    """Find the episodes of a run, or those of one cell, or with one seed.
+
+    Raises:
+        RunFolderError: If there is none.
+    """
+    run, manifest = find_run(run)
+    entries = manifest.cells if cell is None else [_cell(run, manifest.cells, cell)]
+    found = []
+    for entry in entries:
+        episodes, seeds = _seeds(run, entry)
+        found += [StoredEpisode(entry, s, within(run, episodes / str(s))) for s in seeds if seed in (None, s)]
+    if not found:
+        which = "" if seed is None else f" with seed {seed}"
+        raise RunFolderError(f"{run} has no finished episode{which}; the command of the run goes on with it")
+    return found
+
+
+def read_episode(episode: StoredEpisode) -> tuple[EpisodeRecord, Trajectory | None]:
+    """Read the record and what was driven; None where that is nothing.
+
+    Raises:
+        RunFolderError: If a file is damaged or missing.
+    """
+    record = read_record(episode.folder)
+    check_files(episode.folder, record)
+    return record, read_trajectory(episode.folder, record)
 
 
 def read_film(folder: Path, road: Road, scale: float = 1.0) -> "EpisodeFilm":

@@ -55,14 +55,32 @@ def overlaps(corners_a: FloatArray, corners_b: FloatArray) -> BoolArray:
     return np.asarray(~apart.any(-1))
 
 
-def separation(dx: FloatArray, dy: FloatArray, cos: FloatArray, sin: FloatArray, footprint: Footprint) -> FloatArray:
-    """Return how far apart boxes of one footprint are along the axis that separates them best.
+def separation(
+    dx: FloatArray,
+    dy: FloatArray,
+    cos: FloatArray,
+    sin: FloatArray,
+    footprint: Footprint,
+    other: Footprint | None = None,
+) -> FloatArray:
+    """Return how far apart boxes are along the axis that separates them best.
 
     The value is negative exactly if the boxes overlap and changes continuously with their places, so that the limit
     of an overlap can be interpolated.
+
+    Args:
+        other: Footprint of the second box, if it is another one.
     """
     length, width = footprint.length / 2, footprint.width / 2
     c, s = np.abs(cos), np.abs(sin)
+    if other is not None and other != footprint:
+        long, wide = other.length / 2, other.width / 2
+        ahead = np.abs(dx) - (length + long * c + wide * s)
+        beside = np.abs(dy) - (width + wide * c + long * s)
+        ahead_of_it = np.abs(cos * dx + sin * dy) - (long + length * c + width * s)
+        beside_it = np.abs(cos * dy - sin * dx) - (wide + width * c + length * s)
+        first, second = np.maximum(ahead, beside), np.maximum(ahead_of_it, beside_it)
+        return np.maximum(first, second)
     along, across = length * (1 + c) + width * s, width * (1 + c) + length * s
     first = np.maximum(np.abs(dx) - along, np.abs(dy) - across)
     second = np.maximum(np.abs(cos * dx + sin * dy) - along, np.abs(cos * dy - sin * dx) - across)

@@ -84,6 +84,10 @@ class AuthorsMetrics(Metric):
 
     def score(self, trajectory: Trajectory, outcome: Outcome, road: RoadMap) -> Score:
         """Return the score of an episode."""
+        return self.score_recording(trajectory, outcome)
+
+    def score_recording(self, trajectory: Trajectory, outcome: Outcome) -> Score:
+        """Return the score of trajectories; the road takes no part."""
         stride = max(1, round(self.row_interval / trajectory.step))
         logs = [log for log in (_log(track, stride) for track in trajectory.tracks) if len(log.x)]
         return self.score_logs(logs, outcome.ending is Ending.SUCCESS, stride * trajectory.step)

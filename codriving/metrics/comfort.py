@@ -19,6 +19,12 @@ def hard_braking(tracks: Sequence[Track], step: float, limit: float) -> float | 
     return float((braking > limit).mean()) if len(braking) else None
 
 
+def hardest_braking(tracks: Sequence[Track], step: float) -> float | None:
+    """Return how hard one of them brakes at most [m/s2], 0 if none does; None without driving."""
+    braking = np.concatenate([-_accelerations(track, step) for track in tracks] or [np.empty(0)])
+    return max(0.0, float(braking.max())) if len(braking) else None
+
+
 def jerk(tracks: Sequence[Track], step: float) -> float | None:
     """Return the mean size of the change of acceleration within a second [m/s3]; None of shorter drives."""
     apart = max(1, round(SPAN / step))

@@ -8,12 +8,13 @@ import numpy as np
 from codriving.datatypes import BLOCKER, Ending, Kind, Metric, NamedNumber, Outcome, Score, Trajectory, TravelScore
 from codriving.errors import ConfigError
 from codriving.geometry import TRUE, RoadMap
-from codriving.metrics.comfort import hard_braking, jerk, reversals, stops
+from codriving.metrics.comfort import hard_braking, hardest_braking, jerk, reversals, stops
 from codriving.metrics.delay import drives, jain
 from codriving.metrics.flows import flow_numbers
 from codriving.metrics.following import Closest, closest
 from codriving.metrics.from_behind import struck_from_behind
 from codriving.metrics.pet import has_area, post_encroachment_times
+from codriving.metrics.recorded import closest_recorded, driven_pets, driven_travels, who_count
 
 
 class StandardMetrics(Metric):
@@ -55,6 +56,21 @@ class StandardMetrics(Metric):
             numbers=(*self._numbers(trajectory, road, nearest, success), *_forgiving(trajectory, outcome, success)),
             clean=success and not missed,
         )
+
+    def score_recording(self, trajectory: Trajectory, outcome: Outcome) -> Score:
+        """Return the score of trajectories of whose road nothing is known."""
+        step, tracks, success = trajectory.step, who_count(trajectory), outcome.ending is Ending.SUCCESS
+        pets, nearest = driven_pets(trajectory), closest_recorded(trajectory)
+        numbers = (
+            NamedNumber("ttc_min", nearest.ttc, "s", "higher", shown=True),
+            NamedNumber("drac_max", nearest.drac, "m/s2", "lower", shown=True),
+            NamedNumber("braking_max", hardest_braking(tracks, step), "m/s2", "lower", shown=True),
+            NamedNumber("hard_braking", hard_braking(tracks, step, self.hard_braking), "", "lower"),
+            NamedNumber("jerk", jerk(tracks, step), "m/s3", "lower"),
+            NamedNumber("stops", stops(tracks), "", "lower"),
+        )
+        clean = success and all(pet.value >= self.near_miss for pet in pets)
+        return Score(success, pets, driven_travels(tracks, step), numbers, clean=clean)
 
     def _numbers(
         self, trajectory: Trajectory, road: RoadMap, nearest: Closest, success: bool

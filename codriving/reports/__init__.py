@@ -25,6 +25,7 @@ from codriving.reports.load import load_rows, load_table, print_each_load, print
 from codriving.reports.paper import Paper, read_learning, read_paper
 from codriving.reports.printed import PrintedTable, markdown_text, print_table
 from codriving.reports.profile import profile_figure
+from codriving.reports.recordings import ScoredFiles, pet_table, print_scores, score_table
 from codriving.reports.results import CellResults
 from codriving.reports.stress import StressCurve, breaking_table, print_stress, stress_notes, stress_table
 from codriving.reports.stress_figure import stress_figure
@@ -33,12 +34,13 @@ from codriving.reports.summary import RunTables, run_tables
 
 __all__ = [
     "FILTERED", "METHODS", "METHOD_CHOICE", "REFERENCE", "BoundRow", "BuiltMemory", "CellResults", "Compared",
-    "Condition", "FilterRow", "LearningRow", "Paper", "PrintedTable", "RunTables", "SceneBounds", "StressCurve",
-    "Subject", "Table", "TimedEpisode", "ablation_rows", "ablation_table", "breaking_table", "comparison_rows",
-    "comparison_table", "cpu_per_decision", "filter_rows", "filter_table", "flow_table", "flow_tables",
-    "learning_figure", "learning_rows", "learning_table", "load_figure", "load_rows", "load_table", "markdown_text",
-    "print_bounds", "print_built", "print_comparison", "print_each_load", "print_filters", "print_flows",
-    "print_learning", "print_loads", "print_pairs", "print_stress", "print_table", "profile_figure", "read_learning",
-    "read_paper", "run_tables", "stress_figure", "stress_notes", "stress_table", "table", "timing_columns",
+    "Condition", "FilterRow", "LearningRow", "Paper", "PrintedTable", "RunTables", "SceneBounds", "ScoredFiles",
+    "StressCurve", "Subject", "Table", "TimedEpisode", "ablation_rows", "ablation_table", "breaking_table",
+    "comparison_rows", "comparison_table", "cpu_per_decision", "filter_rows", "filter_table", "flow_table",
+    "flow_tables", "learning_figure", "learning_rows", "learning_table", "load_figure", "load_rows",
+    "load_table", "markdown_text", "pet_table", "print_bounds", "print_built", "print_comparison",
+    "print_each_load", "print_filters", "print_flows", "print_learning", "print_loads", "print_pairs",
+    "print_scores", "print_stress", "print_table", "profile_figure", "read_learning", "read_paper",
+    "run_tables", "score_table", "stress_figure", "stress_notes", "stress_table", "table", "timing_columns",
     "with_bounds", "with_corrected",
 ]  # fmt: skip

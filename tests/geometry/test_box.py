@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from codriving.geometry.box import TRUE, corners, overlap, overlaps, separation
+from codriving.geometry.box import TRUE, Footprint, corners, overlap, overlaps, separation
 
 places = st.tuples(st.floats(-6, 6), st.floats(-6, 6), st.floats(-7, 7))
 
@@ -89,3 +89,16 @@ def test_many_pairs_at_once_give_the_same_as_one_by_one() -> None:
     assert overlaps(boxes_a, boxes_b).tolist() == one_by_one
     assert overlaps(boxes_a[:, None], boxes_b[None])[range(50), range(50)].tolist() == one_by_one
     assert 5 < sum(one_by_one) < 45
+
+
+@given(places, places)
+def test_boxes_of_two_sizes_overlap_where_their_separation_is_negative(
+    a: tuple[float, float, float], b: tuple[float, float, float]
+) -> None:
+    cos, sin = math.cos(a[2]), math.sin(a[2])
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    turn = b[2] - a[2]
+    numbers = (cos * dx + sin * dy, cos * dy - sin * dx, math.cos(turn), math.sin(turn))
+    apart = float(separation(*(np.array(n) for n in numbers), TRUE, Footprint(7.0, 1.2)))
+    assume(abs(apart) > 1e-6)
+    assert (apart < 0) == overlap(_corners(a), corners(*b, 7.0, 1.2))
