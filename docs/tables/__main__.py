@@ -15,7 +15,7 @@ import string
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -30,6 +30,7 @@ ROOT = HERE.parents[1]
 PAGES = ("README.md", "docs/results.md")
 BENCH = "bench "  # How a command begins that is a benchmark
 KEYS = ("scenario", "method", "variant")  # What tells the rows of a run apart; rows of several runs are joined by them
+WORDS = (*KEYS, "suite")  # Columns that hold names
 BEGIN, END = "<!-- table {}: made by make tables -->", "<!-- end of table {} -->"
 TABLE = re.compile(r"<!-- table (?P<name>[\w-]+): made by make tables -->\n.*?<!-- end of table (?P=name) -->", re.S)
 
@@ -69,7 +70,7 @@ class Numbers:
 
 
 def _typed(row: Mapping[str, str]) -> dict[str, Value]:
-    return {key: text if key in KEYS else _number(text) for key, text in row.items()}
+    return {key: text if key in WORDS else _number(text) for key, text in row.items()}
 
 
 def _number(text: str) -> Value:
@@ -100,22 +101,32 @@ class Cells(string.Formatter):
             return ""
 
 
-def joined(worlds: Mapping[str, Sequence[Numbers]], only: Mapping[str, str]) -> Iterator[dict[str, Any]]:
-    """Yield a row for each scenario, method and variant, with its numbers in each world below the name of that."""
+def joined(
+    worlds: Mapping[str, Sequence[Numbers]], only: Mapping[str, str], keys: Sequence[str]
+) -> Iterator[dict[str, Any]]:
+    """Yield a row for each combination of keys, with its numbers in each world below the name of that."""
     rows: dict[tuple[str, ...], dict[str, Any]] = {}
     for name, runs in worlds.items():
         for row in (row for run in runs for row in run.rows):
-            key = tuple(str(row[k]) for k in KEYS)
+            key = tuple(str(row[k]) for k in keys)
             if all(str(row[k]) in wanted.split(",") for k, wanted in only.items()):
-                rows.setdefault(key, dict(zip(KEYS, key, strict=True)))[name] = SimpleNamespace(**row)
+                rows.setdefault(key, dict(zip(keys, key, strict=True)))[name] = SimpleNamespace(**row)
     yield from rows.values()
+
+
+def rows_of(run: str) -> Numbers:
+    """Read the rows of a run; after a blank may stand what they are to have, for instance ``hard suite=crowd``."""
+    name, *wanted = run.split()
+    numbers = Numbers.read(HERE / f"{name}.csv")
+    pairs = [text.partition("=")[::2] for text in wanted]
+    return replace(numbers, rows=tuple(r for r in numbers.rows if all(str(r.get(k)) == v for k, v in pairs)))
 
 
 def markdown(name: str, spec: Mapping[str, Any]) -> str:
     """Write a table with the commands and versions that made it, between its two marks."""
-    worlds = {world: [Numbers.read(HERE / f"{run}.csv") for run in runs] for world, runs in spec["runs"].items()}
-    columns, cells, only = spec["columns"], Cells(), spec.get("only", {})
-    found = [[cells.cell(template, row) for template in columns.values()] for row in joined(worlds, only)]
+    worlds = {world: [rows_of(run) for run in runs] for world, runs in spec["runs"].items()}
+    columns, cells, only, keys = spec["columns"], Cells(), spec.get("only", {}), spec.get("by", KEYS)
+    found = [[cells.cell(template, row) for template in columns.values()] for row in joined(worlds, only, keys)]
     if not found:
         raise TableError(f"table {name} has no rows: look at its runs and at only: in tables.yaml")
     found += [list(map(str, line)) for line in spec.get("more", [])]
@@ -123,7 +134,7 @@ def markdown(name: str, spec: Mapping[str, Any]) -> str:
     lines = [f"| {' | '.join(line)} |" for line in (list(columns), *found)]
     lines.insert(1, f"|{'|'.join(align)}|")
     used = [run for runs in worlds.values() for run in runs]
-    made = [f"`{run.shown}` (version {run.version}, behaviour {run.behaviour})" for run in used]
+    made = list(dict.fromkeys(f"`{run.shown}` (version {run.version}, behaviour {run.behaviour})" for run in used))
     text = "\n".join((BEGIN.format(name), *lines, "", *_sentences(made), END.format(name)))
     return re.sub(" +[|]", " |", text)
 

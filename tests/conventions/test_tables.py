@@ -117,3 +117,27 @@ def test_what_cannot_be_made_is_said_in_one_line(
 
 def test_tables_of_the_pages_are_as_they_are_made() -> None:
     assert PROGRAM["main"](["--check"]) == 0
+
+
+def test_suites_of_one_run_stand_side_by_side(made: Path) -> None:
+    first = {"command": "compare all", "version": "0.2.0", "behaviour": 5}
+    rows = ("method,suite,success_rate", "codriving,crowd,0.5", "codriving,blind,0.75", "fcfs,blind,1")
+    (made / "hard.csv").write_text("\n".join((f"# {json.dumps(first)}", *rows)) + "\n", encoding="utf-8")
+    spec = {
+        "by": ["method"],
+        "runs": {"crowd": ["hard suite=crowd"], "blind": ["hard suite=blind"]},
+        "columns": {
+            "method": "{method}",
+            "both": "{crowd.success_rate:%}, {blind.success_rate:%}",
+            "x": "{blind.success_rate:%}",
+        },
+    }
+    table = PROGRAM["markdown"]("two", spec).splitlines()
+    assert table[1:6] == [
+        "| method | both | x |",
+        "|---|---:|---:|",
+        "| codriving | 50 %, 75 % | 75 % |",
+        "| fcfs | | 100 % |",
+        "",
+    ]
+    assert table[6] == "From `codriving compare all` (version 0.2.0, behaviour 5)."
