@@ -43,6 +43,7 @@ PLURALS = {
     "limits": "limits",
     "drivers": "drivers",
     "flows": "flow",
+    "channels": "v2x",
     "suites": SUITE,
     "experiments": EXPERIMENTS,
     "trainings": TRAININGS,

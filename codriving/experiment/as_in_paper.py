@@ -26,7 +26,8 @@ def _is_papers_setting(cell: Cell) -> bool:
     """Whether scenario and number of vehicles are those of the shipped YAMLs, and the world is the paper's."""
     scenario = cell.labels.scenario
     # Looked at first, since a second config takes as long to compose as half an episode to drive.
-    if cell.resolved.get("limits") is not None or _thinks(cell.resolved) or scenario not in choices("scenario"):
+    otherwise = cell.resolved.get("limits") is not None or cell.resolved.get("v2x") is not None
+    if otherwise or _thinks(cell.resolved) or scenario not in choices("scenario"):
         return False
     return all(cell.resolved.get(key) == node for key, node in _shipped(scenario).items())
 

@@ -1,8 +1,8 @@
 """Makes the tables of README.md and docs/results.md: `make tables`, `python docs/tables [--pages | --check] [RUN ...]`.
 
 `tables.yaml` names for each table the commands that drive its episodes and what its columns show. The commands are run
-(what is driven already is not driven again), the `summary.csv` of each run folder is kept beside this file, with the
-command and the versions that made it, and the pages are written from these files alone.
+(what is driven already is not driven again), the `summary.csv` of each run folder, or `comparison.csv`, is kept beside
+this file, with the command and the versions that made it, and the pages are written from these files alone.
 """
 
 import argparse
@@ -29,8 +29,9 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 PAGES = ("README.md", "docs/results.md")
 BENCH = "bench "  # How a command begins that is a benchmark
+COMPARE = "compare "  # And one that compares, whose table has more columns
 KEYS = ("scenario", "method", "variant")  # What tells the rows of a run apart; rows of several runs are joined by them
-WORDS = (*KEYS, "suite")  # Columns that hold names
+WORDS = (*KEYS, "suite", "status")  # Columns that hold names
 BEGIN, END = "<!-- table {}: made by make tables -->", "<!-- end of table {} -->"
 TABLE = re.compile(r"<!-- table (?P<name>[\w-]+): made by make tables -->\n.*?<!-- end of table (?P=name) -->", re.S)
 
@@ -88,7 +89,9 @@ class Cells(string.Formatter):
         return kwargs[str(key)]
 
     def format_field(self, value: object, form: str) -> str:
-        """Write a number."""
+        """Write a number; after a question mark stands, as of ``%``, what is left out where there is none."""
+        if form.startswith("?"):
+            return "" if value is None else form[1:] % value
         if value is None:
             raise LookupError
         return f"{100 * value:.3g} %" if form == "%" and isinstance(value, float) else format(value, form)
@@ -162,7 +165,8 @@ def drive(run: str, command: str) -> None:
         raise TableError(f"expected one folder outputs/*/tables-{run}, found {len(folders)}")
     manifest = json.loads((folders[0] / "manifest.json").read_text(encoding="utf-8"))
     made = {"command": command, "version": manifest["versions"]["codriving"], "behaviour": manifest["behaviour"]}
-    keep(HERE / f"{run}.csv", made, (folders[0] / "summary.csv").read_text(encoding="utf-8"))
+    table = "comparison.csv" if command.startswith(COMPARE) else "summary.csv"
+    keep(HERE / f"{run}.csv", made, (folders[0] / table).read_text(encoding="utf-8"))
 
 
 def wide(rows: Iterable[Mapping[str, Value]]) -> str:

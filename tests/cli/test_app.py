@@ -109,6 +109,7 @@ def test_list_without_a_group_shows_all_groups() -> None:
         "limits",
         "drivers",
         "flows",
+        "channels",
         "suites",
         "experiments",
         "trainings",

@@ -141,3 +141,9 @@ def test_suites_of_one_run_stand_side_by_side(made: Path) -> None:
         "",
     ]
     assert table[6] == "From `codriving compare all` (version 0.2.0, behaviour 5)."
+
+
+def test_a_part_of_a_cell_is_left_out_where_there_is_no_number() -> None:
+    cells = PROGRAM["Cells"]()
+    assert cells.cell("{a:%}{b:?, %.1f s}", {"a": 0.5, "b": 4.26}) == "50 %, 4.3 s"
+    assert cells.cell("{a:%}{b:?, %.1f s}", {"a": 0.5, "b": None}) == "50 %"

@@ -37,6 +37,7 @@ def test_other_seeds_are_not(seeds: range) -> None:
         "drivers=attentive",
         "limits=road",
         "thinking.order=1",
+        "v2x=good",
         "suite=default",
         "environment.corrections.no_reverse=false",
     ],
