@@ -19,6 +19,7 @@ from codriving.cli.commands import (
     check,
     compare,
     export,
+    join,
     learn,
     list_choices,
     replay,
@@ -168,6 +169,7 @@ app.command(epilog="Example: codriving compare baselines scenario=intersection e
 app.command(epilog="Example: codriving stress humans scenario=intersection episodes=60")(stress)
 app.command(epilog="Example: codriving bound scenario=intersection scenario.cavs=12 episodes=40")(bound)
 app.command(epilog="Example: codriving learn scenario=intersection interactions=0,5,20 episodes=50 run=curve")(learn)
+app.command(epilog="Example: codriving join outputs/run/big")(join)
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
 app.command(epilog="Example: codriving score recording.csv outputs/run/first metrics=authors --csv scores.csv")(score)

@@ -127,6 +127,26 @@ def learn(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowCo
     raise typer.Exit(run_learn(overrides or [], config_dir, cfg))
 
 
+def join(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(metavar="RUN...", help="Folders of a run, or its name under outputs/; the first gets the rest."),
+    ],
+    mixed: Annotated[bool, typer.Option("--mixed", help="Join parts of different versions, too.")] = False,
+    plugins: Annotated[
+        bool, typer.Option("--plugins", help="Run the plug-ins that the command of the parts names.")
+    ] = False,
+    config_dir: ConfigDir = None,
+) -> None:
+    """Join what was driven with shard=1/4, shard=2/4 and so on, and print the tables of the run.
+
+    Each shard leaves a part in the folder of the run. The joined run is as if one process had driven it.
+    """
+    from codriving.experiment import JoinOptions, run_join
+
+    raise typer.Exit(run_join(runs, JoinOptions(config_dir, plugins, mixed)))
+
+
 def check(overrides: Overrides = None, config_dir: ConfigDir = None) -> None:
     """Ask a language model for one order and one decision, and show answer, form, latency, tokens and cost.
 

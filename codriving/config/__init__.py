@@ -26,7 +26,7 @@ from codriving.config.compose import compose, compose_named, show
 from codriving.config.locate import conf_dir, experiments_dir
 from codriving.config.overrides import check_choice, parse, written
 from codriving.config.plugins import PLUGINS
-from codriving.config.schema import GROUPS, LARGEST_SEED, ROOT
+from codriving.config.schema import GROUPS, LARGEST_SEED, ROOT, looks_secret
 from codriving.config.stress import stress_axis
 from codriving.config.suites import changed_worlds, members, sets_scenario, suite_sets
 from codriving.config.sweep import Point, expand
@@ -66,6 +66,7 @@ __all__ = [
     "expand",
     "experiments_dir",
     "find_class",
+    "looks_secret",
     "members",
     "parse",
     "sets_scenario",

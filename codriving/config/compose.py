@@ -10,7 +10,7 @@ from codriving.config.locate import conf_dir, experiments_root
 from codriving.config.overrides import at_home, prepare
 from codriving.config.plugins import find_beside, gathered
 from codriving.config.references import check_references, no_resolvers
-from codriving.config.schema import GROUPS, LARGEST_SEED, SHOWN, check_root, texts
+from codriving.config.schema import GROUPS, LARGEST_SEED, ROOT, SHOWN, check_root, texts
 from codriving.config.suites import check_scenario
 from codriving.errors import ConfigError
 
@@ -128,6 +128,8 @@ def _check_together(resolved: Mapping[str, Any], choices: Mapping[str, str]) -> 
     last = resolved["seed"] + resolved["episodes"] - 1
     if last > LARGEST_SEED:
         raise ConfigError(f"seed + episodes - 1 must be at most {LARGEST_SEED}, got {last}; lower seed or episodes")
+    if "/" in (shard := resolved["shard"] or "") and int(shard.partition("/")[0]) > int(shard.partition("/")[2]):
+        raise ConfigError(f"shard must be {ROOT['shard'].rule}, got {shard!r}")
     if choices.get("launcher") == "serial" and resolved["workers"] not in ("auto", 1):
         raise ConfigError(f"workers must be auto or 1 with launcher=serial, got {resolved['workers']}")
 

@@ -53,6 +53,7 @@ class Key:
     high: int = 0
     words: tuple[str, ...] = ()  # Words that are allowed instead of the type, for instance ``auto``
     pattern: str | None = None
+    form: str = "a name of letters, digits, dots, dashes and underscores"  # What the pattern asks for
     optional: bool = False  # Whether ``null`` is allowed
 
     @property
@@ -62,7 +63,7 @@ class Key:
             bool: "true or false",
             int: f"a whole number, {self.low} to {self.high}",
             list: "a list of package names, for instance [my_package]",
-            str: "a name of letters, digits, dots, dashes and underscores" if self.pattern else "a text",
+            str: self.form if self.pattern else "a text",
         }[self.kind]
         return " or ".join([rule, *self.words, *(["null"] if self.optional else [])])
 
@@ -90,6 +91,15 @@ KEYS = (
     Key("output", "folder under which the run folders are written", str),
     Key("experiment", "folder below output, one an experiment", str, pattern=_NAME),
     Key("render", "whether each episode leaves a film, replay.mp4 beside its record", bool),
+    Key(
+        "shard",
+        "which share of a run is driven, into a part of its own; null drives all",
+        str,
+        words=("slurm",),
+        pattern=r"[1-9][0-9]{0,3}/[1-9][0-9]{0,3}",
+        form="i/n with i from 1 to n, for instance 1/4,",
+        optional=True,
+    ),
     Key("prompts", "folder with templates that replace ours, for language models; null takes ours", str, optional=True),
     Key("plugins", "packages of yours whose classes a config may name", list),
 )

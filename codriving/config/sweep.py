@@ -33,6 +33,7 @@ ONE_VALUE = {
     **dict.fromkeys(("workers", "launcher"), "all cells share the processes, and no result depends on them"),
     "prompts": "templates belong to a model, whose llm.prompts takes several",
     "plugins": "it holds a list already, as in plugins=[a,b]",
+    "shard": "each process drives one",
     "render": "it changes no result",
 }
 

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from codriving.experiment.check import run_check
     from codriving.experiment.compare import Comparison, compare_frames, comparison_command
     from codriving.experiment.export import ExportOptions, run_export
+    from codriving.experiment.join import JoinOptions, run_join
     from codriving.experiment.learn import run_learn
     from codriving.experiment.memory_build import BUILD
     from codriving.experiment.memory_pages import merge_page, search_page, show_page
@@ -18,9 +19,10 @@ if TYPE_CHECKING:
     from codriving.experiment.stress import stress_command
 
 __all__ = [
-    "ABLATE", "BUILD", "RUN", "BoundOptions", "Comparison", "ExportOptions", "ReplayOptions", "Results",
+    "ABLATE", "BUILD", "RUN", "BoundOptions", "Comparison", "ExportOptions", "JoinOptions", "ReplayOptions", "Results",
     "ScoreOptions", "compare_frames", "comparison_command", "merge_page", "run_bound", "run_check", "run_command",
-    "run_export", "run_frames", "run_learn", "run_replay", "run_score", "search_page", "show_page", "stress_command",
+    "run_export", "run_frames", "run_join", "run_learn", "run_replay", "run_score", "search_page", "show_page",
+    "stress_command",
 ]  # fmt: skip
 
 _FILES = {
@@ -29,6 +31,7 @@ _FILES = {
     "check": ("run_check",),
     "compare": ("Comparison", "compare_frames", "comparison_command"),
     "export": ("ExportOptions", "run_export"),
+    "join": ("JoinOptions", "run_join"),
     "learn": ("run_learn",),
     "memory_build": ("BUILD",),
     "memory_pages": ("merge_page", "search_page", "show_page"),

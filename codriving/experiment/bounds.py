@@ -143,6 +143,8 @@ def run_bound(overrides: Sequence[str], options: BoundOptions) -> int:
     configs, _ = composed(points, options.config_dir)
     validated(points, configs)
     first = configs[0]
+    if first["shard"] is not None:
+        raise ConfigError("codriving bound has no shards; give each process seeds of its own, seed= and episodes=")
     output = Path(first["output"])
     worlds, left_out = [], []
     for point, config in zip(points, configs, strict=True):

@@ -3,30 +3,28 @@
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing
-from dataclasses import dataclass, field, replace
+from contextlib import closing, contextmanager
+from dataclasses import dataclass, field, fields, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from signal import SIGINT
-from typing import Any
+from typing import Any, TypeAlias
 
 from codriving.config import experiments_dir, show
 from codriving.datatypes import Ending, EpisodeRecord
-from codriving.errors import DamagedEpisodeError, MemoryFileError, ModelError, ModelUnavailableError, UserError
+from codriving.errors import ConfigError, DamagedEpisodeError, MemoryFileError, ModelError, UserError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell, with_metrics
 from codriving.experiment.film import FilmEpisode
 from codriving.experiment.flows import is_flow
-from codriving.experiment.launchers import Launcher, Serial
 from codriving.experiment.objects import BuildObjects, modules_to_preload
+from codriving.experiment.places import FailuresInARow, places
 from codriving.experiment.plan import Plan
-from codriving.experiment.processes import Processes
 from codriving.experiment.progress import show_progress
-from codriving.experiment.remembering import growing, learns, merged_notes, prepare
+from codriving.experiment.remembering import growing, merged_notes, prepare
 from codriving.experiment.scoring import scored
 from codriving.experiment.stopping import StopSignal, stopped_by_signals
-from codriving.experiment.threads import Threads
 from codriving.experiment.worker import Job, Objects, Report, SaveEpisode, Unit
 from codriving.reports import (
     PrintedTable,
@@ -58,6 +56,7 @@ from codriving.runs import (
     variables_in,
     versions,
     whole_file,
+    write_part,
     write_text,
 )
 
@@ -119,19 +118,25 @@ class Outputs:
                 partial.write_bytes(content)
 
 
-@dataclass(frozen=True, slots=True)
-class Finished:
-    """A run that is complete."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ended:
+    """A batch of which nothing is left to drive."""
 
     folder: Path
-    tables: RunTables
     driven: int
     kept: int
     failed: tuple[Report, ...]
-    left_out: int = 0  # Episodes of the folder that were not asked for
     changed: tuple[str, ...] = ()  # Versions that differ between episodes
     filmed: int = 0
     unfilmed: tuple[Unit, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finished(Ended):
+    """A run that is complete, with its tables."""
+
+    tables: RunTables
+    left_out: int = 0  # Episodes of the folder that were not asked for
     outputs: Outputs = field(default_factory=Outputs)
 
     @property
@@ -141,24 +146,72 @@ class Finished:
         return (self.tables.printed, *own) if self.outputs.below or not own else own
 
 
+# Builds the objects of a cell, whose name it is given, from the configs of all.
+_Build: TypeAlias = Callable[[Mapping[str, Mapping[str, Any]]], Callable[[str], Objects]]
+
+
 def drive(
-    plan: Plan,
-    make_outputs: Callable[[Driven], Outputs] = lambda _: Outputs(),
-    build: Callable[[Mapping[str, Mapping[str, Any]]], Callable[[str], Objects]] | None = None,
+    plan: Plan, make_outputs: Callable[[Driven], Outputs] = lambda _: Outputs(), build: _Build | None = None
 ) -> Finished:
     """Drive a plan, or what is missing of it, with a progress display; prints no table."""
-    is_new = plan.run is None or not (plan.output / plan.experiment / plan.run / MANIFEST).exists()
-    found = Asked(plan.cells)
-    if is_new:
+    if plan.shard:
+        raise ConfigError("a shard has no tables that could be given back; drive it with codriving run, or all of it")
+    with _driven(plan, build) as batch:
+        rows = batch.rows(plan.seeds)
+        timings = [
+            [read_timing(batch.folder.episode(cell.folder, record.seed)) for record in row]
+            for cell, row in zip(batch.shown, rows, strict=True)
+        ]
+        driven = Driven(batch.shown, rows, timings, batch.folder.path, plan.notes, plan.config_dir)
+        outputs = make_outputs(driven)
+        tables = _write(plan, driven, outputs)
+        ended = {item.name: getattr(batch.ended, item.name) for item in fields(batch.ended)}
+        return Finished(**ended, tables=tables, left_out=batch.folder.left_out(plan.seeds), outputs=outputs)
+
+
+def drive_part(plan: Plan, build: _Build | None = None) -> Ended:
+    """Drive the shard of a plan into its part, or what is missing of it; ``codriving join`` makes the tables."""
+    with _driven(plan, build) as batch:
+        return batch.ended
+
+
+@dataclass(frozen=True, slots=True)
+class _DrivenBatch:
+    """What has been driven, in a folder that is still locked."""
+
+    folder: RunFolder
+    shown: Sequence[Cell]  # The rows of the table
+    resolved: Mapping[str, Mapping[str, Any]]  # Config of each cell with the metrics of all its rows
+    records: Mapping[Unit, EpisodeRecord]
+    ended: Ended
+
+    def rows(self, seeds: Sequence[int]) -> list[list[EpisodeRecord]]:
+        """Give the records of each row, scored by its metrics."""
+        by_folder = {
+            name: scored([(self.folder.episode(name, seed), self.records[Unit(name, seed)]) for seed in seeds], config)
+            for name, config in self.resolved.items()
+        }
+        return [by_folder[cell.folder] for cell in self.shown]
+
+
+@contextmanager
+def _driven(plan: Plan, build: _Build | None) -> Iterator[_DrivenBatch]:
+    """Drive what is missing."""
+    is_new = plan.folder is None or not (plan.folder / MANIFEST).exists()
+    drives = plan.launcher.drives
+    found = Asked(plan.cells if drives else ())
+    if is_new and drives:
         # Before the folder is made: a model that cannot be reached leaves nothing behind.
         found.preflight()
         prepare(cell.resolved for cell in plan.driven)
         if only_old_world(plan.output) and any(cell.choices.get("limits") != "none" for cell in plan.cells):
             print(_new_world(plan.output), file=sys.stderr)
-    asked = manifest_of(plan, found.served)
-    path = plan.output / plan.experiment
-    path = path / plan.run if plan.run else new_run_path(path, datetime.now())
-    with RunFolder(path, asked, {cell.folder: show(redact(cell.resolved)) for cell in plan.driven}) as folder:
+    asked = plan.launcher.noted(manifest_of(plan, found.served))
+    path = plan.folder or new_run_path(plan.output / plan.experiment, datetime.now())
+    configs = {cell.folder: show(redact(cell.resolved)) for cell in plan.driven}
+    with RunFolder(path, asked, configs, waits=plan.waits, joins=not drives) as folder:
+        if plan.part:
+            write_part(path, plan.part)
         # A cell that is there already keeps its folder, whatever it would be called in this run.
         names = dict(zip((cell.folder for cell in plan.driven), folder.manifest.rows, strict=True))
         cells = [replace(cell, folder=names[cell.folder]) for cell in plan.driven]
@@ -166,22 +219,22 @@ def drive(
         shown = [replace(cell, folder=names[cell.folder]) for cell in plan.cells]
         shown = [replace(cell, repeatable=False if cell.folder in measured else None) for cell in shown]
         damaged: list[DamagedEpisodeError] = []
-        records = _records(folder, cells, plan.seeds, damaged=damaged)
+        # One batch of all cells: no core waits for the last episode of a cell.
+        units = [Unit(cells[place].folder, seed) for place, seed in plan.units]
+        records = _records(folder, cells, units, damaged=damaged)
         if damaged:
             print(_again(damaged), file=sys.stderr)
-        # One batch of all cells: no core waits for the last episode of a cell.
-        units = [Unit(cell.folder, seed) for cell in cells for seed in plan.seeds]
         missing = [unit for unit in units if unit not in records]
         film = FilmEpisode(folder.path, {cell.folder: cell.resolved for cell in cells}) if plan.render else None
         unfilmed = [unit for unit in units if film and unit in records and film.lacks(unit)]
-        models = Asked(cell for cell in cells if any(unit.cell == cell.folder for unit in missing))
+        models = Asked(cell for cell in cells if drives and any(unit.cell == cell.folder for unit in missing))
         if not is_new:
             models.preflight()
         resolved = {cell.folder: growing(cell.resolved, folder.path, cell.folder) for cell in cells}
         resolved = {
             name: with_metrics(config, [c for c in shown if c.folder == name]) for name, config in resolved.items()
         }
-        prepare(resolved[name] for name in dict.fromkeys(unit.cell for unit in missing))
+        prepare(resolved[name] for name in dict.fromkeys(unit.cell for unit in missing if drives))
         save = SaveEpisode(folder.path, variables_in([cell.resolved for cell in cells]))
         job = Job({cell.folder: cell.labels for cell in cells}, (build or BuildObjects)(resolved), save, film)
         preload = [*modules_to_preload(plan.configs.values()), *(["codriving.animation.film"] if film else [])]
@@ -190,7 +243,7 @@ def drive(
         try:
             usage = models.usage if models.models else None
             with stopped_by_signals(), show_progress(Counter(unit.cell for unit in todo), usage) as update:
-                for part, launcher, workers in _places(missing, unfilmed, plan, models):
+                for part, launcher, workers in places(missing, unfilmed, plan, models):
                     failures = FailuresInARow(models.names, models.patience)
                     with closing(launcher.launch(part, job, workers, preload)) as reports:
                         for report in reports:
@@ -199,7 +252,7 @@ def drive(
                             failures.note(report)
                             update(report.unit.cell, report.ending is Ending.ERROR)
         except (KeyboardInterrupt, ModelError, MemoryFileError) as stop:
-            finished = len(_records(folder, cells, plan.seeds, records, damaged=[]))
+            finished = len(_records(folder, cells, units, records, damaged=[]))
             if isinstance(stop, UserError):
                 raise HaltedError(stop, folder.path, finished, len(units)) from stop
             number = stop.number if isinstance(stop, StopSignal) else SIGINT
@@ -210,88 +263,20 @@ def drive(
         for note in merged_notes(resolved[name] for name in dict.fromkeys(unit.cell for unit in missing)):
             print(note, file=sys.stderr)
         models.complain()
-        everything = _records(folder, cells, plan.seeds, records, errors=True)
+        everything = _records(folder, cells, units, records, errors=True)
         if gone := [unit for unit in units if unit not in everything]:
             raise removed(folder.path, f"{len(gone)} of {len(units)} episodes are not there any more")
-        by_folder = {
-            cell.folder: scored(
-                [(folder.episode(cell.folder, seed), everything[Unit(cell.folder, seed)]) for seed in plan.seeds],
-                resolved[cell.folder],
-            )
-            for cell in cells
-        }
-        rows = [by_folder[cell.folder] for cell in shown]
-        timings = [
-            [read_timing(folder.episode(cell.folder, record.seed)) for record in row]
-            for cell, row in zip(shown, rows, strict=True)
-        ]
-        driven = Driven(shown, rows, timings, folder.path, plan.notes, plan.config_dir)
-        outputs = make_outputs(driven)
-        tables = _write(plan, driven, outputs)
         kept = len(units) - len(missing)
-        return Finished(
+        ended = Ended(
             folder=folder.path,
-            tables=tables,
             driven=len(missing),
             kept=kept,
             failed=tuple(sorted(failed, key=lambda report: (report.unit.cell, report.unit.seed))),
-            left_out=folder.left_out(plan.seeds),
             changed=_changed(folder.manifest, asked, models.served) if kept and missing else (),
             filmed=sum(film.path(unit).exists() for unit in todo) if film else 0,
             unfilmed=tuple(unit for unit in units if film and film.lacks(unit)),
-            outputs=outputs,
         )
-
-
-def _places(
-    missing: Sequence[Unit], unfilmed: Sequence[Unit], plan: Plan, models: Asked
-) -> Iterator[tuple[Sequence[Unit], Launcher, int | str]]:
-    """Say what is driven where, and by how many workers.
-
-    Episodes whose method asks no language model are driven as the plan says. Those that ask one wait for its server
-    nearly all the time, and share one client with its limits: they are driven in threads of this process, as many at
-    once as requests may be under way, unless the plan says otherwise than in processes. Episodes that learn from one
-    another come one after the other, each cell in the order of its seeds.
-    """
-    in_order = {cell.folder for cell in plan.cells if learns(cell.resolved)} & {unit.cell for unit in missing}
-    independent = [unit for unit in missing if unit.cell not in in_order]
-    computed = [unit for unit in independent if unit.cell not in models.models]
-    waiting = [unit for unit in independent if unit.cell in models.models]
-    threads: Launcher = Threads() if isinstance(plan.launcher, Processes) else plan.launcher
-    if in_order:
-        yield [unit for unit in missing if unit.cell in in_order], Serial(), 1
-    if computed or unfilmed:
-        yield [*computed, *unfilmed], plan.launcher, plan.workers
-    if waiting:
-        yield waiting, threads, side_by_side(plan.workers, models.concurrency)
-
-
-def side_by_side(workers: int | str, concurrency: int) -> int:
-    """Return the number of episodes that ask a language model to drive at once."""
-    return concurrency if workers == "auto" else min(int(workers), concurrency)
-
-
-class FailuresInARow:
-    """Stops a batch: a language model that fails one episode after another will fail the next ones too."""
-
-    def __init__(self, models: Mapping[str, str], most: Mapping[str, int]) -> None:
-        self._models, self._most = models, most
-        self._failures: Counter[str] = Counter()
-
-    def note(self, report: Report) -> None:
-        """Take note of an episode that has ended."""
-        if (model := self._models.get(report.unit.cell)) is None:
-            return
-        name = f"{ModelUnavailableError.__name__}: "
-        if report.ending is not Ending.ERROR or not report.message.startswith(name):
-            self._failures[model] = 0
-            return
-        self._failures[model] += 1
-        if self._failures[model] >= self._most[model]:
-            raise ModelError(
-                f"{model} failed {self._failures[model]} episodes in a row (llm.failures_in_a_row), the last with: "
-                f"{report.message.removeprefix(name)}"
-            )
+        yield _DrivenBatch(folder, shown, resolved, everything, ended)
 
 
 def manifest_of(plan: Plan, served: dict[str, str]) -> Manifest:
@@ -321,7 +306,7 @@ def _changed(there: Manifest, here: Manifest, served: Mapping[str, str]) -> tupl
 def _records(
     folder: RunFolder,
     cells: Sequence[Cell],
-    seeds: Sequence[int],
+    units: Sequence[Unit],
     known: Mapping[Unit, EpisodeRecord] | None = None,
     errors: bool = False,
     damaged: list[DamagedEpisodeError] | None = None,
@@ -332,18 +317,17 @@ def _records(
         damaged: Takes what is wrong with each damaged episode, which then counts as not driven; None lets it be raised.
     """
     found = dict(known or {})
-    for cell in cells:
-        entry = cell.entry()
-        for unit in (Unit(cell.folder, seed) for seed in seeds):
-            try:
-                record = None if unit in found else folder.record(entry, unit.seed)
-            except DamagedEpisodeError as error:
-                if damaged is None:
-                    raise
-                damaged.append(error)
-                continue
-            if record is not None and (errors or record.outcome.ending is not Ending.ERROR):
-                found[unit] = record
+    entries = {cell.folder: cell.entry() for cell in cells}
+    for unit in units:
+        try:
+            record = None if unit in found else folder.record(entries[unit.cell], unit.seed)
+        except DamagedEpisodeError as error:
+            if damaged is None:
+                raise
+            damaged.append(error)
+            continue
+        if record is not None and (errors or record.outcome.ending is not Ending.ERROR):
+            found[unit] = record
     return found
 
 

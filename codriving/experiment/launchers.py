@@ -3,13 +3,21 @@
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Generator, Sequence
+from typing import ClassVar
 
 from codriving.datatypes import EpisodeLauncher
 from codriving.experiment.worker import Job, Report, Unit, Worker
+from codriving.runs import Manifest
 
 
 class Launcher(EpisodeLauncher, ABC):
     """Drives units somewhere; results are saved by the job, so they do not depend on where."""
+
+    drives: ClassVar[bool] = True  # Whether models and memories are needed; not where episodes are there already
+
+    def noted(self, manifest: Manifest) -> Manifest:
+        """Note in the manifest of a new run by what its episodes are driven, if not by this program here."""
+        return manifest
 
     def prepare(self, workers: int | str, units: int, preload: Sequence[str]) -> None:
         """Get ready in the background."""

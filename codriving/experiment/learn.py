@@ -4,6 +4,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 
 from codriving.config import Point, expand, experiments_dir, parse, sets_scenario, written
@@ -11,10 +12,12 @@ from codriving.errors import ConfigError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.controls import split_controls
 from codriving.experiment.drive import Driven, HaltedError, Interrupted, Outputs, drive
+from codriving.experiment.joining import Joining
 from codriving.experiment.memory_build import FIRST_SEED, MOST, count_of, refuse_forgetful, split_interactions
 from codriving.experiment.plan import make_plan
 from codriving.experiment.remembering import memory_file
-from codriving.experiment.run import print_configs, report, resume_command, stopped
+from codriving.experiment.run import as_part, finish, print_configs, report, resume_command, stopped
+from codriving.experiment.shards import refuse_nameless, without_shard
 from codriving.reports import (
     LearningRow,
     learning_figure,
@@ -37,12 +40,20 @@ ALTERED = ("verdicts", "situations", "rule")  # The controls, each of the most i
 LEVELS = "cda=full,intent_sharing,status_sharing"
 
 
-def run_learn(overrides: Sequence[str], config_dir: Path | None = None, show_only: bool = False) -> int:
+def run_learn(
+    overrides: Sequence[str],
+    config_dir: Path | None = None,
+    show_only: bool = False,
+    joins: Joining | None = None,
+) -> int:
     """Build memories, test with them, and print how success depends on what was learnt: ``codriving learn``.
+
+    Of several shards one learns, in order, while the others wait; then each drives its share of the tests.
 
     Args:
         overrides: ``key=value`` tokens, among them ``interactions=0,2,5``.
         show_only: Print the configs with which it learns and drive nothing: the files of the tests are yet to be made.
+        joins: Brings the episodes of the tests from parts; nothing is driven.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -61,21 +72,30 @@ def run_learn(overrides: Sequence[str], config_dir: Path | None = None, show_onl
     # One name for both runs, so that the same command goes on with both.
     named = [t.partition("=")[2] for t in others if t.partition("=")[0] == "run"]
     run = named[-1] if named else datetime.now().strftime("%Y-%m-%d_%H%M%S")
+    shares = without_shard(others) != others
+    if shares:
+        refuse_nameless(run if named else None)
     again = resume_command("learn", overrides, config_dir, run)
     try:
-        builds = make_plan(build_points(points, max(sizes), run), config_dir)
+        builds = make_plan(build_points(points, max(sizes), run), config_dir, drives=joins is None)
         refuse_forgetful(builds)
-        print(f"Learning: {builds.episodes} interactions in each of {len(builds.cells)} settings.", file=sys.stderr)
+        builds = joins.learnt(builds) if joins else replace(builds, waits=shares)
+        told = "; one shard learns, the others wait for it" if shares else ""
+        settings = f"{builds.episodes} interactions in each of {len(builds.cells)} settings"
+        if joins is None:
+            print(f"Learning: {settings}{told}.", file=sys.stderr)
         learnt = drive(builds)
         if learnt.failed:
             return report(learnt, again)
         files = [memory_file(learnt.folder, cell.folder) for cell in builds.cells]
-        tests = make_plan(frozen_points(points, files, sizes, run, controls), config_dir)
-        print(f"Testing: {tests.episodes} episodes in each of {len(tests.cells)} cells.", file=sys.stderr)
-        finished = drive(tests, lambda driven: learned(driven, len(points)))
     except (Interrupted, HaltedError) as stop:
         return stopped(stop, again)
-    return report(finished, again)
+    tests = make_plan(frozen_points(points, files, sizes, run, controls), config_dir, drives=joins is None)
+    tests = joins.joined(tests) if joins else as_part(tests, "learn", overrides, config_dir)
+    if joins is None:
+        print(f"Testing: {tests.episodes} episodes in each of {len(tests.cells)} cells.", file=sys.stderr)
+    make = partial(learned, settings=len(points))
+    return finish(tests, make, "learn", overrides, joins=joins is not None)
 
 
 def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:
@@ -93,7 +113,7 @@ def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tup
 def build_points(points: Sequence[Point], interactions: int, run: str) -> list[Point]:
     """Give what is driven to learn, one config a setting."""
     base = ("memory=online", "experiment=learn-memory")
-    own = ("experiment", "episodes", "seed", "run", "render")
+    own = ("experiment", "episodes", "seed", "run", "render", "shard")
     ends = (f"episodes={max(interactions, 1)}", f"seed={FIRST_SEED}", f"run={run}")
     return [
         replace(p, overrides=(*base, *(t for t in p.overrides if t.lstrip("+").partition("=")[0] not in own), *ends))

@@ -2,7 +2,8 @@
 
 import csv
 import json
-from collections.abc import Callable, Mapping, Sequence
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,7 +15,8 @@ from codriving.experiment.flows import is_flow, refuse_mixed
 from codriving.experiment.launchers import Launcher
 from codriving.experiment.objects import modules_to_preload
 from codriving.experiment.remembering import pinned
-from codriving.runs import MASK, redact
+from codriving.experiment.shards import check_shard, shard_of
+from codriving.runs import MASK, Part, Shard, redact
 
 T = TypeVar("T")
 
@@ -37,11 +39,30 @@ class Plan:
     notes: tuple[str, ...] = ()
     render: bool = False
     config_dir: Path | None = None  # Folder with YAMLs of the user
+    shard: Shard | None = None  # The share of it that is driven; None for all
+    part: Part | None = None  # What the part of a shard keeps of the command
+    waits: bool = False  # Whether to wait for another process that drives it
+
+    @property
+    def folder(self) -> Path | None:
+        """The folder in which it is driven; None if that is called after the time."""
+        if self.run is None:
+            return None
+        run = self.output / self.experiment / self.run
+        return run / self.shard.folder if self.shard else run
 
     @property
     def seeds(self) -> range:
         """The seeds of every cell."""
         return range(self.first_seed, self.first_seed + self.episodes)
+
+    @property
+    def units(self) -> Iterator[tuple[int, int]]:
+        """What is driven: the place of its cell among those that are driven, and its seed."""
+        for cell in range(len(self.driven)):
+            for place, seed in enumerate(self.seeds):
+                if self.shard is None or self.shard.has(cell, place):
+                    yield cell, seed
 
     @property
     def driven(self) -> tuple[Cell, ...]:
@@ -54,16 +75,22 @@ class Plan:
         return {cell.folder: cell.resolved for cell in self.cells}
 
 
-def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
-    """Plan a run with one cell a point."""
+def make_plan(points: Sequence[Point], config_dir: Path | None = None, drives: bool = True) -> Plan:
+    """Plan a run with one cell a point.
+
+    Args:
+        drives: Whether anything is going to be driven.
+    """
     configs, choices = composed(points, config_dir)
     first = configs[0]
     launcher = build(first["launcher"], Launcher, "launcher", first["plugins"])
-    if not _is_complete(first, len(configs)):
+    shard = shard_of(first["shard"], os.environ)
+    if drives and not _is_complete(first, len(configs)):
         # Imports take a second: let them pass while the configs are checked here.
         launcher.prepare(first["workers"], first["episodes"] * len(configs), modules_to_preload(configs))
     validated(points, configs)
     refuse_mixed(configs)
+    check_shard(shard, first["run"], configs)
     configs = each_cell(points, configs, pinned)
     cells = each_cell(points, list(zip(configs, points, choices, strict=True)), lambda part: make_cell(*part))
     return Plan(
@@ -82,6 +109,7 @@ def make_plan(points: Sequence[Point], config_dir: Path | None = None) -> Plan:
         ),
         render=first["render"],
         config_dir=config_dir,
+        shard=shard,
     )
 
 

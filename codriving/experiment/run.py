@@ -4,15 +4,17 @@ import shlex
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from codriving.config import Point, config_folder, expand, show
-from codriving.errors import ModelError
-from codriving.experiment.drive import Driven, Finished, HaltedError, Interrupted, Outputs, drive
+from codriving.errors import ConfigError, ModelError
+from codriving.experiment.drive import Driven, Ended, Finished, HaltedError, Interrupted, Outputs, drive, drive_part
 from codriving.experiment.plan import Plan, cell_name, composed, make_plan, validated
+from codriving.experiment.shards import KEY, refuse_secrets, without_shard
 from codriving.reports import print_table
+from codriving.runs import Part
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -60,19 +62,35 @@ def run_command(
     if show_only:
         print_configs(points, config_dir)
         return 0
-    plan = make_plan(points, config_dir)
+    plan = as_part(make_plan(points, config_dir), command.name, overrides, config_dir)
     command.check(plan)
+    return finish(plan, command.make_outputs, command.name, overrides)
+
+
+def finish(
+    plan: Plan, make_outputs: Callable[[Driven], Outputs], name: str, overrides: Sequence[str], joins: bool = False
+) -> int:
+    """Drive a plan, or its shard, and say what came of it and how to go on.
+
+    Args:
+        name: What is typed after ``codriving``.
+        joins: Whether nothing is driven, but parts are joined.
+    """
     # What cannot be repeated is not gone on with, but begun again.
     anew = any(cell.repeatable is False for cell in plan.cells)
 
     def again(folder: Path) -> str:
-        return resume_command(command.name, overrides, config_dir, None if anew else folder.name)
+        run = None if anew else plan.run or folder.name
+        return resume_command(name, overrides, plan.config_dir, run, plan.part)
 
     try:
-        finished = drive(plan, command.make_outputs)
+        if plan.part:
+            ended = drive_part(plan)
+            return report_part(ended, again(ended.folder), plan.part)
+        finished = drive(plan, make_outputs)
+        return report(finished, again(finished.folder))
     except (Interrupted, HaltedError) as stop:
-        return stopped(stop, again(stop.folder))
-    return report(finished, again(finished.folder))
+        return stopped(stop, shlex.join(["codriving", "join", str(stop.folder)]) if joins else again(stop.folder))
 
 
 def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> int:
@@ -119,11 +137,31 @@ def stopped(stop: Interrupted | HaltedError, again: str) -> int:
     return STOPPED + stop.signal
 
 
-def resume_command(name: str, overrides: Sequence[str], config_dir: Path | None, run: str | None) -> str:
-    """Return the command that goes on with a run, or drives it anew under the name of its time."""
+def resume_command(
+    name: str, overrides: Sequence[str], config_dir: Path | None, run: str | None, part: Part | None = None
+) -> str:
+    """Return the command that goes on with a run or a part of it, or drives it anew under the name of its time."""
     kept = [override for override in overrides if not override.lstrip("+").startswith("run=")]
+    if part:
+        # Outside of the array of a scheduler the place in it has to be written out.
+        kept = [*without_shard(kept), f"{KEY}={part.shard}"]
     folder = ["--config-dir", str(config_dir)] if config_dir else []
     return shlex.join(["codriving", *name.split(), *kept, *([f"run={run}"] if run else []), *folder])
+
+
+def as_part(plan: Plan, command: str, overrides: Sequence[str], config_dir: Path | None) -> Plan:
+    """Note in the plan of a shard what was typed, by which ``codriving join`` makes the tables of the run."""
+    if plan.shard is None:
+        return plan
+    if any(cell.repeatable is False for cell in plan.cells):
+        raise ConfigError(
+            "with llm.latency=measured no shard could go on, for times cannot be measured again; leave shard out, or "
+            "take another llm.latency"
+        )
+    kept = without_shard(overrides)
+    refuse_secrets(kept)
+    part = Part(plan.shard.index, plan.shard.count, command, tuple(kept), str(config_dir) if config_dir else None)
+    return replace(plan, part=part)
 
 
 def report(finished: Finished, again: str) -> int:
@@ -134,6 +172,30 @@ def report(finished: Finished, again: str) -> int:
         if index:
             print()
         print_table(printed)
+    _report_troubles(finished, again)
+    if finished.left_out:
+        print(f"{finished.left_out} more episodes in this run folder were not asked for and are left out of the table.")
+    print(f"Run folder: {finished.folder}")
+    return _code(finished)
+
+
+def report_part(ended: Ended, again: str, part: Part) -> int:
+    """Print what a part has to say that is complete; the last line tells its folder."""
+    there = f"{_counted(ended.driven + ended.kept, 'episode')} of shard {part.shard}"
+    print(f"{there}: {ended.driven} driven, {ended.kept} kept.")
+    _report_troubles(ended, again)
+    run = ended.folder.parent.parent
+    print(f"Once all parts are there: {shlex.join(['codriving', 'join', str(run)])}")
+    print(f"Part: {ended.folder}")
+    return _code(ended)
+
+
+def _code(ended: Ended) -> int:
+    return 1 if ended.failed or ended.unfilmed else 0
+
+
+def _report_troubles(finished: Ended, again: str) -> None:
+    """Print what went wrong, and what may differ."""
     episodes = f"{finished.folder}/episodes"
     if finished.failed:
         first = finished.failed[0]
@@ -153,10 +215,6 @@ def report(finished: Finished, again: str) -> int:
         print(
             f"{_counted(len(finished.unfilmed), 'episode')} could not be filmed (see {where}). Try again with: {again}"
         )
-    if finished.left_out:
-        print(f"{finished.left_out} more episodes in this run folder were not asked for and are left out of the table.")
-    print(f"Run folder: {finished.folder}")
-    return 1 if finished.failed or finished.unfilmed else 0
 
 
 def _counted(number: int, noun: str) -> str:

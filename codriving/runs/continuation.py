@@ -41,6 +41,16 @@ def continued(folder: Path, there: Manifest, here: Manifest) -> Manifest:
     return replace(there, episodes=here.episodes, rows=rows, cells=tuple(held.values()))
 
 
+def difference(there: Manifest, here: Manifest) -> str | None:
+    """Say in what the cells of a run that are asked for differ from those of another; None if each is one of these."""
+    for cell in here.cells:
+        if cell.folder in here.rows and not any(same_cell(old, cell) for old in there.cells):
+            others = [old for old in there.cells if not any(same_cell(old, one) for one in here.cells)] or there.cells
+            changed = [text for old in others if same_settings(old, cell) for text in changed_files(old, cell)]
+            return ", ".join(changed) or _difference(others, cell)
+    return None
+
+
 def other_behaviour(folder: Path, there: Manifest) -> RunFolderError:
     """Return the error for a folder to which this version must not add, since it would drive otherwise."""
     release = there.versions.get("codriving", "another release")

@@ -21,7 +21,10 @@ BEHAVIOUR = 5
 NEW_WORLD = 3  # The first number whose default world is not ``suite=paper``
 
 # Keys that do not change what is driven; templates and plug-ins are told by their content, metrics by their scores.
-WITHOUT_EFFECT = ("episodes", "workers", "output", "run", "launcher", "render", "prompts", "plugins", "metrics")
+WITHOUT_EFFECT = (
+    *("episodes", "workers", "output", "run", "shard", "launcher", "render"),
+    *("prompts", "plugins", "metrics"),
+)
 
 # Keys of ``llm`` likewise: with them a run goes on after a limit has been raised, or is replayed under its name.
 HOW_A_MODEL_IS_ASKED = (

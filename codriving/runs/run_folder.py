@@ -19,14 +19,18 @@ from codriving.runs.identity import BEHAVIOUR, CellEntry
 from codriving.runs.intact import RECORD, check_files
 from codriving.runs.json_files import damaged, encode
 from codriving.runs.manifest import MANIFEST, Manifest, read_manifest
+from codriving.runs.parts import PARTS
 
 CONFIG = "config.yaml"
 CONFIGS = "configs"
 
 
 @contextmanager
-def locked(folder: Path) -> Iterator[None]:
+def locked(folder: Path, waits: bool = False) -> Iterator[None]:
     """Keep other processes from writing a folder, with a file ``.lock`` in it; the system frees it when we die.
+
+    Args:
+        waits: Whether to wait for another process that holds it.
 
     Raises:
         RunFolderError: If another process holds it.
@@ -34,7 +38,7 @@ def locked(folder: Path) -> Iterator[None]:
     """
     # The lock is emptied when it is taken, and so would be what a link in its place leads to.
     within(folder, folder / ".lock")
-    lock = FileLock(folder / ".lock", timeout=0, mode=0o666)
+    lock = FileLock(folder / ".lock", timeout=-1 if waits else 0, mode=0o666)
     try:
         lock.acquire()
     except Timeout:
@@ -53,13 +57,25 @@ def locked(folder: Path) -> Iterator[None]:
 class RunFolder:
     """An open run folder; a context manager that holds the folder's lock."""
 
-    def __init__(self, path: Path, manifest: Manifest, configs: Mapping[str, str]) -> None:
-        """Open a folder, making it or going on in it."""
-        self.path = path
+    def __init__(
+        self,
+        path: Path,
+        manifest: Manifest,
+        configs: Mapping[str, str],
+        waits: bool = False,
+        joins: bool = False,
+    ) -> None:
+        """Open a folder, making it or going on in it.
+
+        Args:
+            waits: Whether to wait for another process that writes it.
+            joins: Whether the parts in it are joined.
+        """
+        self.path, self._joins = path, joins
         with ExitStack() as opening:
             try:
                 path.mkdir(parents=True, exist_ok=True)
-                opening.enter_context(locked(path))
+                opening.enter_context(locked(path, waits))
                 self.manifest = self._prepare(manifest, configs)
             except OSError as error:
                 raise unwritable(path, error) from error
@@ -97,6 +113,13 @@ class RunFolder:
         """Never write among files that no run of ours has made."""
         ours = {".lock", CONFIG, CONFIGS}
         for item in sorted(self.path.iterdir()):
+            if item.name == PARTS and self._joins:
+                continue
+            if item.name == PARTS:
+                raise RunFolderError(
+                    f"{self.path} holds parts of a run that have not been joined: codriving join {self.path}, or "
+                    "choose another run=<name>"
+                )
             if item.name not in ours and not item.name.startswith(PARTIAL):
                 raise RunFolderError(
                     f"{self.path} is not empty and has no {MANIFEST}, so it is no run folder (it holds {item.name}); "
@@ -125,25 +148,8 @@ class RunFolder:
         return episode_folder(self.path, cell, seed)
 
     def record(self, cell: CellEntry, seed: int) -> EpisodeRecord | None:
-        """Read the record of one episode and check that it is the one that belongs there.
-
-        Returns:
-            The record, or None if the episode has not been driven.
-
-        Raises:
-            DamagedEpisodeError: If it, or another file of the episode, is damaged; nothing is changed on disk.
-        """
-        folder = self.episode(cell.folder, seed)
-        if not folder.exists():
-            return None
-        within(self.path, folder)
-        record = read_record(folder)
-        check_files(folder, record)
-        expected = (cell.scenario, cell.method, cell.variant, cell.reasoner, seed)
-        found = (record.scenario, record.method, record.variant, record.reasoner, record.seed)
-        if found != expected:
-            raise damaged(folder / RECORD, f"it is the record of {found}, not of {expected}")
-        return record
+        """Read the record of one episode, as ``checked_record`` does."""
+        return checked_record(self.path, cell, seed)
 
     def left_out(self, seeds: Collection[int]) -> int:
         """Count the episodes that the folder holds beyond those that are asked for."""
@@ -159,6 +165,28 @@ class RunFolder:
 
     def __exit__(self, *_: object) -> None:
         self._lock.close()
+
+
+def checked_record(run: Path, cell: CellEntry, seed: int) -> EpisodeRecord | None:
+    """Read the record of one episode of a run and check that it is the one that belongs there.
+
+    Returns:
+        The record, or None if the episode has not been driven.
+
+    Raises:
+        DamagedEpisodeError: If it, or another file of the episode, is damaged; nothing is changed on disk.
+    """
+    folder = episode_folder(run, cell.folder, seed)
+    if not folder.exists():
+        return None
+    within(run, folder)
+    record = read_record(folder)
+    check_files(folder, record)
+    expected = (*cell.labels, seed)
+    found = (record.scenario, record.method, record.variant, record.reasoner, record.seed)
+    if found != expected:
+        raise damaged(folder / RECORD, f"it is the record of {found}, not of {expected}")
+    return record
 
 
 def within(run: Path, path: Path) -> Path:

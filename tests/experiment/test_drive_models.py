@@ -19,9 +19,10 @@ from toy_models import CLIENTS, EPISODES, BuildAsking, ToyClient, asking_cell, a
 from codriving.datatypes.record import Ending
 from codriving.errors import ModelError, ModelUnavailableError, SpendingLimitError
 from codriving.experiment import run
-from codriving.experiment.drive import HaltedError, drive, side_by_side
+from codriving.experiment.drive import HaltedError, drive
 from codriving.experiment.launchers import Serial
 from codriving.experiment.objects import model_of
+from codriving.experiment.places import side_by_side
 from codriving.experiment.processes import Processes
 from codriving.experiment.progress import show_progress
 from codriving.experiment.worker import Job, Report, Unit
