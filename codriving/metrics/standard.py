@@ -62,9 +62,9 @@ class StandardMetrics(Metric):
         step, tracks, success = trajectory.step, who_count(trajectory), outcome.ending is Ending.SUCCESS
         pets, nearest = driven_pets(trajectory), closest_recorded(trajectory)
         numbers = (
-            NamedNumber("ttc_min", nearest.ttc, "s", "higher", shown=True),
-            NamedNumber("drac_max", nearest.drac, "m/s2", "lower", shown=True),
-            NamedNumber("braking_max", hardest_braking(tracks, step), "m/s2", "lower", shown=True),
+            NamedNumber("ttc_min", nearest.ttc, "s", "higher"),
+            NamedNumber("drac_max", nearest.drac, "m/s2", "lower"),
+            NamedNumber("braking_max", hardest_braking(tracks, step), "m/s2", "lower"),
             NamedNumber("hard_braking", hard_braking(tracks, step, self.hard_braking), "", "lower"),
             NamedNumber("jerk", jerk(tracks, step), "m/s3", "lower"),
             NamedNumber("stops", stops(tracks), "", "lower"),

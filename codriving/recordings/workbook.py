@@ -58,19 +58,18 @@ def _sheets(path: Path) -> list[tuple[str, list[tuple[Any, ...]]]]:
     from openpyxl.utils.exceptions import InvalidFileException
 
     try:
-        with zipfile.ZipFile(path) as packed:
-            if sum(item.file_size for item in packed.infolist()) > _LARGEST:
-                raise RecordingError(f"{path} unpacks to more than 1 GB; that is no recording")
-        book = load_workbook(path, read_only=True, data_only=True)
-        try:
+        with path.open("rb") as file:
+            with zipfile.ZipFile(file) as packed:
+                if sum(item.file_size for item in packed.infolist()) > _LARGEST:
+                    raise RecordingError(f"{path} unpacks to more than 1 GB; that is no recording")
+            book = load_workbook(file, read_only=True, data_only=True)
             return [(sheet.title, list(sheet.iter_rows(values_only=True))) for sheet in book.worksheets]
-        finally:
-            book.close()
     except OSError as error:
         raise RecordingError(f"cannot read {path}: {error.strerror or error}; give a file that can be read") from error
     except (zipfile.BadZipFile, InvalidFileException, KeyError, ValueError, SyntaxError) as error:
         # SyntaxError is what the XML parser raises.
-        raise RecordingError(f"{path} is no .xlsx file that can be read ({error}); save it anew") from error
+        why = " ".join(str(error.__cause__ or error).split())
+        raise RecordingError(f"{path} is no .xlsx file that can be read ({why}); save it anew") from error
 
 
 def _sheet(path: Path, name: str, rows: list[tuple[Any, ...]]) -> _Sheet:

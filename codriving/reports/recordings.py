@@ -1,7 +1,7 @@
 """``codriving score``: the scores of recorded files, one row each, and of all together."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import median
 from typing import Any
 
@@ -12,6 +12,9 @@ from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.wording import three, two_digits
 
 ALL = "all"
+
+# What is on the screen besides, where a metric measures it.
+SHOWN = ("ttc_min", "drac_max", "braking_max", "hard_braking", "hard_braking_cavs")
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +87,8 @@ def score_table(files: Sequence[ScoredFiles]) -> Table:
         Column("files", lambda f: len(f.scores)),
     ]
     numbers = {number.name: number for one in files for score in one.scores for number in score.numbers}
-    return table([*known, *number_columns(numbers.values(), known)], rows)
+    further = (replace(number, shown=number.shown or name in SHOWN) for name, number in numbers.items())
+    return table([*known, *number_columns(further, known)], rows)
 
 
 def _pets(files: ScoredFiles) -> str:

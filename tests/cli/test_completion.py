@@ -11,6 +11,7 @@ from codriving.cli.completion import (
     complete_axis,
     complete_group,
     complete_in_line,
+    complete_layout,
     complete_override,
     complete_table,
 )
@@ -162,3 +163,8 @@ def test_keys_are_those_of_the_suite(tmp_path: Path) -> None:
     assert in_line("--config-dir", str(tmp_path), "suite=mine", incomplete="limits.") == []
     assert lateral in in_line("suite=paper", "limits=road", incomplete="limits.")
     assert in_line(incomplete="suite=p") == ["suite=paper"]
+
+
+def test_layouts_of_export_are_offered() -> None:
+    assert complete_layout("") == ["fcd", "interhub", "csv"]
+    assert complete_layout("f") == ["fcd"]

@@ -97,6 +97,8 @@ def test_a_run_has_the_scores_that_it_was_driven_with(run: Path, tmp_path: Path)
     for key in ("time_all", "hard_braking_cavs", "ttc_min", "success_forgiving"):
         assert all_of_it[key] == summary[key], key
     assert all_of_it["success"] == summary["success_rate"]
+    shown = call(run).stdout.splitlines()[1]
+    assert all(head in shown for head in ("ttc min [s]", "drac max [m/s2]", "hard braking cavs"))
     result = call(run, "metrics.near_miss=100", "--csv", out)
     assert "Delays, time_all and fairness need driving anew and are left out" in result.stdout
     changed = rows(out)[-1]

@@ -1,5 +1,6 @@
 """The authors' .xlsx: CAVs and places are read, and what earlier recordings left in a file is found."""
 
+import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -131,3 +132,15 @@ def test_what_is_no_workbook_is_refused(tmp_path: Path) -> None:
         read_workbook(path)
     with pytest.raises(RecordingError, match="cannot read"):
         read_workbook(tmp_path)
+
+
+def test_entities_are_not_expanded(tmp_path: Path) -> None:
+    path, spoilt = workbook(tmp_path / "a.xlsx", crossing(3)), tmp_path / "b.xlsx"
+    with zipfile.ZipFile(path) as before, zipfile.ZipFile(spoilt, "w") as after:
+        for name in before.namelist():
+            text = before.read(name)
+            if name == "xl/worksheets/sheet2.xml":
+                text = b'<!DOCTYPE a [<!ENTITY b "0">]>' + text
+            after.writestr(name, text)
+    with pytest.raises(RecordingError, match=r"is no \.xlsx file that can be read .*EntitiesForbidden"):
+        read_workbook(spoilt)
