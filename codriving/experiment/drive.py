@@ -156,23 +156,8 @@ def drive(
     """Drive a plan, or what is missing of it, with a progress display; prints no table."""
     if plan.shard:
         raise ConfigError("a shard has no tables that could be given back; drive it with codriving run, or all of it")
-    with _driven(plan, build) as batch:
-        rows = batch.rows(plan.seeds)
-        timings = [
-            [read_timing(batch.folder.episode(cell.folder, record.seed)) for record in row]
-            for cell, row in zip(batch.shown, rows, strict=True)
-        ]
-        driven = Driven(batch.shown, rows, timings, batch.folder.path, plan.notes, plan.config_dir)
-        outputs = make_outputs(driven)
-        tables = _write(plan, driven, outputs)
-        ended = {item.name: getattr(batch.ended, item.name) for item in fields(batch.ended)}
-        return Finished(**ended, tables=tables, left_out=batch.folder.left_out(plan.seeds), outputs=outputs)
-
-
-def drive_part(plan: Plan, build: _Build | None = None) -> Ended:
-    """Drive the shard of a plan into its part, or what is missing of it; ``codriving join`` makes the tables."""
-    with _driven(plan, build) as batch:
-        return batch.ended
+    with driving(plan, build) as batch:
+        return batch.finished(plan, make_outputs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,6 +170,19 @@ class _DrivenBatch:
     records: Mapping[Unit, EpisodeRecord]
     ended: Ended
 
+    def finished(self, plan: Plan, make_outputs: Callable[[Driven], Outputs]) -> Finished:
+        """Make the tables, and what a command makes beyond them."""
+        rows = self.rows(plan.seeds)
+        timings = [
+            [read_timing(self.folder.episode(cell.folder, record.seed)) for record in row]
+            for cell, row in zip(self.shown, rows, strict=True)
+        ]
+        driven = Driven(self.shown, rows, timings, self.folder.path, plan.notes, plan.config_dir)
+        outputs = make_outputs(driven)
+        tables = _write(plan, driven, outputs)
+        ended = {item.name: getattr(self.ended, item.name) for item in fields(self.ended)}
+        return Finished(**ended, tables=tables, left_out=self.folder.left_out(plan.seeds), outputs=outputs)
+
     def rows(self, seeds: Sequence[int]) -> list[list[EpisodeRecord]]:
         """Give the records of each row, scored by its metrics."""
         by_folder = {
@@ -195,8 +193,8 @@ class _DrivenBatch:
 
 
 @contextmanager
-def _driven(plan: Plan, build: _Build | None) -> Iterator[_DrivenBatch]:
-    """Drive what is missing."""
+def driving(plan: Plan, build: _Build | None = None) -> Iterator[_DrivenBatch]:
+    """Drive what is missing of a plan, or of its shard; the folder stays locked for the tables."""
     is_new = plan.folder is None or not (plan.folder / MANIFEST).exists()
     drives = plan.launcher.drives
     found = Asked(plan.cells if drives else ())

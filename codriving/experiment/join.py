@@ -53,7 +53,7 @@ def run_join(runs: Sequence[Path], options: JoinOptions) -> int:
         command = _command(parts[0], own)
         plan = joining.joined(make_plan(command.points(overrides, own), own, drives=False))
         command.check(plan)
-        return finish(plan, command.make_outputs, command.name, part.arguments, joins=True)
+        return finish(plan, command.make_outputs, command.name, part.arguments)
 
 
 def _refuse_code(found: FoundPart, options: JoinOptions) -> None:

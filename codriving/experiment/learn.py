@@ -95,7 +95,7 @@ def run_learn(
     if joins is None:
         print(f"Testing: {tests.episodes} episodes in each of {len(tests.cells)} cells.", file=sys.stderr)
     make = partial(learned, settings=len(points))
-    return finish(tests, make, "learn", overrides, joins=joins is not None)
+    return finish(tests, make, "learn", overrides)
 
 
 def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 from codriving.config import Point, config_folder, expand, show
 from codriving.errors import ConfigError, ModelError
-from codriving.experiment.drive import Driven, Ended, Finished, HaltedError, Interrupted, Outputs, drive, drive_part
+from codriving.experiment.drive import Driven, Ended, Finished, HaltedError, Interrupted, Outputs, drive, driving
 from codriving.experiment.plan import Plan, cell_name, composed, make_plan, validated
 from codriving.experiment.shards import KEY, refuse_secrets, without_shard
 from codriving.reports import print_table
-from codriving.runs import Part
+from codriving.runs import Part, Shard
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -64,33 +64,31 @@ def run_command(
         return 0
     plan = as_part(make_plan(points, config_dir), command.name, overrides, config_dir)
     command.check(plan)
-    return finish(plan, command.make_outputs, command.name, overrides)
-
-
-def finish(
-    plan: Plan, make_outputs: Callable[[Driven], Outputs], name: str, overrides: Sequence[str], joins: bool = False
-) -> int:
-    """Drive a plan, or its shard, and say what came of it and how to go on.
-
-    Args:
-        name: What is typed after ``codriving``.
-        joins: Whether nothing is driven, but parts are joined.
-    """
-    # What cannot be repeated is not gone on with, but begun again.
-    anew = any(cell.repeatable is False for cell in plan.cells)
-
-    def again(folder: Path) -> str:
-        run = None if anew else plan.run or folder.name
-        return resume_command(name, overrides, plan.config_dir, run, plan.part)
-
     try:
-        if plan.part:
-            ended = drive_part(plan)
-            return report_part(ended, again(ended.folder), plan.part)
-        finished = drive(plan, make_outputs)
-        return report(finished, again(finished.folder))
+        with driving(plan) as batch:
+            ended = batch.ended if plan.part else batch.finished(plan, command.make_outputs)
     except (Interrupted, HaltedError) as stop:
-        return stopped(stop, shlex.join(["codriving", "join", str(stop.folder)]) if joins else again(stop.folder))
+        return stopped(stop, how_to_go_on(plan, command.name, overrides, stop.folder))
+    again = how_to_go_on(plan, command.name, overrides, ended.folder)
+    return report(ended, again) if isinstance(ended, Finished) else report_part(ended, again, plan.shard)
+
+
+def finish(plan: Plan, make_outputs: Callable[[Driven], Outputs], name: str, overrides: Sequence[str]) -> int:
+    """Drive the plan of a command that is called so, or its shard, or join its parts, and say what came of it."""
+    try:
+        with driving(plan) as batch:
+            ended = batch.ended if plan.part else batch.finished(plan, make_outputs)
+    except (Interrupted, HaltedError) as stop:
+        join = shlex.join(["codriving", "join", str(stop.folder)])
+        return stopped(stop, how_to_go_on(plan, name, overrides, stop.folder) if plan.launcher.drives else join)
+    again = how_to_go_on(plan, name, overrides, ended.folder)
+    return report(ended, again) if isinstance(ended, Finished) else report_part(ended, again, plan.shard)
+
+
+def how_to_go_on(plan: Plan, name: str, overrides: Sequence[str], folder: Path) -> str:
+    """Give the command that goes on with a run; what cannot be repeated is begun again."""
+    anew = any(cell.repeatable is False for cell in plan.cells)
+    return resume_command(name, overrides, plan.config_dir, None if anew else plan.run or folder.name, plan.part)
 
 
 def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> int:
@@ -179,9 +177,9 @@ def report(finished: Finished, again: str) -> int:
     return _code(finished)
 
 
-def report_part(ended: Ended, again: str, part: Part) -> int:
+def report_part(ended: Ended, again: str, shard: Shard | None) -> int:
     """Print what a part has to say that is complete; the last line tells its folder."""
-    there = f"{_counted(ended.driven + ended.kept, 'episode')} of shard {part.shard}"
+    there = f"{_counted(ended.driven + ended.kept, 'episode')} of shard {shard}"
     print(f"{there}: {ended.driven} driven, {ended.kept} kept.")
     _report_troubles(ended, again)
     run = ended.folder.parent.parent

@@ -19,6 +19,7 @@ PLAIN: dict[str, Any] = {
     "render": False,
     "prompts": None,
     "plugins": [],
+    "shard": None,
     **{name: {"_target_": "codriving.x.Y"} for name in NODES},
 }
 

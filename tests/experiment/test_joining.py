@@ -18,7 +18,7 @@ from toy_plan import toy, toy_cell, toy_plan
 from codriving.errors import RunFolderError, UserError
 from codriving.experiment import join
 from codriving.experiment.cells import Cell
-from codriving.experiment.drive import drive, drive_part
+from codriving.experiment.drive import drive, driving
 from codriving.experiment.join import JoinOptions, run_join
 from codriving.experiment.launchers import Serial
 from codriving.experiment.run import RUN, run_command
@@ -43,7 +43,8 @@ def shard(
     """Drive a shard of the toy run; returns its part."""
     plan = replace(toy_plan(output, cells=tuple(cells), episodes=episodes), launcher=Serial())
     plan = replace(plan, shard=Shard(index, count), part=Part(index, count, "run", tuple(typed), None))
-    return drive_part(plan, build=toy(**settings)).folder
+    with driving(plan, build=toy(**settings)) as batch:
+        return batch.ended.folder
 
 
 @pytest.fixture
@@ -274,7 +275,8 @@ def test_a_run_grows_by_its_shards(tmp_path: Path, episodes: list[int], referenc
 )
 def test_a_part_chooses_no_code(tmp_path: Path, part: Part, said: str) -> None:
     plan = replace(toy_plan(tmp_path, cells=CELLS, episodes=1), launcher=Serial(), shard=Shard(1, 1), part=part)
-    run = drive_part(plan, build=toy()).folder.parent.parent
+    with driving(plan, build=toy()) as batch:
+        run = batch.ended.folder.parent.parent
     with pytest.raises(UserError, match=said):
         joined(run)
 
