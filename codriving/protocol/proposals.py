@@ -61,8 +61,12 @@ class Proposals:
         if current is None or (response.number, response.round) != (current.number, current.round):
             return []
         known = self._answers.get(response.sender)
-        if known is not None and known.pairs == response.pairs:
-            return []  # Said again, since it was asked again
+        if known is not None:
+            new = tuple(p for p in response.pairs if (p.first, p.second) not in _named(known.pairs))
+            if not new:
+                return []  # Said again, since it was asked again, or overtaken
+            # What is withdrawn comes on top of what was rejected before.
+            response = replace(known, pairs=known.pairs + new, accepted=False)
         self._answers[response.sender] = response
         if not _parties(current.pairs) <= self._answers.keys():
             return []

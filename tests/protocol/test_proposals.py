@@ -130,6 +130,19 @@ def test_a_rejection_of_a_pair_that_is_no_longer_open_is_none(junction: Junction
     assert (agreement.number, pairs(agreement)) == (1, [("CAV1", "CAV2")])
 
 
+def test_what_is_withdrawn_comes_on_top_of_what_was_rejected_before(junction: Junction) -> None:
+    made = proposals(rounds=1)
+    step(junction, made, 0.0, FIRST, SECOND, THIRD)
+    said(made, "CAV2")
+    said(made, "CAV1", "CAV3 CAV1")
+    [agreement] = said(made, "CAV3")
+    assert pairs(agreement) == [("CAV1", "CAV2")]
+    # Now CAV1 can keep none of the two, and an acceptance from before comes late.
+    assert said(made, "CAV1", "CAV2 CAV1") == []
+    assert said(made, "CAV1") == []
+    assert step(junction, made, 0.5, FIRST, SECOND, THIRD) == []
+
+
 def test_an_order_that_changes_is_proposed_anew(junction: Junction) -> None:
     made = proposals()
     step(junction, made, 0.0, FIRST, SECOND)
