@@ -92,7 +92,7 @@ class Negotiator(Party):
     def agreed(self, time: float) -> dict[Pair, str]:
         """Return the pairs of all agreements in force, those of a newer one in the place of an older one's."""
         found: dict[frozenset[str], tuple[Pair, str]] = {}
-        for agreement in sorted(self._held.values(), key=lambda a: (a.time, a.sender)):
+        for agreement in sorted((a for a in self._held.values() if a.holds(time)), key=lambda a: (a.time, a.sender)):
             told = f"directed by {agreement.sender}, {agreement.authority}"
             how = told if agreement.authority else f"agreed with {agreement.sender}"
             for p in agreement.pairs:

@@ -100,6 +100,15 @@ def test_of_the_agreements_of_several_the_newer_one_counts_pair_by_pair(junction
     assert made.agreed(0.5).keys() == {("CAV2", "CAV1"), ("CAV3", "CAV2")}
 
 
+def test_an_agreement_ends_in_time_where_a_party_does_not_look_at_each_step(junction: Junction) -> None:
+    made = party(junction, "CAV2", *EARLY)
+    made.hear([agreement("CAV1 CAV2", time=0.2)], 0.3)
+    moment = junction.thoughts(*EARLY).moment(3.3)
+    problem = pose(moment)
+    assert ("CAV1", "CAV2") in made.with_agreed(problem, 3.2).instance.before
+    assert ("CAV1", "CAV2") not in made.with_agreed(problem, 3.3).instance.before
+
+
 def test_what_has_become_impossible_is_told_to_the_one_that_coordinates(junction: Junction) -> None:
     made = party(junction, "CAV2", *EARLY)
     made.hear([agreement("CAV1 CAV2")], 0.3)
