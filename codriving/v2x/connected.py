@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from codriving.datatypes import (
+    UNITS,
     Account,
     Action,
     Communication,
@@ -161,7 +162,8 @@ class Connected(Wrapped):
         return deliberation
 
     def _answers(self, name: str) -> bool:
-        return self._misconduct.kind_of(name) != "never_answers"
+        # Of all that take part only CAVs misbehave: no unit that coordinates is drawn for it.
+        return name in UNITS or self._misconduct.kind_of(name) != "never_answers"
 
     def conclude(self, world: WorldState, outcome: Outcome) -> Account:
         counts, lines = _together([self._sent(), *(copy.conclude(world, outcome) for copy in self._copies.values())])

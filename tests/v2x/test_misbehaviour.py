@@ -319,3 +319,18 @@ def test_who_does_not_yield_accepts_what_is_proposed_and_who_never_answers_says_
     assert not [sender for sender, _ in answers["never_answers"] if sender == "CAV2"]
     assert driven["does_not_yield"][1] == "FASTER"
     assert driven[""][1] != "FASTER"
+
+
+@pytest.mark.parametrize("by", ["road_side_unit", "fleet"])
+def test_the_unit_that_coordinates_answers_whatever_the_share_of_cavs_that_do_not(junction: Junction, by: str) -> None:
+    made = connected("v2x.misbehaviour.never_answers=1", f"v2x.coordination.by={by}")
+    made.reset(junction.road_map, junction.model, 0)
+    made._misconduct._kinds = {"CAV1": "", "CAV2": ""}
+    cars = [car("CAV1", "south-north", 40.0, 8.0), car("CAV2", "west-east", 42.0, 8.0)]
+    kinds: set[str] = set()
+    for tick in range(16):
+        world = junction.world(*[replace(c, place=c.place + tick / 10 * c.speed) for c in cars], time=tick / 10)
+        made._hear(world)
+        if tick % 5 == 0:
+            kinds |= {message["kind"] for message in made.act(world).as_dict()["said"]}
+    assert kinds == {"proposal", "acceptance", "agreement"}
