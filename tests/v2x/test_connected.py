@@ -17,6 +17,7 @@ from codriving.datatypes.world import Action, Manner, WorldState
 from codriving.environment.environment import Environment
 from codriving.experiment.objects import make_objects
 from codriving.v2x.connected import V2X, Connected
+from codriving.v2x.misbehaviour import Misconduct
 
 SCENARIOS = ("intersection", "roundabout", "highway", "merge")
 
@@ -57,6 +58,22 @@ def test_without_age_loss_noise_and_end_of_range_all_is_as_without_a_channel(sce
     assert lines[0] == lines[1]
     assert told
     assert {(t["age"], t["behind"], t["ahead"], t["slower"], t["faster"]) for t in told} == {(0.0,) * 5}
+
+
+def test_with_all_shares_0_a_run_is_as_if_no_cav_could_misbehave(monkeypatch: pytest.MonkeyPatch) -> None:
+    typed = ("scenario=intersection", "v2x=urban")
+    found, _ = driven(*typed, decisions=8)
+    monkeypatch.setattr(Misconduct, "kind_of", lambda *_: "")
+    monkeypatch.setattr(Misconduct, "sent", lambda _self, _cav, messages, _world: messages)
+    monkeypatch.setattr(Misconduct, "ghosts", lambda *_: iter(()))
+    without, _ = driven(*typed, decisions=8)
+    assert (found.worlds, found.actions) == (without.worlds, without.actions)
+    assert [(step.as_dict(), step.counts) for step in found.steps] == [
+        (step.as_dict(), step.counts) for step in without.steps
+    ]
+    monkeypatch.setattr(Misconduct, "sent", lambda *_: ())
+    silent, _ = driven(*typed, decisions=8)
+    assert silent.steps[-1].as_dict() != found.steps[-1].as_dict()
 
 
 def _known(entry: Mapping[str, Any]) -> list[dict[str, Any]]:
