@@ -2,7 +2,9 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from math import cos, sin, sqrt
+from math import cos, hypot, pi, sin, sqrt
+
+import numpy as np
 
 from codriving.datatypes import Action, DrivingModel, Intent, Kind, Told, VehicleState, WorldState
 from codriving.geometry import RoadMap
@@ -18,6 +20,21 @@ from codriving.v2x.messages import (
 from codriving.v2x.settings import ChannelSettings
 
 PULLS_AWAY = 3.0  # How hard a human driver without limits accelerates from a standstill at most (IDM) [m/s2]
+
+SLIP = 0.3  # Angle between the heading of a vehicle and the direction in which its centre moves, at most [rad]
+
+TYRES = 12.0  # Largest lateral acceleration where vehicles have no limits [m/s2]
+
+LARGEST = 15.0  # Within so much of a told place sight is still judged by eight points [m]
+
+
+@dataclass(frozen=True, slots=True)
+class ToldPlace:
+    """Where a vehicle has come to that went straight on since it was told of."""
+
+    x: float  # [m]
+    y: float  # [m]
+    doubt: float  # How far from there it may be, whatever it has done since [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +53,7 @@ class KnownWorld:
         self._heard: dict[str, _Heard] = {}
         self._intents: dict[str, tuple[Intent, tuple[Action, ...], float]] = {}
         self._routes: dict[str, tuple[str, float]] = {}  # Of human drivers
+        self._lateral = TYRES if model.limits is None else model.limits.lateral
 
     def hear(self, packets: Iterable[Packet], time: float) -> None:
         """Take in what has reached the CAV, and forget what is no longer valid."""
@@ -69,7 +87,7 @@ class KnownWorld:
         self._routes.pop(sender, None)
 
     def of(self, world: WorldState) -> WorldState:
-        """Return what is known of a world."""
+        """Return what is known of a world; a vehicle is forgotten where the sensors see that it is not there."""
         own = [cav for cav in world.cavs if cav.id == self.ego]
         vehicles, signals, told = [*own], {}, {}
         intents, available = dict[str, Intent](), dict[str, tuple[Action, ...]]()
@@ -81,10 +99,14 @@ class KnownWorld:
                 if (way := self._way(v.id)) is not None:
                     told[v.id] = Told(0.0, world.time - way[1], seen=True)
         seen = {v.id for v in vehicles}
-        for name, heard in self._heard.items():
+        behind_buildings = {name for pair in world.hidden if self.ego in pair for name in pair}
+        for name, heard in list(self._heard.items()):
             if name in seen:
                 continue
             age = world.time - heard.time
+            if name not in behind_buildings and any(self.sees_all_of(c, self.place_of(heard.state, age)) for c in own):
+                del self._heard[name]
+                continue
             state = self._brought_up(heard.state, age)
             if state is None:
                 continue
@@ -128,6 +150,25 @@ class KnownWorld:
             return None
         x, y, heading = self._road_map.paths[route].place(place)
         return replace(v, x=x, y=y, heading=heading, lane=self._road_map.lane_at(route, place))
+
+    def place_of(self, v: VehicleState, age: float) -> ToldPlace:
+        """Say where a vehicle may be some time [s] after it was told of."""
+        way, told = v.speed * age, self.told_of(v, age, None)
+        turned = SLIP * way + self._lateral * age**2 / 2
+        doubt = max(told.behind, told.ahead) + turned + self._settings.place_tolerance
+        return ToldPlace(v.x + way * cos(v.heading), v.y + way * sin(v.heading), doubt)
+
+    def sees_all_of(self, own: VehicleState, place: ToldPlace) -> bool:
+        """Whether the CAV's sensors see each place at which a vehicle may be."""
+        x, y, doubt = place.x, place.y, place.doubt
+        if doubt > LARGEST or hypot(x - own.x, y - own.y) + doubt > self._model.detection_range:
+            return False
+        if self._road_map.sight is None:
+            return True
+        around = np.arange(8) * pi / 4
+        xs = np.concatenate(([own.x, x], x + doubt * np.cos(around)))
+        ys = np.concatenate(([own.y, y], y + doubt * np.sin(around)))
+        return not self._road_map.sight.hidden(xs, ys)[0].any()
 
     def told_of(self, v: VehicleState, age: float, intent_age: float | None) -> Told:
         """Say how far from where it is taken to be a vehicle may be, whatever it has done since."""

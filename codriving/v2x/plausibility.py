@@ -1,9 +1,7 @@
 """Does what others say agree with what a CAV's own sensors see? Who says something else is not believed for a while."""
 
 from collections.abc import Iterable, Mapping
-from math import cos, hypot, pi, sin
-
-import numpy as np
+from math import hypot
 
 from codriving.datatypes import DrivingModel, Intent, VehicleState, WorldState, beside
 from codriving.geometry import RoadMap
@@ -17,12 +15,6 @@ from codriving.v2x.messages import (
 )
 from codriving.v2x.settings import ChannelSettings
 
-SLIP = 0.3  # Angle between the heading of a vehicle and the direction in which its centre moves, at most [rad]
-
-TYRES = 12.0  # Largest lateral acceleration where vehicles have no limits [m/s2]
-
-LARGEST = 15.0  # Within so much of a claimed place sight is still judged by eight points [m]
-
 PEDAL = 1.25  # The acceleration of the last step exceeds what the speed asks for after it, by at most this factor
 
 
@@ -34,7 +26,6 @@ class Plausibility:
     ) -> None:
         self._knowledge, self._settings, self._road_map, self._model = knowledge, settings, road_map, model
         self._until: dict[str, float] = {}
-        self._lateral = TYRES if model.limits is None else model.limits.lateral
 
     def believed(self, packets: Iterable[Packet], world: WorldState) -> tuple[list[Packet], list[Packet]]:
         """Part packets whose sender is believed from those whose sender is not, and forget what the latter said.
@@ -69,27 +60,10 @@ class Plausibility:
 
     def _misplaced(self, v: VehicleState, age: float, own: VehicleState, seen: Mapping[str, VehicleState]) -> bool:
         """Whether a vehicle is seen elsewhere, or where it is said to be none is seen."""
-        way = v.speed * age
-        x, y = v.x + way * cos(v.heading), v.y + way * sin(v.heading)
-        told = self._knowledge.told_of(v, age, None)
-        turned = SLIP * way + self._lateral * age**2 / 2
-        doubt = max(told.behind, told.ahead) + turned + self._settings.place_tolerance
+        place = self._knowledge.place_of(v, age)
         if (found := seen.get(v.id)) is not None:
-            return hypot(found.x - x, found.y - y) > doubt
-        return self._overlooks(own, x, y, doubt) and not self._may_have_left(v, way + doubt)
-
-    def _overlooks(self, own: VehicleState, x: float, y: float, doubt: float) -> bool:
-        """Whether the CAV's sensors see all of the places around one."""
-        if doubt > LARGEST or hypot(x - own.x, y - own.y) + doubt > self._model.detection_range:
-            return False
-        if self._road_map.sight is None:
-            return True
-        around = np.arange(8) * pi / 4
-        xs, ys = (
-            np.concatenate(([own.x, x], x + doubt * np.cos(around))),
-            np.concatenate(([own.y, y], y + doubt * np.sin(around))),
-        )
-        return not self._road_map.sight.hidden(xs, ys)[0].any()
+            return hypot(found.x - place.x, found.y - place.y) > place.doubt
+        return self._knowledge.sees_all_of(own, place) and not self._may_have_left(v, v.speed * age + place.doubt)
 
     def _may_have_left(self, v: VehicleState, way: float) -> bool:
         """Whether a vehicle may have come to the end of a route since it was seen."""

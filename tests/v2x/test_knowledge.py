@@ -1,5 +1,6 @@
 """What one CAV knows: its own sensors first, messages for the rest, and what is old brought up to the present."""
 
+from collections.abc import Callable
 from math import pi, sqrt
 
 import pytest
@@ -8,6 +9,7 @@ from worlds import Junction, car
 
 from codriving.datatypes.parts import Shares
 from codriving.datatypes.world import Kind, Told, VehicleState, WorldState
+from codriving.environment.environment import Environment
 
 EGO = car("CAV1", "south-north", 30.0, 8.0)
 FAR = car("CAV2", "south-north", 115.0, 6.0, 9.0)
@@ -98,6 +100,32 @@ def test_what_has_not_been_heard_of_and_is_not_seen_is_not_there(junction: Junct
     assert [v.id for v in radio.look(3.0, EGO, FAR, NEAR).vehicles] == ["CAV1", "CAV2", "CAV3"]
     forgotten = radio.look(3.1, EGO, FAR, NEAR)
     assert {v.id: v.kind for v in forgotten.vehicles} == {"CAV1": Kind.CAV, "CAV3": Kind.HDV}
+
+
+@pytest.mark.parametrize(("gap", "there"), [(30.0, False), (45.0, True), (60.0, True)])
+def test_a_vehicle_is_forgotten_where_sensors_see_that_it_is_not_there(
+    junction: Junction, gap: float, there: bool
+) -> None:
+    # Sensors see 50 m; 0.5 s later a vehicle may be more than 5 m from where it is taken to be.
+    radio = Radio(junction, channel_settings(age=0.5), shares=Shares(states=True))
+    radio.send(0.0, EGO, car("CAV2", "south-north", EGO.place + gap, 2.0))
+    # Something between hides it.
+    behind = radio.look(0.5, EGO, hidden=(("CAV1", "CAV2"),))
+    assert [v.id for v in behind.vehicles] == ["CAV1", "CAV2"]
+    known = radio.look(0.5, EGO)
+    assert [v.id for v in known.vehicles] == ["CAV1", "CAV2"][: 1 + there]
+    assert set(known.told) == {"CAV2"} if there else not known.told
+
+
+@pytest.mark.parametrize(("blind", "there"), [("null", False), ("8", True)])
+def test_a_place_behind_a_building_is_not_seen_to_be_empty(
+    blind: str, there: bool, configured: Callable[..., Environment]
+) -> None:
+    corner = Junction(configured("scenario=intersection", f"scenario.blind={blind}"))
+    radio = Radio(corner, shares=Shares(states=True))
+    near = car("CAV1", "south-north", 85.0, 5.0)
+    radio.send(0.0, near, car("CAV2", "west-east", 85.0, 5.0))
+    assert [v.id for v in radio.look(0.0, near).vehicles] == ["CAV1", "CAV2"][: 1 + there]
 
 
 def test_a_vehicle_that_has_passed_its_goal_since_has_left(junction: Junction) -> None:

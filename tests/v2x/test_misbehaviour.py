@@ -70,12 +70,14 @@ def actions(
     return (honest, misled, looking), found[2].counts["messages_rejected"]
 
 
+# Sensors that see 30 m see that there is no vehicle where it is said to be; those that see 10 m do not.
+@pytest.mark.parametrize(("reach", "misled", "rejected"), [(30, "FASTER", 3), (10, "SLOWER", 0)])
 def test_a_false_position_delays_who_cannot_see_that_there_is_no_vehicle_where_it_is_said_to_be(
-    configured: Callable[..., Environment],
+    reach: int, misled: str, rejected: int, configured: Callable[..., Environment]
 ) -> None:
-    near = Junction(configured("scenario=intersection", "scenario.detection_range=30"))
+    near = Junction(configured("scenario=intersection", f"scenario.detection_range={reach}"))
     cars = [car("CAV1", "south-north", 86.0, 7.0, 9.0), car("CAV2", "west-east", 78.0, 7.0, 9.0)]
-    assert actions(near, cars, "lies_position", seed=2) == (("FASTER", "SLOWER", "FASTER"), 3)
+    assert actions(near, cars, "lies_position", seed=2) == (("FASTER", misled, misled), rejected)
 
 
 def test_a_false_route_lets_go_first_who_does_not_see_that_the_turn_has_begun(junction: Junction) -> None:
@@ -83,11 +85,16 @@ def test_a_false_route_lets_go_first_who_does_not_see_that_the_turn_has_begun(ju
     assert actions(junction, cars, "lies_intent") == (("SLOWER", "FASTER", "SLOWER"), 3)
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_a_ghost_is_braked_for_unless_sensors_see_that_the_way_is_free(junction: Junction, seed: int) -> None:
+# In the name of a sender that is not there (1 message), or among what the liar says that it sees (3).
+@pytest.mark.parametrize(("seed", "messages"), [(0, 3), (1, 1)])
+@pytest.mark.parametrize(("reach", "misled"), [(50, "FASTER"), (15, "SLOWER")])
+def test_a_ghost_is_braked_for_unless_sensors_see_that_the_way_is_free(
+    seed: int, messages: int, reach: int, misled: str, configured: Callable[..., Environment]
+) -> None:
+    there = Junction(configured("scenario=intersection", f"scenario.detection_range={reach}"))
     cars = [car("CAV1", "north-south", 88.0, 7.0, 9.0), car("CAV2", "south-west", 60.0, 5.0, 6.0)]
-    # In the name of a sender that is not there (1 message), or among what the liar says that it sees (3).
-    assert actions(junction, cars, "ghost", seed) == (("FASTER", "SLOWER", "FASTER"), 3 if seed == 0 else 1)
+    found = messages if misled == "FASTER" else 0
+    assert actions(there, cars, "ghost", seed) == (("FASTER", misled, misled), found)
 
 
 def test_who_does_not_yield_drives_where_it_agreed_to_wait(junction: Junction) -> None:
