@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from codriving.datatypes import UNITS
+
 MOST = 3  # Proposals that are shown at once
 
 
@@ -23,7 +25,9 @@ class Talk:
                 self._take_in(message)
         cavs = [entry for entry in line.get("cavs", ()) if isinstance(entry, Mapping)]
         there = {str(entry.get("id")) for entry in cavs}
-        words = [text for sender in sorted(self._asked) if (text := self._proposed(sender, there))][:MOST]
+        # A CAV that has left proposes no more.
+        speaking = [sender for sender in sorted(self._asked) if sender in there or sender in UNITS]
+        words = [text for sender in speaking if (text := self._proposed(sender, there))][:MOST]
         return (*words, *_held(cavs))
 
     def _take_in(self, message: Mapping[str, Any]) -> None:

@@ -37,6 +37,14 @@ def test_who_accepts_who_rejects_and_who_is_silent() -> None:
     )
 
 
+def test_who_has_left_proposes_no_more() -> None:
+    talk = Talk()
+    asked = message("proposal", "CAV3", ["CAV1", "CAV2"])
+    assert talk.after(line(asked)) == ("CAV3 proposes (1, round 1): no answer of CAV1, CAV2",)
+    left = line()
+    assert talk.after({**left, "cavs": left["cavs"][:2]}) == ()
+
+
 def test_an_instruction_names_its_authority() -> None:
     said = message("instruction", "RSU", ["CAV1"])
     assert Talk().after(line(said, held=("CAV1", "CAV2"), authority="a road side unit")) == (
