@@ -1,6 +1,7 @@
 """The settings of a channel; with ``v2x=perfect`` there is none, and no message is sent at all."""
 
 from dataclasses import dataclass, fields
+from re import fullmatch
 from typing import Literal
 
 from codriving.errors import require, require_range
@@ -13,7 +14,7 @@ class OrderSettings:
     """How CAVs agree on who goes first.
 
     Raises:
-        ConfigError: If a value is out of its range, or an emergency vehicle is named without one who coordinates.
+        ConfigError: If a value is out of its range, an emergency vehicle is no CAV, or is named without one who coordinates.
     """
 
     by: Literal["road_side_unit", "fleet", "cav", "distributed", "none"]  # Who coordinates
@@ -28,6 +29,10 @@ class OrderSettings:
         require_range("validity", self.validity, 0.1, 60, " s")
         for key in ("order_bytes", "pair_bytes"):
             require_range(key, getattr(self, key), 0, 100_000)
+        require(
+            self.emergency is None or fullmatch(r"CAV[1-9]\d*", self.emergency) is not None,
+            f"emergency must be the name of a CAV, for instance CAV1, or null, got {self.emergency}",
+        )
         require(
             self.emergency is None or self.by != NONE,
             "emergency takes one who coordinates; set by=road_side_unit, fleet, cav or distributed",

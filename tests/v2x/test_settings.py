@@ -80,6 +80,15 @@ def test_shares_of_misbehaviour_out_of_their_range_are_refused_by_their_full_nam
     assert str(refused.value) == said
 
 
+@pytest.mark.parametrize("name", ["cav1", "HDV1", "CAV0", "RSU"])
+def test_an_emergency_vehicle_that_is_no_cav_is_refused(name: str) -> None:
+    node = compose(["v2x=good", f"v2x.coordination.emergency={name}"])["v2x"]
+    with pytest.raises(ConfigError) as refused:
+        build(node, Communication, "v2x")
+    said = f"v2x.coordination.emergency must be the name of a CAV, for instance CAV1, or null, got {name}"
+    assert str(refused.value) == said
+
+
 def test_no_cav_misbehaves_unless_it_is_asked_for() -> None:
     for name in CHOICES:
         found = compose([f"v2x={name}"])["v2x"]
