@@ -2,6 +2,6 @@
 
 from codriving.protocol.by_messages import ByMessages
 from codriving.protocol.negotiator import Negotiator
-from codriving.protocol.refusal import with_given
+from codriving.protocol.refusal import with_given, without_circles
 
-__all__ = ["ByMessages", "Negotiator", "with_given"]
+__all__ = ["ByMessages", "Negotiator", "with_given", "without_circles"]

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from codriving.datatypes import Pair, PassingOrder
 from codriving.protocol.negotiator import Negotiator
-from codriving.protocol.refusal import without_circles
+from codriving.protocol.refusal import not_in, without_circles
 from codriving.reasoning import Moment, Negotiation, Problem, RuleCoordinator, pose
 
 
@@ -29,4 +29,4 @@ class ByMessages(Negotiation):
         ours = {(p.first, p.second): p.reason for p in own.precedences if frozenset((p.first, p.second)) not in settled}
         given = {pair: why for pair, why in {**agreed, **ours}.items() if there >= set(pair)}
         self._rules.binding = self.party.directed(ego)
-        return self._rules.settle(moment, problem, without_circles(given, problem.instance, agreed))
+        return self._rules.settle(moment, problem, without_circles(given, problem.instance, not_in(agreed)))

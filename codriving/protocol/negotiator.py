@@ -87,7 +87,7 @@ class Negotiator(Party):
         """Return a problem in which what is agreed on is fixed."""
         agreed, there = self.agreed(time), problem.instance.vehicles.keys()
         given = {pair: why for pair, why in agreed.items() if there >= set(pair)}
-        return with_given(problem, without_circles(given, problem.instance, given))
+        return with_given(problem, without_circles(given, problem.instance, min))
 
     def agreed(self, time: float) -> dict[Pair, str]:
         """Return the pairs of all agreements in force, those of a newer one in the place of an older one's."""

@@ -12,7 +12,7 @@ from codriving.datatypes import (
     Proposal,
     Response,
 )
-from codriving.protocol.refusal import without_circles
+from codriving.protocol.refusal import not_in, without_circles
 from codriving.reasoning import Coordinator, Moment, Problem
 
 Answer = Callable[[Proposal], Response]  # What the party itself says to its own proposal
@@ -138,7 +138,7 @@ class Proposals:
     def _pairs(self) -> tuple[Precedence, ...]:
         """Return who goes first of each two CAVs, by what is known now and by what CAVs have said."""
         said = {pair: why for pair, (why, _) in self._given.items()}
-        given = without_circles(self._emergency() | said, self._problem.instance, said)
+        given = without_circles(self._emergency() | said, self._problem.instance, not_in(said))
         order = self.coordinator.negotiate(self._moment, given)
         cavs, me = self._moment.scenes.keys(), self._coordination.party
         pairs = (p for p in order.precedences if p.first in cavs and p.second in cavs)

@@ -1,6 +1,6 @@
 """What a CAV cannot do of what is proposed, and what has to be instead."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -50,14 +50,21 @@ def with_given(problem: Problem, pairs: Iterable[Pair]) -> Problem:
     return problem if before == instance.before else replace(problem, instance=replace(instance, before=before))
 
 
-def without_circles(given: Mapping[Pair, str], instance: Instance, dear: Collection[Pair]) -> dict[Pair, str]:
-    """Leave out pairs, those first that are not dear, until the others and what is physically fixed form no circle."""
+def without_circles(
+    given: Mapping[Pair, str], instance: Instance, weakest: Callable[[Sequence[Pair]], Pair]
+) -> dict[Pair, str]:
+    """Leave out the weakest pair of each circle, until what is left and what is physically fixed form none."""
     kept, before = {pair: why for pair, why in given.items() if pair[::-1] not in instance.before}, set(instance.before)
     while (circle := find_circle({*kept, *before})) is not None:
         links = [pair for pair in pairwise(circle) if pair in kept]
         if links:
-            del kept[min(links, key=lambda pair: (pair in dear, pair))]
+            del kept[weakest(links)]
         else:
             # Vehicles that overlap already can be fixed in a circle.
             before -= set(pairwise(circle))
     return kept
+
+
+def not_in(dear: Collection[Pair]) -> Callable[[Sequence[Pair]], Pair]:
+    """Let those be the weakest pairs that are not dear."""
+    return lambda links: min(links, key=lambda pair: (pair in dear, pair))

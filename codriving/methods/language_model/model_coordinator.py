@@ -1,13 +1,12 @@
 """The conflict coordinator by a language model: asked about CAVs in conflict, if something changed."""
 
 from collections.abc import Iterable, Mapping
-from itertools import pairwise
 from typing import cast
 
 from codriving.datatypes import Conflict, Pair, PassingOrder, SceneDescription
 from codriving.llm import Names, OrderReply, Question, first_of_pairs, negotiation_view, order_reply
 from codriving.methods.language_model.prompted_model import PromptedModel
-from codriving.protocol import with_given
+from codriving.protocol import with_given, without_circles
 from codriving.reasoning import (
     Coordinator,
     Moment,
@@ -89,7 +88,11 @@ class ModelCoordinator(Coordinator):
             c = pairs[name]
             pair = (c.ego, c.other) if first == names(c.ego) else (c.other, c.ego)
             agreed[pair] = reason or f"{first} was told to go first"
-        acyclic = _without_circles(agreed, problem, {frozenset((c.ego, c.other)): c.dttcp for c in pairs.values()})
+        apart = {frozenset((c.ego, c.other)): c.dttcp for c in pairs.values()}
+        # The least severe link of a circle goes.
+        acyclic = without_circles(
+            agreed, problem.instance, lambda links: max(links, key=lambda pair: (apart[frozenset(pair)], pair))
+        )
         if len(acyclic) < len(pairs):
             self.model.ledger.count("repaired_orders")
         return acyclic
@@ -129,20 +132,6 @@ def _most_urgent(problem: Problem, conflicts: Mapping[str, tuple[Conflict, ...]]
 
 def _shown(pairs: OpenPairs, names: Names) -> dict[str, tuple[str, str]]:
     return {name: (names(c.ego), names(c.other)) for name, c in pairs.items()}
-
-
-def _without_circles(agreed: AgreedPairs, problem: Problem, dttcp: Mapping[frozenset[str], float]) -> AgreedPairs:
-    """Drop the least severe link of every circle, until there is none; what is physically fixed stays."""
-    kept, fixed = dict(agreed), set(problem.instance.before)
-    while (circle := find_circle({*kept, *fixed})) is not None:
-        links = list(pairwise(circle))
-        ours = [pair for pair in links if pair in kept]
-        if ours:
-            del kept[max(ours, key=lambda pair: (dttcp[frozenset(pair)], pair))]
-        else:
-            # Vehicles that overlap already can be fixed in a circle; that is none of the model's doing.
-            fixed -= set(links)
-    return kept
 
 
 def _decided(order: PassingOrder, asked: Iterable[Pair]) -> AgreedPairs:
