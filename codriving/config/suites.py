@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from codriving.config.build import TARGET
 from codriving.config.choices import SUITE, choices, chosen_in
 from codriving.config.locate import conf_dir
 from codriving.errors import ConfigError
@@ -49,8 +50,17 @@ def members(name: str, config_dir: Path | None = None) -> tuple[Member, ...]:
 
 
 def world_hash(resolved: Mapping[str, Any]) -> str:
-    """Return the SHA-256 of the world of a config: its environment with scenario, limits, drivers and flow."""
-    text = json.dumps(resolved["environment"], sort_keys=True, separators=(",", ":"))
+    """Return the SHA-256 of the world of a config: its environment with scenario, limits, drivers and flow.
+
+    A channel and the time that thinking takes are a part of it where there are any; other worlds keep their hash.
+    """
+    world = dict(resolved["environment"])
+    if resolved["v2x"] is not None:
+        world["v2x"] = resolved["v2x"]
+    times = {key: time for key, time in resolved["thinking"].items() if key not in (TARGET, "cda")}
+    if any(times.values()):
+        world["thinking"] = times
+    text = json.dumps(world, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -63,15 +73,17 @@ def changed_worlds(
         suites: The suite of each config; None where none was named.
     """
     fixed = [(name, member) for name in suite_sets(config_dir) for member in members(name, config_dir)]
-    notes: dict[str, None] = {}
+    changed: dict[tuple[str, Member], dict[str, None]] = {}
     for suite, config in zip(suites, configs, strict=True):
         for name, member in fixed:
             if member.suite == suite and (found := world_hash(config)) != member.sha256:
-                notes[
-                    f"suite={suite} is not the world that was fixed for suite={name} on {member.fixed}: its settings "
-                    f"were changed, so its numbers do not stand beside those of others (SHA-256 {found})."
-                ] = None
-    return list(notes)
+                changed.setdefault((name, member), {})[found] = None
+    return [
+        f"suite={member.suite} is not the world that was fixed for suite={name} on {member.fixed}: its settings "
+        f"were changed, so its numbers do not stand beside those of others (SHA-256 {found[0]}"
+        f"{f' and {len(found) - 1} others' if len(found) > 1 else ''})."
+        for (name, member), found in ((key, list(hashes)) for key, hashes in changed.items())
+    ]
 
 
 def sets_scenario(tokens: Sequence[str], config_dir: Path | None = None) -> bool:

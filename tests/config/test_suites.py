@@ -38,6 +38,23 @@ def test_a_changed_world_is_said_to_be_another_one(hard: dict[str, dict[str, obj
     assert note.startswith("suite=standoff is not the world that was fixed for suite=hard on 2026-")
 
 
+CHANGED = (
+    *("v2x=good", "v2x=poor", "v2x=good v2x.loss=0.02", "v2x=good v2x.misbehaviour.ghost=0.1"),
+    *("thinking.mind=1.0", "thinking.order=1.0", "thinking.mind=1.0 thinking.order=2.0"),
+)
+
+
+def test_a_channel_and_time_to_think_make_another_world(hard: dict[str, dict[str, object]]) -> None:
+    configs = [compose(["suite=crowd", *tokens.split()]) for tokens in CHANGED]
+    hashes = {world_hash(config) for config in (hard["crowd"], *configs)}
+    assert len(hashes) == 8
+    assert world_hash(compose(["suite=slow_mind"])) == world_hash(configs[-1])
+    (note,) = changed_worlds(["crowd"] * 7, configs, None)
+    assert note.endswith("do not stand beside those of others (SHA-256 " + world_hash(configs[0]) + " and 6 others).")
+    # How far CAVs cooperate is of the method, though it stands in this node, too.
+    assert changed_worlds(["crowd"], [compose(["suite=crowd", "cda=status_sharing"])], None) == []
+
+
 def test_a_suite_of_two_sets_is_judged_by_both(tmp_path: Path, hard: dict[str, dict[str, object]]) -> None:
     (tmp_path / "suite").mkdir()
     fixed = next(member.sha256 for member in HARD if member.suite == "standoff")
