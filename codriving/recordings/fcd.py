@@ -4,6 +4,7 @@ There a place is that of the middle of the front bumper, y grows to the north, a
 """
 
 import gzip
+import zlib
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
@@ -40,7 +41,7 @@ def read_fcd(path: Path) -> Recording:
                 ids.append(attributes["id"])
                 types.append(attributes.get("type", ""))
                 numbers.append((time, *(_number(where, name, attributes[name]) for name in _NUMBERS)))
-    except (OSError, EOFError) as error:
+    except (OSError, EOFError, zlib.error) as error:
         raise RecordingError(
             f"cannot read {path}: {getattr(error, 'strerror', '') or error}; give another file"
         ) from error

@@ -1,6 +1,7 @@
 """The .xlsx recordings of the paper's authors: one sheet a vehicle, one row each 0.2 s."""
 
 import zipfile
+import zlib
 from collections import Counter
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,6 +17,12 @@ ROW = 0.2  # Time between two rows [s]
 NUMBERS, CAV = ("t", "x", "y", "v", "theta"), "background_veh?"
 
 _LARGEST = 1 << 30  # Bytes that a file may unpack to
+
+# What a spoilt file makes zip and XML parser raise (SyntaxError), a part with a password (RuntimeError), and openpyxl.
+_SPOILT = (
+    *(zipfile.BadZipFile, zlib.error, SyntaxError, RuntimeError),
+    *(KeyError, ValueError, TypeError, AttributeError),
+)
 
 
 class _Sheet(NamedTuple):
@@ -66,8 +73,7 @@ def _sheets(path: Path) -> list[tuple[str, list[tuple[Any, ...]]]]:
             return [(sheet.title, list(sheet.iter_rows(values_only=True))) for sheet in book.worksheets]
     except OSError as error:
         raise RecordingError(f"cannot read {path}: {error.strerror or error}; give a file that can be read") from error
-    except (zipfile.BadZipFile, InvalidFileException, KeyError, ValueError, SyntaxError) as error:
-        # SyntaxError is what the XML parser raises.
+    except (InvalidFileException, *_SPOILT) as error:
         why = " ".join(str(error.__cause__ or error).split())
         raise RecordingError(f"{path} is no .xlsx file that can be read ({why}); save it anew") from error
 

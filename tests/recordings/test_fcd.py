@@ -115,3 +115,8 @@ def test_a_damaged_packed_file_is_refused(tmp_path: Path) -> None:
     path.write_bytes(gzip.compress(SUMO.encode())[:-20])
     with pytest.raises(RecordingError, match="cannot read"):
         read_fcd(path)
+    packed = bytearray(gzip.compress(SUMO.encode()))
+    packed[20:60] = bytes(40)
+    path.write_bytes(packed)
+    with pytest.raises(RecordingError, match=r"cannot read .*fcd\.xml\.gz: Error -3 while decompressing"):
+        read_fcd(path)

@@ -144,3 +144,18 @@ def test_entities_are_not_expanded(tmp_path: Path) -> None:
             after.writestr(name, text)
     with pytest.raises(RecordingError, match=r"is no \.xlsx file that can be read .*EntitiesForbidden"):
         read_workbook(spoilt)
+
+
+def test_a_spoilt_workbook_is_refused_in_a_line(tmp_path: Path) -> None:
+    path, spoilt = workbook(tmp_path / "a.xlsx", crossing(3)), tmp_path / "b.xlsx"
+    with zipfile.ZipFile(path) as before, zipfile.ZipFile(spoilt, "w") as after:
+        for name in before.namelist():
+            after.writestr(name, before.read(name).replace(b"calcId", b"calcIt"))
+        start = before.getinfo("xl/workbook.xml").header_offset + 30 + len("xl/workbook.xml")
+    with pytest.raises(RecordingError, match=r"is no \.xlsx file that can be read .*calcIt"):
+        read_workbook(spoilt)
+    packed = bytearray(path.read_bytes())
+    packed[start + 4 : start + 40] = bytes(36)
+    spoilt.write_bytes(packed)
+    with pytest.raises(RecordingError, match=r"is no \.xlsx file that can be read .*Error -3 while decompressing"):
+        read_workbook(spoilt)
