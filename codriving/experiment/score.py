@@ -9,7 +9,7 @@ from codriving.datatypes import Ending, EpisodeRecord, Road
 from codriving.errors import ConfigError, RecordingError, RunFolderError
 from codriving.experiment.scoring import lacks, scorers_of
 from codriving.experiment.stored import all_episodes, read_episode, road_of
-from codriving.metrics import Scorer, outcome_of
+from codriving.metrics import Scorer, outcome_of, recorded_time
 from codriving.recordings import read_recording
 from codriving.reports import ScoredFiles, pet_table, print_scores, print_table, score_table
 from codriving.runs import RECORD, TRAJECTORY, read_record, read_trajectory, write_text
@@ -120,9 +120,8 @@ def _file(path: Path, scorer: Scorer) -> tuple[ScoredFiles, Sequence[str], bool,
             f"metrics={scorer.metric.name} needs the road, which {path} does not say; choose metrics=standard or "
             "authors, or give the run folder"
         )
-    steps = [(track.first_step, track.first_step + len(track.x) - 1) for track in trajectory.tracks]
-    duration = (max(last for _, last in steps) - min(first for first, _ in steps)) * trajectory.step
-    return ScoredFiles(str(path), (score,), len(trajectory.tracks), duration), notes, marked, record is not None
+    found = ScoredFiles(str(path), (score,), len(trajectory.tracks), recorded_time(trajectory))
+    return found, notes, marked, record is not None
 
 
 def _record_beside(path: Path) -> EpisodeRecord | None:

@@ -73,7 +73,9 @@ def way(track: Track, rows: Selection, step: float) -> Way:
     """Choose rows of a track."""
     time = np.asarray(step * (track.first_step + np.arange(len(track.x), dtype=np.float64))[rows], dtype=np.float64)
     footprint = Footprint(track.length, track.width)
-    return Way(track.id, footprint, time, track.x[rows], track.y[rows], track.heading[rows])
+    # Recordings have headings from -pi to pi, between which there is no mean where one turns past pi.
+    heading = np.unwrap(track.heading)[rows]
+    return Way(track.id, footprint, time, track.x[rows], track.y[rows], heading)
 
 
 def _apart(a: Way, b: Way) -> FloatArray:
@@ -131,7 +133,7 @@ def _gap(first: Way, second: Way, apart: FloatArray, laps: bool) -> float | None
 def _left(first: Way, there: Way, last: int) -> float:
     """When the first leaves a place between two rows [s]; rows of a recording may be metres apart."""
     share = np.linspace(0.0, 1.0, 33)
-    x, y, heading = (a[last] + share * (a[last + 1] - a[last]) for a in (first.x, first.y, np.unwrap(first.heading)))
+    x, y, heading = (a[last] + share * (a[last + 1] - a[last]) for a in (first.x, first.y, first.heading))
     over = box_separation(there.x - x, there.y - y, heading, there.heading, (first.footprint, there.footprint))
     k = int(np.flatnonzero(over < 0)[-1])
     return float(first.time[last] + share[k] * (first.time[last + 1] - first.time[last]))

@@ -89,6 +89,12 @@ def outcome_of(trajectory: Trajectory) -> Outcome:
     return Outcome(Ending.COLLISION, last * trajectory.step, {}, Collision(time, striker.id, struck.id, pair))
 
 
+def recorded_time(trajectory: Trajectory) -> float:
+    """Return for how long vehicles were recorded [s]; the time between the cases of one file is none of theirs."""
+    steps = np.unique(np.concatenate([track.first_step + np.arange(len(track.x)) for track in trajectory.tracks]))
+    return float(np.count_nonzero(np.diff(steps) == 1) * trajectory.step)
+
+
 def _contact(tracks: Sequence[Track]) -> tuple[int, Track, Track] | None:
     """The first contact of tracks, and its step."""
     found: tuple[int, Track, Track] | None = None

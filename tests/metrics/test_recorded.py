@@ -7,7 +7,7 @@ import pytest
 
 from codriving.datatypes.record import Ending, Outcome, Track, Trajectory
 from codriving.datatypes.world import Kind
-from codriving.metrics.recorded import closest_recorded, driven_pets, driven_travels, outcome_of
+from codriving.metrics.recorded import closest_recorded, driven_pets, driven_travels, outcome_of, recorded_time
 from codriving.metrics.standard import StandardMetrics
 
 STEP = 0.1
@@ -49,6 +49,24 @@ def test_pet_of_longer_and_wider_vehicles() -> None:
     assert long.value == pytest.approx(1.95, abs=0.02)
     (wide,) = driven_pets(Trajectory(STEP, (replace(a, width=3.0), b)))
     assert wide.value == pytest.approx(2.25, abs=0.02)
+
+
+@pytest.mark.parametrize("delay", [3.0, 3.025, 3.05, 3.075])
+def test_headings_that_pass_pi_are_no_turn(delay: float) -> None:
+    """B drives west; files write its heading now as pi, now as -pi."""
+    t = STEP * np.arange(150)
+    a, b = track("a", 0 * t, 10 * (t - 5), np.pi / 2), track("b", 10 * (5 + delay - t), 0 * t, np.pi)
+    written = replace(b, heading=np.where(np.arange(150) % 2, np.pi, -np.pi))
+    for second in (b, written):
+        (pet,) = driven_pets(Trajectory(STEP, (a, second)))
+        assert pet.first == "a"
+        assert pet.value == pytest.approx(delay - 0.7, abs=0.02)
+
+
+def test_time_without_vehicles_is_not_recorded() -> None:
+    a, b = crossing(3.0).tracks
+    assert recorded_time(Trajectory(STEP, (a, replace(b, first_step=50)))) == pytest.approx(19.9)
+    assert recorded_time(Trajectory(STEP, (a, replace(b, first_step=36_000)))) == pytest.approx(29.8)
 
 
 def test_pairs_without_a_cav_or_never_recorded_together_have_none() -> None:
