@@ -12,7 +12,7 @@ from codriving.experiment.compare import comparison_command
 from codriving.experiment.joining import FoundPart, Joining, check_alike, find_parts
 from codriving.experiment.learn import run_learn
 from codriving.experiment.plan import make_plan
-from codriving.experiment.run import RUN, Command, finish
+from codriving.experiment.run import RUN, Command, run_command
 from codriving.experiment.stress import stress_command
 from codriving.runs import locked, unwritable
 
@@ -52,8 +52,7 @@ def run_join(runs: Sequence[Path], options: JoinOptions) -> int:
             return run_learn(overrides, own, joins=joining)
         command = _command(parts[0], own)
         plan = joining.joined(make_plan(command.points(overrides, own), own, drives=False))
-        command.check(plan)
-        return finish(plan, command.make_outputs, command.name, part.arguments)
+        return run_command(command, part.arguments, own, plan=plan)
 
 
 def _refuse_code(found: FoundPart, options: JoinOptions) -> None:

@@ -16,8 +16,8 @@ from codriving.experiment.joining import Joining
 from codriving.experiment.memory_build import FIRST_SEED, MOST, count_of, refuse_forgetful, split_interactions
 from codriving.experiment.plan import make_plan
 from codriving.experiment.remembering import memory_file
-from codriving.experiment.run import as_part, finish, print_configs, report, resume_command, stopped
-from codriving.experiment.shards import refuse_nameless, without_shard
+from codriving.experiment.run import Command, as_part, print_configs, report, resume_command, run_command, stopped
+from codriving.experiment.shards import refuse_nameless, refuse_part, without_shard
 from codriving.reports import (
     LearningRow,
     learning_figure,
@@ -79,6 +79,8 @@ def run_learn(
     try:
         builds = make_plan(build_points(points, max(sizes), run), config_dir, drives=joins is None)
         refuse_forgetful(builds)
+        if shares:
+            refuse_part(builds.cells, others)
         builds = joins.learnt(builds) if joins else replace(builds, waits=shares)
         told = "; one shard learns, the others wait for it" if shares else ""
         settings = f"{builds.episodes} interactions in each of {len(builds.cells)} settings"
@@ -94,8 +96,8 @@ def run_learn(
     tests = joins.joined(tests) if joins else as_part(tests, "learn", overrides, config_dir)
     if joins is None:
         print(f"Testing: {tests.episodes} episodes in each of {len(tests.cells)} cells.", file=sys.stderr)
-    make = partial(learned, settings=len(points))
-    return finish(tests, make, "learn", overrides)
+    command = Command("learn", make_outputs=partial(learned, settings=len(points)))
+    return run_command(command, overrides, config_dir, plan=tests)
 
 
 def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from codriving.config import Point, config_folder, expand, show
-from codriving.errors import ConfigError, ModelError
+from codriving.errors import ModelError
 from codriving.experiment.drive import Driven, Ended, Finished, HaltedError, Interrupted, Outputs, drive, driving
 from codriving.experiment.plan import Plan, cell_name, composed, make_plan, validated
-from codriving.experiment.shards import KEY, refuse_secrets, without_shard
+from codriving.experiment.shards import KEY, refuse_part, without_shard
 from codriving.reports import print_table
 from codriving.runs import Part, Shard
 
@@ -28,7 +28,7 @@ class Command:
 
     name: str  # What is typed after ``codriving``
     # Gives the configs that ``key=value`` tokens, with a folder of YAMLs of the user's or None, stand for.
-    points: Callable[[Sequence[str], Path | None], Sequence[Point]]
+    points: Callable[[Sequence[str], Path | None], Sequence[Point]] = expand
     check: Callable[[Plan], None] = lambda _: None  # Refuses a plan with a ``ConfigError``
     # What it makes of its episodes beyond the tables of every run.
     make_outputs: Callable[[Driven], Outputs] = lambda _: Outputs()
@@ -44,13 +44,18 @@ class Results:
 
 
 def run_command(
-    command: Command, overrides: Sequence[str], config_dir: Path | None = None, show_only: bool = False
+    command: Command,
+    overrides: Sequence[str],
+    config_dir: Path | None = None,
+    show_only: bool = False,
+    plan: Plan | None = None,
 ) -> int:
     """Drive the cells of a command, print their table, say how to go on.
 
     Args:
         overrides: ``key=value`` tokens.
         show_only: Print the config of every cell and drive nothing.
+        plan: What is driven, or joined of parts; None plans what the tokens say.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, or 128 and the number of the signal that stopped it.
@@ -58,30 +63,21 @@ def run_command(
     Raises:
         UserError: If the config or the run folder cannot be used.
     """
-    points = command.points(overrides, config_dir)
-    if show_only:
-        print_configs(points, config_dir)
-        return 0
-    plan = as_part(make_plan(points, config_dir), command.name, overrides, config_dir)
+    if plan is None:
+        points = command.points(overrides, config_dir)
+        if show_only:
+            print_configs(points, config_dir)
+            return 0
+        plan = as_part(make_plan(points, config_dir), command.name, overrides, config_dir)
     command.check(plan)
     try:
         with driving(plan) as batch:
             ended = batch.ended if plan.part else batch.finished(plan, command.make_outputs)
     except (Interrupted, HaltedError) as stop:
-        return stopped(stop, how_to_go_on(plan, command.name, overrides, stop.folder))
-    again = how_to_go_on(plan, command.name, overrides, ended.folder)
-    return report(ended, again) if isinstance(ended, Finished) else report_part(ended, again, plan.shard)
-
-
-def finish(plan: Plan, make_outputs: Callable[[Driven], Outputs], name: str, overrides: Sequence[str]) -> int:
-    """Drive the plan of a command that is called so, or its shard, or join its parts, and say what came of it."""
-    try:
-        with driving(plan) as batch:
-            ended = batch.ended if plan.part else batch.finished(plan, make_outputs)
-    except (Interrupted, HaltedError) as stop:
         join = shlex.join(["codriving", "join", str(stop.folder)])
-        return stopped(stop, how_to_go_on(plan, name, overrides, stop.folder) if plan.launcher.drives else join)
-    again = how_to_go_on(plan, name, overrides, ended.folder)
+        again = how_to_go_on(plan, command.name, overrides, stop.folder) if plan.launcher.drives else join
+        return stopped(stop, again)
+    again = how_to_go_on(plan, command.name, overrides, ended.folder)
     return report(ended, again) if isinstance(ended, Finished) else report_part(ended, again, plan.shard)
 
 
@@ -111,7 +107,7 @@ def run_frames(*overrides: str, config_dir: str | Path | None = None) -> Results
     return Results(finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
 
 
-RUN = Command("run", expand)
+RUN = Command("run")
 
 
 def print_configs(points: Sequence[Point], config_dir: Path | None = None) -> None:
@@ -151,13 +147,7 @@ def as_part(plan: Plan, command: str, overrides: Sequence[str], config_dir: Path
     """Note in the plan of a shard what was typed, by which ``codriving join`` makes the tables of the run."""
     if plan.shard is None:
         return plan
-    if any(cell.repeatable is False for cell in plan.cells):
-        raise ConfigError(
-            "with llm.latency=measured no shard could go on, for times cannot be measured again; leave shard out, or "
-            "take another llm.latency"
-        )
-    kept = without_shard(overrides)
-    refuse_secrets(kept)
+    refuse_part(plan.cells, kept := without_shard(overrides))
     part = Part(plan.shard.index, plan.shard.count, command, tuple(kept), str(config_dir) if config_dir else None)
     return replace(plan, part=part)
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from codriving.config import looks_secret
 from codriving.errors import ConfigError
+from codriving.experiment.cells import Cell
 from codriving.experiment.remembering import learns
 from codriving.runs import Shard, redact
 
@@ -63,8 +64,13 @@ def refuse_nameless(run: str | None) -> None:
         raise ConfigError("shards of one run need one name, by which they are joined: add run=<name>")
 
 
-def refuse_secrets(overrides: Sequence[str]) -> None:
-    """Refuse settings that may be secrets: a part keeps the command by which the run is joined."""
+def refuse_part(cells: Sequence[Cell], overrides: Sequence[str]) -> None:
+    """Refuse what no part can go on with, and settings that may be secrets: it keeps the command that drives it."""
+    if any(cell.repeatable is False for cell in cells):
+        raise ConfigError(
+            "with llm.latency=measured no shard could go on, for times cannot be measured again; leave shard out, or "
+            "take another llm.latency"
+        )
     for token in overrides:
         key, _, value = token.lstrip("+").partition("=")
         plain = redact({"llm": {key.rpartition(".")[2]: value}}) == {"llm": {key.rpartition(".")[2]: value}}

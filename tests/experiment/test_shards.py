@@ -13,7 +13,7 @@ from codriving.experiment.learn import run_learn
 from codriving.experiment.memory_build import build_points
 from codriving.experiment.plan import make_plan
 from codriving.experiment.run import run_experiment
-from codriving.experiment.shards import refuse_secrets, shard_of
+from codriving.experiment.shards import refuse_part, shard_of
 from codriving.runs.parts import Shard
 
 
@@ -102,15 +102,19 @@ def test_commands_that_learn_in_order_or_drive_nothing_say_so(tmp_path: Path, mo
 )
 def test_what_may_be_a_secret_is_never_kept_in_a_part(token: str) -> None:
     with pytest.raises(ConfigError, match="may hold a secret, and a part keeps the command"):
-        refuse_secrets(["scenario=merge", token])
+        refuse_part((), ["scenario=merge", token])
 
 
 def test_names_of_variables_and_limits_are_no_secrets() -> None:
-    refuse_secrets(["llm.api_key_env=MY_KEY", "llm.max_tokens=500", "llm.max_tokens_field=max_completion_tokens"])
+    refuse_part((), ["llm.api_key_env=MY_KEY", "llm.max_tokens=500", "llm.max_tokens_field=max_completion_tokens"])
 
 
 def test_a_secret_is_refused_before_anything_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    tokens = ["llm=openai", "llm.model=m", "llm.extra={user: me}", "shard=1/2", "run=x", "launcher=serial"]
     with pytest.raises(ConfigError, match=r"llm\.extra may hold a secret"):
-        run_experiment(["llm=openai", "llm.model=m", "llm.extra={user: me}", "shard=1/2", "run=x", "launcher=serial"])
+        run_experiment(tokens)
+    # Before it learns, which may cost money.
+    with pytest.raises(ConfigError, match=r"llm\.extra may hold a secret"):
+        run_learn([*tokens, "scenario=intersection", "cda=full", "interactions=1"])
     assert list(tmp_path.iterdir()) == []
