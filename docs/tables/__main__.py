@@ -113,7 +113,10 @@ def joined(
         for row in (row for run in runs for row in run.rows):
             key = tuple(str(row[k]) for k in keys)
             if all(str(row[k]) in wanted.split(",") for k, wanted in only.items()):
-                rows.setdefault(key, dict(zip(keys, key, strict=True)))[name] = SimpleNamespace(**row)
+                line = rows.setdefault(key, dict(zip(keys, key, strict=True)))
+                if name in line:
+                    raise TableError(f"{name} has two rows {', '.join(key)}: take some of the run, or add a key to by:")
+                line[name] = SimpleNamespace(**row)
     yield from rows.values()
 
 

@@ -141,6 +141,9 @@ def test_suites_of_one_run_stand_side_by_side(made: Path) -> None:
         "",
     ]
     assert table[6] == "From `codriving compare all` (version 0.2.0, behaviour 5)."
+    spec["runs"] = {"crowd": ["hard suite=crowd"], "blind": ["hard"]}
+    with pytest.raises(Exception, match="blind has two rows codriving: take some of the run, or add a key to by:"):
+        PROGRAM["markdown"]("two", spec)
 
 
 def test_a_part_of_a_cell_is_left_out_where_there_is_no_number() -> None:
