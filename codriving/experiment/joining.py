@@ -190,7 +190,10 @@ class Joining:
         for place, seed in plan.units:
             cell = cells[place]
             for part in self.parts:
-                (there,) = (old for old in part.manifest.cells if same_cell(old, cell))
+                there = next((old for old in part.manifest.cells if same_cell(old, cell)), None)
+                if there is None:
+                    # Its command stood for fewer cells when it was driven.
+                    continue
                 folder = episode_folder(part.folder, there.folder, seed)
                 try:
                     record = checked_record(part.folder, there, seed)

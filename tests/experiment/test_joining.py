@@ -144,6 +144,16 @@ def test_a_missing_shard_is_named_with_the_command_that_drives_it(tmp_path: Path
     assert not (run / "manifest.json").exists()
 
 
+def test_a_part_without_a_cell_that_its_command_now_stands_for_has_to_go_on(
+    tmp_path: Path, episodes: list[int]
+) -> None:
+    run = shard(tmp_path, 1).parent.parent
+    shard(tmp_path, 2, cells=CELLS[:1])
+    said = "shard 2/2 lacks 5 of 10 episodes; go on with: codriving run scenario=toy run=mine shard=2/2"
+    with pytest.raises(RunFolderError, match=said):
+        joined(run)
+
+
 def test_a_run_without_a_shard_does_not_begin_beside_parts(tmp_path: Path) -> None:
     run = shard(tmp_path, 1).parent.parent
     with pytest.raises(RunFolderError, match=f"parts of a run that have not been joined: codriving join {run}, or"):
