@@ -1,4 +1,4 @@
-"""Trajectories in CSV: ours, tidy tables of anyone's, and the tracks of INTERACTION, inD and its sisters."""
+"""Trajectories in CSV: ours, tidy tables from anywhere, and the tracks of INTERACTION, inD and its sisters."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -128,7 +128,10 @@ def _frame(path: Path) -> "DataFrame":
     except (ValueError, pd.errors.ParserError) as error:
         # Not UTF-8, no table, nothing at all.
         raise RecordingError(f"{path} is no CSV that can be read ({' '.join(str(error).split())})") from error
-    return frame.rename(columns=lambda name: str(name).strip())
+    frame = frame.rename(columns=lambda name: str(name).strip())
+    if len(twice := frame.columns[frame.columns.duplicated()]):
+        raise RecordingError(f"{path} has two columns {twice[0]}; keep one of them")
+    return frame
 
 
 def _numbers(path: Path, frame: "DataFrame", column: str) -> Numbers:

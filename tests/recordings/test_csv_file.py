@@ -123,6 +123,7 @@ GOOD = [f"{k},a,{10 * k},0,10,CAV" for k in range(5)]
         (["time,id,x,y,speed,kind", *GOOD, "4,a,50,0,10,CAV"], "vehicle a has two rows at 4 s"),
         (["time,id,x,y,speed,kind", *GOOD, "5.5,a,55,0,10,CAV"], "times are not"),
         (["time,id,x,y,speed", *(f"{k},a,{10 * k},0,36" for k in range(5))], "positions and speeds do not agree"),
+        (["time,id,x,y, x", *(f"{k},a,{10 * k},0,3" for k in range(5))], "has two columns x; keep one of them"),
         ([""], "is no CSV that can be read"),
         (['time,id,x,y\n"0,a,1,2'], "is no CSV that can be read"),
     ],
