@@ -1,4 +1,4 @@
-"""``codriving score``: recorded trajectories of anyone's, and the episodes of finished runs, by any metric."""
+"""``codriving score``: recorded trajectories from anywhere, and the episodes of finished runs, by any metric."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
