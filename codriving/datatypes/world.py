@@ -131,6 +131,7 @@ class Told:
     seen: bool = False  # Whether the CAV's own sensors see it
     behind: float = 0.0  # How far behind the place at which it is taken to be it may be [m]
     ahead: float = 0.0  # How far ahead of it [m]
+    aside: float = 0.0  # How far beside it, by the noise of the message alone [m]
     slower: float = 0.0  # How much slower than it is taken to be it may be [m/s]
     faster: float = 0.0  # How much faster [m/s]
     # Where it was, and its heading, when this was so; None if its way since is known [m, m, rad].

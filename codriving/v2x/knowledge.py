@@ -186,6 +186,7 @@ class KnownWorld:
             intent_age,
             behind=v.speed * age - (v.speed * braked - brake * braked**2 / 2) + speed * age + place,
             ahead=pedal * age**2 / 2 + speed * age + place,
+            aside=place,
             slower=min(v.speed, brake * age) + speed,
             faster=pedal * age + speed,
             since=(v.x, v.y, v.heading) if intent_age is None else None,

@@ -89,7 +89,7 @@ def test_the_new_keys_of_decisions_are_these() -> None:
     assert first["cavs"][0].keys() == last["cavs"][0].keys()
     assert all("told" not in n for step in plain.steps for e in step.as_dict()["cavs"] for n in _known(e))
     told = [n["told"] for step in heard.steps for e in step.as_dict()["cavs"] for n in _known(e) if "told" in n]
-    keys = {"age", "intent_age", "seen", "behind", "ahead", "slower", "faster", "since"}
+    keys = {"age", "intent_age", "seen", "behind", "ahead", "aside", "slower", "faster", "since"}
     assert {frozenset(t) for t in told} == {frozenset(keys)}
     # Of what is seen only the intent has an age.
     assert any(t["seen"] and t["age"] == 0 and t["intent_age"] == 1.0 for t in told)

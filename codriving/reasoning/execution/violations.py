@@ -112,7 +112,8 @@ def minds_humans(moment: Moment, ego: TrackedVehicle, travels: Array, lag: int, 
     """
     found: Steps = np.full(len(travels), travels.shape[1])
     people = {m.id: m for m in moment.vehicles[ego.id].values() if not m.is_cav}
-    for other in people.values():
+    # A false place, as a CAV may tell it, can be on no route.
+    for other in (m for m in people.values() if m.routes):
         low = np.min([moment.forecast.likely_of(other, way)[0] for way in other.routes], axis=0)
         for meeting in meetings_behind(moment, ego, other, lag, following, pad):
             found = np.minimum(found, meeting.steps(travels, low))

@@ -10,11 +10,13 @@ STANDING = 0.5  # Below this speed a vehicle counts as standing [m/s]
 # Lateral offset [m] and difference of headings [rad] that count as one step of misfit to a route.
 SIDE, TURN = 0.5, 0.15
 
+REACH = 2.0  # How far from the middle of a route a vehicle on it may be [m]
+
 CLEARLY = 2.0  # Steps of misfit by which a route must be worse than the best one to be ruled out; cars do cut corners
 
 Places = tuple[tuple[str, float], ...]  # Routes and the arc length on each [m]
 
-Spot = tuple[float, float, float | None]  # Where a vehicle is seen [m], and its heading [rad] if it is known
+Spot = tuple[float, float, float | None, float]  # Where a vehicle is [m], its heading [rad], how far off it may be [m]
 
 
 class Tracking:
@@ -48,11 +50,11 @@ class Tracking:
                 s, _ = self.road_map.project(*told)
                 self._shared[told] = ((intent.route, s), *self._covered(intent.route, s, seen.x, seen.y))
             return self._shared[told]
-        spot: Spot = (seen.x, seen.y, seen.heading)
+        spot: Spot = (seen.x, seen.y, seen.heading, 0.0)
         way = 0.0
         if seen.told is not None and seen.told.since is not None:
             # Which ways it may have taken since is told by where it was.
-            spot, way = seen.told.since, seen.speed * seen.told.age
+            spot, way = (*seen.told.since, seen.told.aside), seen.speed * seen.told.age
         key = (spot, self._routes.get((ego, seen.id)), signal)
         if key not in self._narrowed:
             self._narrowed[key] = self._narrow(*key)
@@ -74,25 +76,18 @@ class Tracking:
     def _covered(self, route: str, s: float, x: float, y: float) -> Places:
         return self.road_map.changes.covered(route, self.road_map.lane_at(route, s), x, y)
 
-    def _fitting(self, x: float, y: float, heading: float | None) -> Places:
+    def _fitting(self, x: float, y: float, heading: float | None, aside: float) -> Places:
         """Return the routes near a place, without those that fit position and heading clearly worse than the best."""
-        near = self.road_map.nearby.routes(x, y, heading)
+        near = self.road_map.nearby.routes(x, y, heading, REACH + aside)
         misfits = []
         for route, s in near:
             px, py, along = self.road_map.paths[route].place(s)
             turned = 0.0 if heading is None else acos(min(1.0, max(-1.0, cos(heading - along))))
-            misfits.append(hypot(px - x, py - y) / SIDE + turned / TURN)
+            misfits.append(max(hypot(px - x, py - y) - aside, 0.0) / SIDE + turned / TURN)
         return tuple(p for p, misfit in zip(near, misfits, strict=True) if misfit <= min(misfits) + CLEARLY)
 
     def standing(self, ego: str, seen: TrackedVehicle, time: float) -> float:
-        """Return how long a vehicle has been standing.
-
-        Args:
-            time: Time now [s].
-
-        Returns:
-            Time since it was last seen moving [s].
-        """
+        """Return how long ago a vehicle was last seen moving, at a time [s]."""
         if seen.speed >= STANDING:
             self._standing.pop((ego, seen.id), None)
             return 0.0

@@ -1,10 +1,14 @@
 """What a CAV remembers of its neighbours."""
 
+from dataclasses import replace
+
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from worlds import Junction, car
 
 from codriving.datatypes.situation import TrackedVehicle
-from codriving.datatypes.world import Intent, Kind
+from codriving.datatypes.world import Intent, Kind, Told
 from codriving.reasoning.sharing.sharing import SensedStates, SharedStates
 from codriving.reasoning.sharing.tracking import Tracking
 
@@ -37,6 +41,19 @@ def test_possible_routes_narrow_as_a_driver_turns(route: str, junction: Junction
         assert now <= before, "what has been ruled out stays out"
         before = now
     assert before == {route}
+
+
+@settings(max_examples=20)
+@given(st.lists(st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)), min_size=21, max_size=21))
+def test_noise_of_messages_rules_no_true_route_out(junction: Junction, errors: list[tuple[float, float]]) -> None:
+    """A place that is up to 4.2 m off may lie beside every route."""
+    tracking = Tracking(junction.road_map)
+    for place, (wrong_x, wrong_y) in zip(range(60, 123, 3), errors, strict=True):
+        seen = perceived(junction, "south-west", float(place))
+        assert seen.heading is not None
+        at = (seen.x + wrong_x, seen.y + wrong_y)
+        told = Told(0.1, None, aside=3.0 * 2**0.5, since=(*at, seen.heading))
+        assert "south-west" in routes(tracking, replace(seen, x=at[0], y=at[1], told=told))
 
 
 def test_routes_are_remembered_past_the_junction(junction: Junction) -> None:
