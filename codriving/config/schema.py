@@ -100,7 +100,7 @@ KEYS = (
         form="i/n with i from 1 to n, for instance 1/4,",
         optional=True,
     ),
-    Key("prompts", "folder with templates that replace ours, for language models; null takes ours", str, optional=True),
+    Key("prompts", "set of prompts, or folder with templates that replace them; null takes ours", str, optional=True),
     Key("plugins", "packages of yours whose classes a config may name", list),
 )
 

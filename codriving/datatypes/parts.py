@@ -116,7 +116,7 @@ class Model(ABC):
     failures_in_a_row: int  # The batch stops after so many episodes without an answer
     cache: str  # ``off``, ``use`` or ``replay``
     ask_plain: bool  # Whether it is asked even where no other vehicle is near and the best action is plain
-    prompts: str | None  # Folder with templates that replace ours; None takes ours
+    prompts: str | None  # Set of prompts, or folder with templates that replace them; None takes the first set
     latency: str | float = "none"  # How long a question takes in the world: ``none``, ``measured`` or a time [s]
 
     @abstractmethod

@@ -60,7 +60,7 @@ class ModelSettings:
     output_cost_per_token: float | None  # Price of a token of the answer [USD]; None takes LiteLLM's
     failures_in_a_row: int
     ask_plain: bool
-    prompts: str | None  # Folder with templates that replace ours; None takes ours
+    prompts: str | None  # Set of prompts, or folder with templates that replace them; None takes the first set
     label: str | None  # Name in tables; None takes the model's
     model_prefix: str | None  # What the model's name has to begin with; None leaves it free
     max_tokens_field: str | None  # What the server calls its limit of an answer; None sends none

@@ -54,11 +54,11 @@ def test_a_changed_template_of_the_users(tmp_path: Path) -> None:
     mine = tmp_path / "mine"
     mine.mkdir()
     for name in ("decide.user.md.j2", "dilu.user.md.j2"):
-        shutil.copy(PROMPTS / name, mine)
+        shutil.copy(PROMPTS / "planner" / name if name.startswith("decide") else PROMPTS / name, mine)
     run = Run(tmp_path, *MODEL, f"prompts={mine}")
     said = run.changes(mine / "decide.user.md.j2")
     assert said.startswith(f"{mine / 'decide.user.md.j2'} (template decide.user.md.j2) has changed since")
-    shutil.copy(PROMPTS / "negotiate.user.md.j2", mine)
+    shutil.copy(PROMPTS / "planner" / "negotiate.user.md.j2", mine)
     run.go_on()
     (mine / "dilu.user.md.j2").write_text("Nothing that this method asks.")
     run.go_on()
@@ -69,13 +69,13 @@ def test_a_changed_template_of_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     shutil.copytree(PROMPTS, ours)
     monkeypatch.setattr("codriving.llm.prompts.render.OURS", ours)
     run = Run(tmp_path, *MODEL)
-    assert "(template negotiate.system.md.j2) has changed" in run.changes(ours / "negotiate.system.md.j2")
+    assert "(template negotiate.system.md.j2) has changed" in run.changes(ours / "planner" / "negotiate.system.md.j2")
 
 
 def test_a_changed_cell_is_refused_beside_others_that_have_not_changed(tmp_path: Path) -> None:
     mine = tmp_path / "mine"
     mine.mkdir()
-    shutil.copy(PROMPTS / "decide.user.md.j2", mine)
+    shutil.copy(PROMPTS / "planner" / "decide.user.md.j2", mine)
     run = Run(tmp_path, "llm.api_base=http://127.0.0.1:1/v1", f"llm.prompts={mine},null", "llm=custom")
     assert "(template decide.user.md.j2) has changed" in run.changes(mine / "decide.user.md.j2")
 

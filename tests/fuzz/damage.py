@@ -201,7 +201,7 @@ def make_files(folder: Path) -> None:
         (folder / folders).mkdir(parents=True)
     shutil.copy(conf_dir() / "scenario" / "merge.yaml", folder / "mine" / "scenario" / "mine.yaml")
     shutil.copy(conf_dir() / "train" / "madqn_lanes.yaml", folder / "mine" / "train")
-    for file in (package / "llm" / "prompts").glob("*.j2"):
+    for file in (package / "llm" / "prompts" / "planner").glob("*.j2"):
         shutil.copy(file, folder / "prompts")
     for suffix in (".safetensors", ".json"):
         shutil.copy(

@@ -1,4 +1,4 @@
-"""Templates in files, filled in by Jinja2; a user's folder replaces ours file by file."""
+"""Templates in files, filled in by Jinja2: one of our sets, or a user's folder that replaces them file by file."""
 
 from collections.abc import Callable, Collection, Mapping
 from functools import lru_cache
@@ -18,6 +18,9 @@ ROLES = ("system", "user")
 PURPOSES = tuple(EXAMPLES)
 FILES = tuple(f"{purpose}.{role}.md.j2" for purpose in PURPOSES for role in ROLES)  # The templates that there are
 
+SETS = ("planner",)  # Sets that ship, each a folder here; the first one is taken where none is named
+OF_A_SET = ("negotiate", "decide")  # What a set has templates of; those of all else belong to all sets
+
 _POWER = 1_000  # Of larger numbers a template forms no power
 _REPEATED = 100_000  # Longest text or list that a template makes by repeating one
 
@@ -30,20 +33,22 @@ _FILTERS: dict[str, Callable[[float], str]] = {
 
 
 class Prompts:
-    """The templates of one folder, checked and compiled.
+    """The templates of one set or folder, checked and compiled.
 
     Args:
-        folder: Folder of the user's templates; a file that is not in it is ours. None for ours alone.
+        chosen: Name of a set, or folder of the user's templates; a file that is not in it is that of the first set.
+            None for the first set.
 
     Raises:
         ConfigError: If a template is broken, names an unknown variable, or is called what no template is called.
     """
 
-    def __init__(self, folder: str | None = None) -> None:
+    def __init__(self, chosen: str | None = None) -> None:
+        self.name = prompts_name(chosen)
         environment = _sandbox()
         environment.filters.update(_FILTERS)
         self._templates: dict[str, Template] = {}
-        for name, path in _paths(folder).items():
+        for name, path in _paths(chosen).items():
             values = EXAMPLES[name.split(".")[0]]
             self._templates[name] = _compiled(environment, path, values)
             self._render(
@@ -96,33 +101,41 @@ def _sandbox() -> "Environment":
 
 
 @lru_cache(maxsize=8)
-def load_prompts(folder: str | None) -> Prompts:
-    """Return the templates of a folder, see ``Prompts``; they are read once."""
-    return Prompts(folder)
+def load_prompts(chosen: str | None) -> Prompts:
+    """Return the templates of a set or folder, see ``Prompts``; they are read once."""
+    return Prompts(chosen)
 
 
-def template_files(folder: str | None, purposes: Collection[str]) -> dict[str, Path]:
+def prompts_name(chosen: str | None) -> str:
+    """Return what tables call a choice of prompts: the name of a set, or that of a folder."""
+    return SETS[0] if chosen is None else chosen if chosen in SETS else Path(chosen).name or chosen
+
+
+def template_files(chosen: str | None, purposes: Collection[str]) -> dict[str, Path]:
     """Return the files of the templates of some purposes, by what they are.
 
     Args:
-        folder: Folder of the user's templates, or None.
+        chosen: Name of a set, folder of the user's templates, or None.
     """
-    return {f"template {name}": path for name, path in _paths(folder).items() if name.split(".")[0] in purposes}
+    return {f"template {name}": path for name, path in _paths(chosen).items() if name.split(".")[0] in purposes}
 
 
 def _paths(folder: str | None) -> dict[str, Path]:
     """Say for each template which file it is."""
-    if folder is None:
-        return {name: OURS / name for name in FILES}
+    of = folder if folder in SETS else SETS[0]
+    ours = {name: (OURS / of if name.split(".")[0] in OF_A_SET else OURS) / name for name in FILES}
+    if folder is None or folder in SETS:
+        return ours
     theirs = Path(folder).expanduser()
     if not theirs.is_dir():
-        raise ConfigError(f"llm.prompts={folder}: there is no such folder")
+        sets = " or ".join(SETS)
+        raise ConfigError(f"llm.prompts={folder}: there is no such folder; name one, or {sets}")
     unknown = sorted(path.name for path in theirs.glob("*.j2") if path.name not in FILES)
     if unknown:
         raise ConfigError(f"llm.prompts={folder}: {unknown[0]} is no template; there are {', '.join(FILES)}")
     if not any((theirs / name).is_file() for name in FILES):
         raise ConfigError(f"llm.prompts={folder}: the folder holds none of {', '.join(FILES)}")
-    return {name: theirs / name if (theirs / name).is_file() else OURS / name for name in FILES}
+    return {name: theirs / name if (theirs / name).is_file() else ours[name] for name in FILES}
 
 
 def _compiled(environment: "Environment", path: Path, values: Mapping[str, Any]) -> "Template":

@@ -17,7 +17,7 @@ from worlds import Car, Junction, car
 from codriving.errors import ConfigError
 from codriving.llm.prompts.example import EXAMPLES
 from codriving.llm.prompts.free_text import Names, one_line
-from codriving.llm.prompts.render import FILES, OURS, Prompts
+from codriving.llm.prompts.render import FILES, OURS, SETS, Prompts
 from codriving.llm.prompts.variables import decision_view
 from codriving.llm.question import Question
 
@@ -181,8 +181,19 @@ def test_folder_that_cannot_be_meant_is_refused(tmp_path: Path) -> None:
         Prompts(str(tmp_path))
 
 
+def test_set_is_named_and_a_folder_is_called_by_its_name(tmp_path: Path) -> None:
+    (tmp_path / "decide.system.md.j2").write_text("Only this.")
+    assert Prompts().name == SETS[0]
+    assert [Prompts(name).name for name in SETS] == list(SETS)
+    assert Prompts(str(tmp_path)).name == tmp_path.name
+    with pytest.raises(ConfigError, match=r"prompts=planer: there is no such folder; name one, or .*planner"):
+        Prompts("planer")
+
+
 def test_templates_that_are_shipped_are_all_there() -> None:
-    assert sorted(path.name for path in OURS.glob("*.j2")) == sorted(FILES)
+    shared = sorted(path.name for path in OURS.glob("*.j2"))
+    for name in SETS:
+        assert sorted([*shared, *(path.name for path in (OURS / name).glob("*.j2"))]) == sorted(FILES)
 
 
 @given(st.text(max_size=500))
