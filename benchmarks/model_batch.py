@@ -8,7 +8,7 @@ from pathlib import Path
 from time import perf_counter, process_time
 
 from benchmarks.served import served
-from codriving.experiment import run_frames
+from codriving.commands import run_frames
 from codriving.runs.episode_folder import read_timing
 
 EPISODES, LATENCY = 20, 1.0

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.served import served
+from codriving.commands import run_frames
 from codriving.config.choices import choices
-from codriving.experiment import run_frames
 
 CAVS, EPISODES, FIRST_SEED = 4, 3, 10_000
 AUTHORS_CALLS, AUTHORS_TOKENS = 5, 4400

@@ -7,8 +7,8 @@ from fractions import Fraction
 from pathlib import Path
 from time import perf_counter, process_time
 
+from codriving.commands import run_frames
 from codriving.config.choices import choices
-from codriving.experiment import run_frames
 from codriving.experiment.stored import find_episode, read_film, road_of
 
 RATE, SECONDS = Fraction(25), 10

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from codriving.version import __version__
 
 if TYPE_CHECKING:
-    from codriving.experiment import Comparison, Results
+    from codriving.commands import Comparison, Results
     from codriving.gym import ParallelDriving
 
 __all__ = ["__version__", "compare", "parallel_env", "run"]
@@ -28,7 +28,7 @@ def run(*overrides: str, config_dir: str | Path | None = None) -> "Results":
         >>> results = codriving.run("scenario=intersection", "episodes=5")  # doctest: +SKIP
         >>> results.summary[["success_rate", "velocity_mean"]]  # doctest: +SKIP
     """
-    from codriving.experiment import run_frames
+    from codriving.commands import run_frames
 
     return run_frames(*overrides, config_dir=config_dir)
 
@@ -50,7 +50,7 @@ def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -
         >>> results = codriving.compare("baselines", "episodes=20")  # doctest: +SKIP
         >>> results.table[["method", "success_rate", "mcnemar_p"]]  # doctest: +SKIP
     """
-    from codriving.experiment import compare_frames
+    from codriving.commands import compare_frames
 
     return compare_frames(table, *overrides, config_dir=config_dir)
 

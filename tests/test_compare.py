@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 import codriving
+from codriving.commands import comparison_command, run_command
+from codriving.commands.compare import EXPERIMENT
 from codriving.errors import ConfigError
-from codriving.experiment import comparison_command, run_command
-from codriving.experiment.compare import EXPERIMENT
 
 PACKAGE = "toy_methods"
 SOURCE = '''"""Methods for tests."""
@@ -64,7 +64,7 @@ def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     first = {"single-vehicle": "ppo_toy"}
     others = {"single-vehicle": "fcfs_toy"}
     monkeypatch.setattr(
-        import_module("codriving.experiment.compare"),
+        import_module("codriving.commands.compare"),
         "taking_part",
         lambda table: (first.get(table, "fcfs_toy"), others.get(table, "madqn_toy"), "codriving"),
     )

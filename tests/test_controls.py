@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import codriving
-from codriving.experiment.compare import comparison_command
-from codriving.experiment.run import run_command
+from codriving.commands.compare import comparison_command
+from codriving.commands.run import run_command
 
 SHORT = ("scenario.cavs=2", "scenario.hdvs=[2,2]", "scenario.time_limit=4", "seed=10000", "episodes=2")
 
@@ -36,7 +36,7 @@ def test_one_and_two_workers_drive_the_same(tmp_path: Path) -> None:
 def test_filters_are_a_table(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(import_module("codriving.experiment.compare"), "taking_part", lambda _: ("ppo", "codriving"))
+    monkeypatch.setattr(import_module("codriving.commands.compare"), "taking_part", lambda _: ("ppo", "codriving"))
     # Long enough for a collision: the learned method has one on the first of these seeds.
     asked = [
         "launcher=serial",

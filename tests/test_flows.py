@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import codriving
+from codriving.commands import RUN, ReplayOptions, run_command, run_replay
 from codriving.errors import RunFolderError
-from codriving.experiment import RUN, ReplayOptions, run_command, run_replay
 
 SHORT = ("flow=steady", "flow.warm_up=5", "flow.window=15", "flow.arrivals=500", "seed=10000", "method=fcfs")
 

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 import codriving
+from codriving.commands.ablation import ABLATE
+from codriving.commands.run import run_command, run_experiment
 from codriving.config.choices import choices
 from codriving.errors import ConfigError, RunFolderError
-from codriving.experiment.ablation import ABLATE
-from codriving.experiment.run import run_command, run_experiment
 
 SHORT = ("scenario.time_limit=3", "launcher=serial")
 TABLES = ("episodes.csv", "summary.csv", "summary.md")

@@ -25,7 +25,7 @@ def run(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowConf
 
     The same command with the same run=NAME goes on where it was interrupted.
     """
-    from codriving.experiment import RUN, run_command
+    from codriving.commands import RUN, run_command
 
     raise typer.Exit(run_command(RUN, overrides or [], config_dir, cfg))
 
@@ -35,7 +35,7 @@ def ablate(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowC
 
     controls=false leaves the controls out.
     """
-    from codriving.experiment import ABLATE, run_command
+    from codriving.commands import ABLATE, run_command
 
     raise typer.Exit(run_command(ABLATE, overrides or [], config_dir, cfg))
 
@@ -64,7 +64,7 @@ def compare(
 
     method=NAME adds a method of your own; controls=false leaves controls out.
     """
-    from codriving.experiment import comparison_command, run_command
+    from codriving.commands import comparison_command, run_command
 
     raise typer.Exit(run_command(comparison_command(table, bound), overrides or [], config_dir, cfg))
 
@@ -85,7 +85,7 @@ def stress(
     codriving list axes shows the axes. method=NAME,NAME takes other methods than the usual ones; controls=false leaves
     controls out. The same command with the same run=NAME goes on where it was interrupted.
     """
-    from codriving.experiment import run_command, stress_command
+    from codriving.commands import run_command, stress_command
 
     raise typer.Exit(run_command(stress_command(axes, config_dir), overrides or [], config_dir, cfg))
 
@@ -111,7 +111,7 @@ def bound(
     A proven bound at intersection and roundabout, human drivers left out; at merge and highway the time alone. The same
     command with the same run=NAME goes on where it was interrupted.
     """
-    from codriving.experiment import BoundOptions, run_bound
+    from codriving.commands import BoundOptions, run_bound
 
     raise typer.Exit(run_bound(overrides or [], BoundOptions(measure, margin, one_order, driven, config_dir)))
 
@@ -122,7 +122,7 @@ def learn(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowCo
     interactions=0,2,5,10,20 says after how many; scenario=all and three CDA levels are tested unless you name some.
     The same command with the same run=NAME goes on where it was interrupted.
     """
-    from codriving.experiment import run_learn
+    from codriving.commands import run_learn
 
     raise typer.Exit(run_learn(overrides or [], config_dir, cfg))
 
@@ -142,7 +142,7 @@ def join(
 
     Each shard leaves a part in the folder of the run. The joined run is as if one process had driven it.
     """
-    from codriving.experiment import JoinOptions, run_join
+    from codriving.commands import JoinOptions, run_join
 
     raise typer.Exit(run_join(runs, JoinOptions(config_dir, plugins, mixed)))
 
@@ -152,7 +152,7 @@ def check(overrides: Overrides = None, config_dir: ConfigDir = None) -> None:
 
     Exit code 0 if both were answered in form, 1 if a fallback was needed, 2 if the model cannot be reached.
     """
-    from codriving.experiment import run_check
+    from codriving.commands import run_check
 
     raise typer.Exit(run_check(overrides or [], config_dir))
 
@@ -180,7 +180,7 @@ def replay(
     config_dir: ConfigDir = None,
 ) -> None:
     """Show a stored episode: road, vehicles, conflicts, what every CAV decides and why."""
-    from codriving.experiment import ReplayOptions, run_replay
+    from codriving.commands import ReplayOptions, run_replay
 
     options = ReplayOptions(cell, episode, format, out, speed, fps, scale, frame, config_dir, tuple(overrides or ()))
     print(run_replay(run, options))
@@ -203,7 +203,7 @@ def score(
     Files: trajectory.csv of an episode, a tidy CSV (time, id, x, y), tracks of INTERACTION or inD, SUMO's --fcd-output,
     or an .xlsx of the paper's authors.
     """
-    from codriving.experiment import ScoreOptions, run_score
+    from codriving.commands import ScoreOptions, run_score
 
     run_score(words or [], ScoreOptions(csv, pets, config_dir))
 
@@ -223,7 +223,7 @@ def export(
     fcd: floating car data as SUMO's --fcd-output. interhub: the interactions, in the columns of InterHub's table.
     csv: a tidy table with sizes and routes.
     """
-    from codriving.experiment import ExportOptions, run_export
+    from codriving.commands import ExportOptions, run_export
 
     print(run_export(run, ExportOptions(to, cell, episode, out, config_dir)))
 

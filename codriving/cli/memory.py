@@ -26,7 +26,7 @@ def build(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowCo
 
     The same command with the same run=NAME goes on where it was interrupted, or grows it by more interactions.
     """
-    from codriving.experiment import BUILD, run_command
+    from codriving.commands import BUILD, run_command
 
     raise typer.Exit(run_command(BUILD, overrides or [], config_dir, cfg))
 
@@ -39,7 +39,7 @@ def show(
     most: Most = 5,
 ) -> None:
     """Show what a memory is of, and what was experienced most often."""
-    from codriving.experiment import show_page
+    from codriving.commands import show_page
 
     print(show_page(file, most))
 
@@ -51,7 +51,7 @@ def search(
     most: Most = 5,
 ) -> None:
     """Search a memory for words."""
-    from codriving.experiment import search_page
+    from codriving.commands import search_page
 
     print(search_page(text, file, most))
 
@@ -68,6 +68,6 @@ def merge(
     ] = 0.98,
 ) -> None:
     """Merge two memories into a new file; neither of them is changed."""
-    from codriving.experiment import merge_page
+    from codriving.commands import merge_page
 
     print(merge_page(first, second, out, duplicates))

@@ -1,50 +1,30 @@
-"""Config -> cells -> records -> the tables that are printed and kept; one file a command."""
+"""Config -> cells -> records: what every command drives."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from codriving.experiment.ablation import ABLATE
-    from codriving.experiment.bounds import BoundOptions, run_bound
-    from codriving.experiment.check import run_check
-    from codriving.experiment.compare import Comparison, compare_frames, comparison_command
-    from codriving.experiment.export import ExportOptions, run_export
-    from codriving.experiment.join import JoinOptions, run_join
-    from codriving.experiment.learn import run_learn
-    from codriving.experiment.memory_build import BUILD
-    from codriving.experiment.memory_pages import merge_page, search_page, show_page
-    from codriving.experiment.replay import ReplayOptions, run_replay
-    from codriving.experiment.run import RUN, Results, run_command, run_frames
-    from codriving.experiment.score import ScoreOptions, run_score
-    from codriving.experiment.stress import stress_command
+from codriving.experiment.as_in_paper import results_of
+from codriving.experiment.asking import REPLAY, announce
+from codriving.experiment.batch import Driven, Ended, Finished, HaltedError, Interrupted, Outputs, drive, driving
+from codriving.experiment.cells import Cell, shown_apart, swept_values
+from codriving.experiment.flows import is_flow
+from codriving.experiment.joining import FoundPart, Joining, check_alike, find_parts
+from codriving.experiment.objects import make_objects, model_of
+from codriving.experiment.plan import Plan, cell_name, composed, make_plan, refuse_flows, suite_of, validated
+from codriving.experiment.remembering import learns, memory_file
+from codriving.experiment.scoring import lacks, scorers_of
+from codriving.experiment.shards import SHARD, refuse_nameless, refuse_part, without_shard
+from codriving.experiment.stored import (
+    StoredEpisode,
+    all_episodes,
+    find_episode,
+    find_run,
+    read_episode,
+    read_film,
+    road_of,
+)
 
 __all__ = [
-    "ABLATE", "BUILD", "RUN", "BoundOptions", "Comparison", "ExportOptions", "JoinOptions", "ReplayOptions", "Results",
-    "ScoreOptions", "compare_frames", "comparison_command", "merge_page", "run_bound", "run_check", "run_command",
-    "run_export", "run_frames", "run_join", "run_learn", "run_replay", "run_score", "search_page", "show_page",
-    "stress_command",
+    "REPLAY", "SHARD", "Cell", "Driven", "Ended", "Finished", "FoundPart", "HaltedError", "Interrupted", "Joining",
+    "Outputs", "Plan", "StoredEpisode", "all_episodes", "announce", "cell_name", "check_alike", "composed", "drive",
+    "driving", "find_episode", "find_parts", "find_run", "is_flow", "lacks", "learns", "make_objects", "make_plan",
+    "memory_file", "model_of", "read_episode", "read_film", "refuse_flows", "refuse_nameless", "refuse_part",
+    "results_of", "road_of", "scorers_of", "shown_apart", "suite_of", "swept_values", "validated", "without_shard",
 ]  # fmt: skip
-
-_FILES = {
-    "ablation": ("ABLATE",),
-    "bounds": ("BoundOptions", "run_bound"),
-    "check": ("run_check",),
-    "compare": ("Comparison", "compare_frames", "comparison_command"),
-    "export": ("ExportOptions", "run_export"),
-    "join": ("JoinOptions", "run_join"),
-    "learn": ("run_learn",),
-    "memory_build": ("BUILD",),
-    "memory_pages": ("merge_page", "search_page", "show_page"),
-    "replay": ("ReplayOptions", "run_replay"),
-    "run": ("RUN", "Results", "run_command", "run_frames"),
-    "score": ("ScoreOptions", "run_score"),
-    "stress": ("stress_command",),
-}
-
-
-def __getattr__(name: str) -> object:
-    """Import a command with the first use of its name: one command does not wait for what another one needs."""
-    for file, names in _FILES.items():
-        if name in names:
-            return getattr(import_module(f"{__name__}.{file}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -18,7 +18,7 @@ class Asked:
         self.models = {folder: model for folder, model in found.items() if model and model.chat()}
         self.retries = 0
         for client in _clients(self.models.values()):
-            client.on_retry, client.on_note = self._tell_retry, tell
+            client.on_retry, client.on_note = self._tell_retry, announce
 
     @property
     def names(self) -> dict[str, str]:
@@ -49,7 +49,7 @@ class Asked:
         """Name the models that have given no usable answer at all."""
         for client in _clients(self.models.values()):
             if asked := client.never_answered:
-                tell(f"{client.name}: no usable answer to any of {asked} questions; see what codriving check says")
+                announce(f"{client.name}: no usable answer to any of {asked} questions; see what codriving check says")
 
     def fall_silent(self) -> None:
         """Say no more of requests that are still under way when a batch has ended."""
@@ -66,10 +66,10 @@ class Asked:
     def _tell_retry(self, retry: object) -> None:
         # All requests are sent on one loop, so that no two of these run at the same time.
         self.retries += 1
-        tell(retry)
+        announce(retry)
 
 
-def tell(note: object) -> None:
+def announce(note: object) -> None:
     """Say something about a model beside the results."""
     print(note, file=sys.stderr, flush=True)
 

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 from codriving.datatypes import Ending
 from codriving.errors import DamagedEpisodeError, RunFolderError
-from codriving.experiment.drive import manifest_of
+from codriving.experiment.batch import manifest_of
 from codriving.experiment.launchers import Launcher
 from codriving.experiment.plan import Plan
 from codriving.experiment.worker import Job, Report, Unit

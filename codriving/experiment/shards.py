@@ -9,7 +9,7 @@ from codriving.experiment.cells import Cell
 from codriving.experiment.remembering import learns
 from codriving.runs import Shard, redact
 
-KEY, SLURM = "shard", "slurm"
+SHARD, SLURM = "shard", "slurm"
 
 _ARRAY = "SLURM_ARRAY_TASK_"
 _FIELDS = ("llm.headers", "llm.extra")  # Where a key may stand under any name
@@ -83,4 +83,4 @@ def refuse_part(cells: Sequence[Cell], overrides: Sequence[str]) -> None:
 
 def without_shard(overrides: Sequence[str]) -> list[str]:
     """Take ``shard=`` out of the tokens."""
-    return [token for token in overrides if token.lstrip("+").partition("=")[0] != KEY]
+    return [token for token in overrides if token.lstrip("+").partition("=")[0] != SHARD]

@@ -178,7 +178,7 @@ def test_a_bug_is_one_line_that_names_the_file_of_its_traceback(
     def broken(*_: object) -> int:
         raise RuntimeError("a bug")
 
-    monkeypatch.setattr("codriving.experiment.run_command", broken)
+    monkeypatch.setattr("codriving.commands.run_command", broken)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     result = call("run")
     assert (result.exit_code, result.stdout) == (2, "")
@@ -280,7 +280,7 @@ def test_an_interruption_before_the_batch_is_exit_code_130(monkeypatch: pytest.M
     def interrupted(*_: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("codriving.experiment.run_command", interrupted)
+    monkeypatch.setattr("codriving.commands.run_command", interrupted)
     assert call("run").exit_code == 130
 
 
@@ -292,7 +292,7 @@ def test_the_exit_code_is_the_experiments(monkeypatch: pytest.MonkeyPatch, code:
         given.extend(args)
         return code
 
-    monkeypatch.setattr("codriving.experiment.run_command", experiment)
+    monkeypatch.setattr("codriving.commands.run_command", experiment)
     assert call("run", "episodes=3", "+seed=4").exit_code == code
     assert given[1:] == [["episodes=3", "+seed=4"], None, False]
 
@@ -312,7 +312,7 @@ def test_cfg_of_a_sweep_is_a_document_for_each_cell(command: str, cells: int) ->
 def test_cfg_prints_the_config_and_runs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     import yaml
 
-    monkeypatch.setattr("codriving.experiment.run.drive", None)
+    monkeypatch.setattr("codriving.commands.run.drive", None)
     result = call("run", "--cfg", "episodes=3", "cda=prescriptive")
     assert result.exit_code == 0
     shown = yaml.safe_load(result.stdout)

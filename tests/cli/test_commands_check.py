@@ -7,8 +7,8 @@ from typer.testing import CliRunner, Result
 
 from codriving.cli.app import app
 from codriving.cli.completion import TypedLine, complete_override
+from codriving.commands.check import report
 from codriving.errors import ModelError
-from codriving.experiment.check import report
 
 KEY = "sk-9d8f7a6s5d4f"
 

@@ -10,7 +10,7 @@ from PIL import Image
 from typer.testing import CliRunner, Result
 
 from codriving.cli.app import app
-from codriving.experiment.run import run_experiment
+from codriving.commands.run import run_experiment
 from codriving.runs.episode_folder import DECISIONS
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from codriving.commands.compare import comparison
 from codriving.config.choices import TABLES, taking_part
-from codriving.experiment.compare import comparison
 from codriving.reports.comparison import CPU, comparison_table
 from codriving.reports.pairs import AGAINST, PAIRED
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from codriving.commands import stress_command
+from codriving.commands.stress import SHARED
 from codriving.config.choices import CONTROLS, choices, taking_part
 from codriving.config.compose import compose
 from codriving.config.stress import stress_axis
-from codriving.experiment import stress_command
-from codriving.experiment.stress import SHARED
 from codriving.reports.stress import breaking_table, stress_table
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "stress.md").read_text(encoding="utf-8")

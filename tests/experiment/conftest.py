@@ -1,4 +1,4 @@
-"""Makes ``toy_drive`` importable here and, since the search path travels along, in worker processes."""
+"""Makes ``test_batch`` importable here, whose helpers other tests of this room use."""
 
 import sys
 from pathlib import Path

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 import codriving.experiment.film
+from codriving.commands.run import run_experiment
 from codriving.datatypes.record import Ending
 from codriving.errors import FilmError
 from codriving.experiment.film import FILM, FILM_ERROR, FilmEpisode
-from codriving.experiment.run import run_experiment
 from codriving.experiment.worker import Unit
 
 

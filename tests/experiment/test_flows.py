@@ -2,11 +2,11 @@
 
 import pytest
 
+from codriving.commands.compare import comparison_command
+from codriving.commands.learn import run_learn
+from codriving.commands.memory_build import build_points
 from codriving.config.sweep import Point, expand
 from codriving.errors import ConfigError
-from codriving.experiment.compare import comparison_command
-from codriving.experiment.learn import run_learn
-from codriving.experiment.memory_build import build_points
 from codriving.experiment.plan import make_plan
 
 REFUSED = [

@@ -12,16 +12,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_drive import all_files, cut, deterministic, rewrite
+from test_batch import all_files, cut, deterministic, rewrite
 from toy_plan import toy, toy_cell, toy_plan
 
+from codriving.commands import join
+from codriving.commands.join import JoinOptions, run_join
+from codriving.commands.run import RUN, run_command
 from codriving.errors import RunFolderError, UserError
-from codriving.experiment import join
+from codriving.experiment.batch import drive, driving
 from codriving.experiment.cells import Cell
-from codriving.experiment.drive import drive, driving
-from codriving.experiment.join import JoinOptions, run_join
 from codriving.experiment.launchers import Serial
-from codriving.experiment.run import RUN, run_command
 from codriving.runs.episode_folder import read_record
 from codriving.runs.intact import rewrite_record
 from codriving.runs.parts import Part, Shard
@@ -190,9 +190,9 @@ def test_workers_and_places_may_differ(tmp_path: Path, episodes: list[int], refe
 def test_parts_of_different_versions_are_joined_only_on_demand(
     tmp_path: Path, episodes: list[int], monkeypatch: pytest.MonkeyPatch, reference: Mapping[str, bytes]
 ) -> None:
-    monkeypatch.setattr("codriving.experiment.drive.versions", lambda: {"numpy": "1"})
+    monkeypatch.setattr("codriving.experiment.batch.versions", lambda: {"numpy": "1"})
     run = shard(tmp_path, 1).parent.parent
-    monkeypatch.setattr("codriving.experiment.drive.versions", lambda: {"numpy": "2"})
+    monkeypatch.setattr("codriving.experiment.batch.versions", lambda: {"numpy": "2"})
     second = shard(tmp_path, 2)
     with pytest.raises(RunFolderError, match="were driven by different versions: numpy 1 -> 2; drive one"):
         joined(run)
@@ -319,8 +319,8 @@ def test_a_shard_says_what_it_has_driven_and_what_comes_next(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     plan = replace(toy_plan(tmp_path), launcher=Serial(), shard=Shard(2, 3))
-    monkeypatch.setattr("codriving.experiment.run.make_plan", lambda *_: plan)
-    monkeypatch.setattr("codriving.experiment.drive.BuildObjects", toy(raises=(4,)))
+    monkeypatch.setattr("codriving.commands.run.make_plan", lambda *_: plan)
+    monkeypatch.setattr("codriving.experiment.batch.BuildObjects", toy(raises=(4,)))
     assert run_command(RUN, ["scenario=toy", "shard=slurm", "run=mine"]) == 1
     lines = capsys.readouterr().out.splitlines()
     run = tmp_path / "run" / "mine"

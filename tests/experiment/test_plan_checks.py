@@ -2,9 +2,9 @@
 
 import pytest
 
+from codriving.commands.ablation import ablation_points
 from codriving.config.sweep import Point, expand
 from codriving.errors import ConfigError
-from codriving.experiment.ablation import ablation_points
 from codriving.experiment.plan import cell_name, composed, make_plan, validated
 
 

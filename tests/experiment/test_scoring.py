@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from codriving.config.sweep import expand
-from codriving.experiment.drive import Finished, drive
+from codriving.experiment.batch import Finished, drive
 from codriving.experiment.plan import make_plan
 from codriving.experiment.scoring import names_of_scores
 

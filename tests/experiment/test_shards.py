@@ -5,14 +5,14 @@ from pathlib import Path
 import pytest
 
 import codriving
+from codriving.commands.bounds import BoundOptions, run_bound
+from codriving.commands.learn import run_learn
+from codriving.commands.memory_build import build_points
+from codriving.commands.run import run_experiment
 from codriving.config.compose import compose
 from codriving.config.sweep import expand
 from codriving.errors import ConfigError
-from codriving.experiment.bounds import BoundOptions, run_bound
-from codriving.experiment.learn import run_learn
-from codriving.experiment.memory_build import build_points
 from codriving.experiment.plan import make_plan
-from codriving.experiment.run import run_experiment
 from codriving.experiment.shards import refuse_part, shard_of
 from codriving.runs.parts import Shard
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from codriving.commands.run import run_experiment
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.errors import ConfigError, RunFolderError
-from codriving.experiment.run import run_experiment
 from codriving.experiment.stored import _filled, find_episode, find_run, read_film, road_of
 from codriving.runs.episode_folder import DECISIONS, RECORD
 from codriving.runs.manifest import MANIFEST

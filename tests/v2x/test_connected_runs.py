@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from codriving.experiment.run import run_experiment
+from codriving.commands.run import run_experiment
 
 TYPED = ("v2x=poor", "method=codriving,madqn,pidm", "filter=true", "scenario.time_limit=3", "seed=11", "run=x")
 

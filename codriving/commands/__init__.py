@@ -1,0 +1,50 @@
+"""Config -> cells -> records -> the tables that are printed and kept; one file a command."""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from codriving.commands.ablation import ABLATE
+    from codriving.commands.bounds import BoundOptions, run_bound
+    from codriving.commands.check import run_check
+    from codriving.commands.compare import Comparison, compare_frames, comparison_command
+    from codriving.commands.export import ExportOptions, run_export
+    from codriving.commands.join import JoinOptions, run_join
+    from codriving.commands.learn import run_learn
+    from codriving.commands.memory_build import BUILD
+    from codriving.commands.memory_pages import merge_page, search_page, show_page
+    from codriving.commands.replay import ReplayOptions, run_replay
+    from codriving.commands.run import RUN, Results, run_command, run_frames
+    from codriving.commands.score import ScoreOptions, run_score
+    from codriving.commands.stress import stress_command
+
+__all__ = [
+    "ABLATE", "BUILD", "RUN", "BoundOptions", "Comparison", "ExportOptions", "JoinOptions", "ReplayOptions", "Results",
+    "ScoreOptions", "compare_frames", "comparison_command", "merge_page", "run_bound", "run_check", "run_command",
+    "run_export", "run_frames", "run_join", "run_learn", "run_replay", "run_score", "search_page", "show_page",
+    "stress_command",
+]  # fmt: skip
+
+_FILES = {
+    "ablation": ("ABLATE",),
+    "bounds": ("BoundOptions", "run_bound"),
+    "check": ("run_check",),
+    "compare": ("Comparison", "compare_frames", "comparison_command"),
+    "export": ("ExportOptions", "run_export"),
+    "join": ("JoinOptions", "run_join"),
+    "learn": ("run_learn",),
+    "memory_build": ("BUILD",),
+    "memory_pages": ("merge_page", "search_page", "show_page"),
+    "replay": ("ReplayOptions", "run_replay"),
+    "run": ("RUN", "Results", "run_command", "run_frames"),
+    "score": ("ScoreOptions", "run_score"),
+    "stress": ("stress_command",),
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import a command with the first use of its name: one command does not wait for what another one needs."""
+    for file, names in _FILES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{file}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

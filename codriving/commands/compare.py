@@ -1,0 +1,268 @@
+"""`codriving compare`: methods on the same seeds, as cells, as tables and figures, and as data frames for Python."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from codriving.commands.compare_filters import NO_FLOWS, filter_points, make_filters
+from codriving.commands.compare_orders import ORDER, as_orders, order_points, subject_of
+from codriving.commands.controls import split_controls
+from codriving.commands.run import Command
+from codriving.config import (
+    CONTROLS,
+    SUITE,
+    TABLES,
+    Point,
+    check_choice,
+    choices,
+    config_folder,
+    describe,
+    expand,
+    experiments_dir,
+    parse,
+    sets_scenario,
+    styles,
+    taking_part,
+    written,
+)
+from codriving.errors import ConfigError
+from codriving.experiment import Cell, Driven, Outputs, drive, make_plan, refuse_flows, results_of
+from codriving.reports import (
+    METHOD_CHOICE,
+    METHODS,
+    REFERENCE,
+    CellResults,
+    Compared,
+    Condition,
+    Paper,
+    Subject,
+    comparison_rows,
+    comparison_table,
+    cpu_per_decision,
+    flow_table,
+    load_figure,
+    load_rows,
+    load_table,
+    markdown_text,
+    print_comparison,
+    print_each_load,
+    print_flows,
+    print_loads,
+    print_pairs,
+    profile_figure,
+    read_paper,
+    with_corrected,
+)
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+BASELINES, SINGLE_VEHICLE, ALL = "baselines", "single-vehicle", "all"
+LOAD, ORDERS, FILTERS = "load", "orders", "filters"
+
+# The folder of each table's runs, if the user names none.
+EXPERIMENT = {BASELINES: "compare", SINGLE_VEHICLE: "compare-single-vehicle", ALL: "compare-all", LOAD: "load"}
+EXPERIMENT |= {ORDERS: "compare-orders", FILTERS: "compare-filters"}
+
+CAVS = "scenario.cavs"  # The key that the load is
+
+# What `codriving compare load` drives, as far as the user does not set it.
+LOADED = ("scenario=intersection,roundabout", f"{CAVS}=4,6,8,12")
+
+# Why there are no flows in it.
+UNBOUNDED = "no bound is defined for a flow, in which vehicles keep coming; leave --bound out"
+UNLOADED = (
+    "codriving compare load varies the number of CAVs, which a flow does not have; write for instance codriving "
+    "compare baselines flow=steady flow.arrivals=200,400,600"
+)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What a comparison gives to Python."""
+
+    table: "DataFrame"  # The comparison itself, as in ``comparison.csv`` or ``load.csv``
+    episodes: "DataFrame"
+    summary: "DataFrame"
+    folder: Path
+
+
+def comparison_command(table: str | None, bounded: bool = False) -> Command:
+    """Return the command of a table of ``codriving compare``; bounded with columns of what is above the bound."""
+    if not isinstance(table, str) or table not in TABLES:
+        given = "compare needs the name of a table" if table is None else f"unknown table {table!r}"
+        raise ConfigError(f"{given}; write codriving compare TABLE [KEY=VALUE]..., tables: {', '.join(TABLES)}")
+    points, name = partial(comparison, table), f"compare {table}"
+    if bounded and table in (LOAD, FILTERS):
+        raise ConfigError(f"compare {table} has no columns of the bound; write codriving compare baselines --bound")
+    if table == LOAD:
+        return Command(name, points, partial(refuse_flows, UNLOADED), make_loads)
+    if table == FILTERS:
+        return Command(name, points, partial(refuse_flows, NO_FLOWS), make_filters)
+    if bounded:
+        made = partial(make_comparison, table, bounded=True)
+        return Command(f"{name} --bound", points, partial(refuse_flows, UNBOUNDED), made)
+    return Command(name, points, make_outputs=partial(make_comparison, table))
+
+
+def compare_frames(
+    table: str, *overrides: str, config_dir: str | Path | None = None, bound: bool = False
+) -> Comparison:
+    """Drive all methods on the same seeds and give the tables as data frames; prints no table.
+
+    Args:
+        table: ``baselines``, ``single-vehicle``, ``all``, ``load``, ``orders`` or ``filters``.
+        *overrides: ``key=value`` tokens that hold for every cell; ``method=`` adds methods.
+        bound: Whether it is said how far each row is above the bound of its scenes.
+
+    Raises:
+        UserError: If the table, the config or the run folder cannot be used.
+        KeyboardInterrupt: If the user stops it; finished episodes are kept.
+    """
+    folder = config_folder(config_dir)
+    command = comparison_command(table, bound)
+    finished = drive(make_plan(command.points(overrides, folder), folder), command.make_outputs)
+    (own,) = finished.outputs.tables
+    return Comparison(own.frame(), finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
+
+
+def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
+    """Find out what a comparison consists of.
+
+    Every method of the table that has a YAML takes part. ``method=`` adds others to them; controls come last.
+    """
+    controlled, overrides = split_controls(written(overrides), usual=table not in (LOAD, ORDERS, FILTERS))
+    keys = [parse(token).key_or_group for token in overrides]
+    added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
+    others = [token for token, key in zip(overrides, keys, strict=True) if key != "method"]
+    if table == LOAD:
+        named = [*keys, *(["scenario"] if sets_scenario(overrides, config_dir) else [])]
+        others = [*(token for token in LOADED if token.partition("=")[0] not in named), *others]
+    # Asked for once more on the command line, it is the user's.
+    base = () if "experiment" in keys else (f"experiment={EXPERIMENT[table]}",)
+    methods = list(dict.fromkeys([*_methods(table, added, config_dir), *(taking_part(CONTROLS) if controlled else ())]))
+    if table == ORDERS:
+        return order_points(base, others, methods, config_dir)
+    if table == FILTERS:
+        return filter_points(base, others, methods, config_dir)
+    return [
+        Point((*base, *point.overrides, f"method={name}"), {**point.swept, "method": name}, point.removed)
+        for point in expand(others, config_dir)
+        for name in methods
+    ]
+
+
+def _methods(table: str, added: Sequence[str], config_dir: Path | None) -> list[str]:
+    """The methods that take part: those of the table that exist, then what the user adds."""
+    own = [point.overrides[0].partition("=")[2] for token in added for point in expand([token], config_dir)]
+    known = choices("method", config_dir)
+    for name in own:
+        check_choice("method", name, config_dir)
+    return [*(name for name in taking_part(ALL if table == FILTERS else table) if name in known), *own]
+
+
+def setting(resolved: Mapping[str, Any], varied: Sequence[str] = ()) -> str:
+    """Mark the setting of a cell: cells with the same mark differ in the method, and what else is varied, alone."""
+    kept = {key: value for key, value in resolved.items() if key not in ("method", "plugins", *varied)}
+    return json.dumps(kept, sort_keys=True)
+
+
+def make_comparison(table: str, driven: Driven, bounded: bool = False) -> Outputs:
+    """Make a comparison of methods."""
+    if driven.flows:
+        return _compared_flows(table, driven)
+    varied = (ORDER,) if table == ORDERS else ()
+    paper, metrics = Paper() if varied else read_paper(experiments_dir()), driven.metrics
+    blocks: dict[str, list[tuple[Cell, CellResults]]] = {}
+    for cell, results in _results(driven):
+        blocks.setdefault(setting(cell.resolved, varied), []).append((cell, results))
+    found: list[Compared] = []
+    bounds = None
+    if bounded:
+        # Nothing else of a comparison needs scipy's solvers.
+        from codriving.commands.above import BoundsOfRun
+
+        bounds = BoundsOfRun(driven.folder)
+    for block in blocks.values():
+        own = comparison_rows([results for _, results in block], taking_part(table), paper)
+        found += bounds.over(own, block) if bounds else own
+    rows = with_corrected(found)
+    swept = tuple(dict.fromkeys(key for block in blocks.values() for _, results in block for key in results.swept))
+    whole = comparison_table(rows, swept)
+    pages, printed = [], []
+    rows = as_orders(rows) if varied else rows
+    conditions = conditions_of(rows, subject_of(rows) if varied else METHODS, driven.config_dir)
+    further = (*(bounds.notes if bounds else ()), *driven.notes)
+    for condition, members in conditions:
+        # One table a suite, which its title names.
+        keys = tuple(key for key in swept if not condition.name or key != SUITE)
+        kept, screen = (
+            print_comparison(members, metrics, keys, screen, condition, further) for screen in (False, True)
+        )
+        against = print_pairs(members, metrics, keys, condition)
+        pages += [markdown_text(kept), *([markdown_text(against, level=2)] if against else [])]
+        printed += [screen, *([against] if against else [])]
+    files = {"comparison.csv": whole.csv().encode(), "comparison.md": "\n".join(pages).encode()}
+    if len(conditions) > 1:
+        figures = profile_figure([(c.name, members) for c, members in conditions], metrics)
+        files |= {f"figures/{name}": content for name, content in figures.items()}
+    return Outputs(files, tuple(printed), (whole,))
+
+
+def conditions_of(
+    rows: Sequence[Compared], subject: Subject, config_dir: Path | None = None
+) -> list[tuple[Condition, list[Compared]]]:
+    """Part the rows of a comparison by suite, if several were driven."""
+    groups: dict[str, list[Compared]] = {}
+    for row in rows:
+        groups.setdefault(row.swept.get(SUITE, ""), []).append(row)
+    last, files = next(reversed(groups), ""), choices(SUITE, config_dir)
+    return [
+        (Condition(name, describe(files[name]) if name in files else "", name == last, subject, tuple(rows)), members)
+        for name, members in groups.items()
+    ]
+
+
+def _compared_flows(table: str, driven: Driven) -> Outputs:
+    """Make a comparison of methods in flows, in which nothing is paired."""
+    cells = [results for _, results in _results(driven)]
+    swept = tuple(dict.fromkeys(key for results in cells for key in results.swept))
+    rows = [Compared(cell.first.scenario, cell.first.method, cell=cell) for cell in cells]
+    notes = (f"{REFERENCE} full goes by the negotiated order.", *subject_of(rows).notes) if table == ORDERS else ()
+    notes = (*notes, *driven.notes)
+    kept, printed = (print_flows(cells, driven.metrics, swept, notes, screen) for screen in (False, True))
+    whole = flow_table(cells, swept)
+    files = {"comparison.csv": whole.csv().encode(), "comparison.md": markdown_text(kept).encode()}
+    return Outputs(files, (printed,), (whole,))
+
+
+def make_loads(driven: Driven) -> Outputs:
+    """Make the table and the figure of loads."""
+    cells = [(int(cell.resolved["scenario"]["cavs"]), results) for cell, results in _results(driven, without=CAVS)]
+    loads = list(dict.fromkeys(cavs for cavs, _ in cells))
+    rows = load_rows(cells, taking_part(LOAD))
+    swept = tuple(dict.fromkeys(key for _, results in cells for key in results.swept))
+    table = load_table(rows, loads, swept)
+    kept = print_loads(rows, loads, driven.metrics, swept).with_notes(driven.notes)
+    *first, last = print_each_load(rows, loads, driven.metrics, swept)
+    files = {"load.csv": table.csv().encode(), "load.md": markdown_text(kept).encode()}
+    figures = load_figure(rows, loads, driven.metrics, styles())
+    files |= {f"figures/{name}": content for name, content in figures.items()}
+    return Outputs(files, (*first, last.with_notes(driven.notes)), (table,))
+
+
+def _results(driven: Driven, without: str = "") -> Iterator[tuple[Cell, CellResults]]:
+    dropped = {without}
+    if len({_row(cell) for cell in driven.cells}) == len(driven.cells):
+        dropped.add(METHOD_CHOICE)
+    for cell, records, timings in zip(driven.cells, driven.records, driven.timings, strict=True):
+        swept = {key: value for key, value in cell.swept.items() if key not in dropped}
+        yield cell, results_of(cell, records, swept, cpu_per_decision(timings))
+
+
+def _row(cell: Cell) -> tuple[object, ...]:
+    """What tells a row from the others without the choice of its method."""
+    return (cell.labels, *(pair for pair in cell.swept.items() if pair[0] != METHOD_CHOICE))

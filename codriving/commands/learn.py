@@ -1,0 +1,181 @@
+"""`codriving learn`: memories of so many interactions, then the same tests with each (paper, learning figure)."""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime
+from functools import partial
+from pathlib import Path
+
+from codriving.commands.controls import split_controls
+from codriving.commands.memory_build import FIRST_SEED, MOST, count_of, refuse_forgetful, split_interactions
+from codriving.commands.run import Command, as_part, print_configs, report, resume_command, run_command, stopped
+from codriving.config import Point, expand, experiments_dir, parse, sets_scenario, written
+from codriving.errors import ConfigError
+from codriving.experiment import (
+    Driven,
+    HaltedError,
+    Interrupted,
+    Joining,
+    Outputs,
+    drive,
+    make_plan,
+    memory_file,
+    refuse_nameless,
+    refuse_part,
+    results_of,
+    without_shard,
+)
+from codriving.reports import (
+    LearningRow,
+    learning_figure,
+    learning_rows,
+    learning_table,
+    markdown_text,
+    print_learning,
+    read_learning,
+)
+
+SIZES = (0, 2, 5, 10, 20)  # Interactions after which is tested, unless the user says otherwise
+
+KEY = "memory.interactions"  # The key that is swept
+
+CONTROL = "memory.control"  # The key by which a memory becomes a control
+
+ALTERED = ("verdicts", "situations", "rule")  # The controls, each of the most interactions
+
+# CDA levels, unless the user names some: everything, nothing negotiated, and only states shared.
+LEVELS = "cda=full,intent_sharing,status_sharing"
+
+
+def run_learn(
+    overrides: Sequence[str],
+    config_dir: Path | None = None,
+    show_only: bool = False,
+    joins: Joining | None = None,
+) -> int:
+    """Build memories, test with them, and print how success depends on what was learnt: ``codriving learn``.
+
+    Of several shards one learns, in order, while the others wait; then each drives its share of the tests.
+
+    Args:
+        overrides: ``key=value`` tokens, among them ``interactions=0,2,5``.
+        show_only: Print the configs with which it learns and drive nothing: the files of the tests are yet to be made.
+        joins: Brings the episodes of the tests from parts; nothing is driven.
+
+    Returns:
+        Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
+
+    Raises:
+        UserError: If the config or a run folder cannot be used.
+    """
+    controlled, others = split_controls(written(overrides), usual=True)
+    sizes, others = _sizes(others)
+    # Of no interactions there is nothing to mix up.
+    controls = ALTERED if controlled and max(sizes) > 0 else ()
+    points = settings_of(others, config_dir)
+    if show_only:
+        print_configs(build_points(points, max(SIZES), "learn"), config_dir)
+        return 0
+    # One name for both runs, so that the same command goes on with both.
+    named = [t.partition("=")[2] for t in others if t.partition("=")[0] == "run"]
+    run = named[-1] if named else datetime.now().strftime("%Y-%m-%d_%H%M%S")
+    shares = without_shard(others) != others
+    if shares:
+        refuse_nameless(run if named else None)
+    again = resume_command("learn", overrides, config_dir, run)
+    try:
+        builds = make_plan(build_points(points, max(sizes), run), config_dir, drives=joins is None)
+        refuse_forgetful(builds)
+        if shares:
+            refuse_part(builds.cells, others)
+        builds = joins.learnt(builds) if joins else replace(builds, waits=shares)
+        told = "; one shard learns, the others wait for it" if shares else ""
+        settings = f"{builds.episodes} interactions in each of {len(builds.cells)} settings"
+        if joins is None:
+            print(f"Learning: {settings}{told}.", file=sys.stderr)
+        learnt = drive(builds)
+        if learnt.failed:
+            return report(learnt, again)
+        files = [memory_file(learnt.folder, cell.folder) for cell in builds.cells]
+    except (Interrupted, HaltedError) as stop:
+        return stopped(stop, again)
+    tests = make_plan(frozen_points(points, files, sizes, run, controls), config_dir, drives=joins is None)
+    tests = joins.joined(tests) if joins else as_part(tests, "learn", overrides, config_dir)
+    if joins is None:
+        print(f"Testing: {tests.episodes} episodes in each of {len(tests.cells)} cells.", file=sys.stderr)
+    command = Command("learn", make_outputs=partial(learned, settings=len(points)))
+    return run_command(command, overrides, config_dir, plan=tests)
+
+
+def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:
+    """Give the settings that are learnt and tested in, one config each, without a memory."""
+    keys = [parse(token).key_or_group for token in overrides]
+    if "memory" in keys:
+        raise ConfigError("codriving learn sets memory itself; memory.shots and memory.least_similarity can be given")
+    named = {key.partition(".")[0] for key in keys}
+    if sets_scenario(overrides, config_dir):
+        named.add("scenario")
+    base = [token for token in ("scenario=all", LEVELS, "seed=0") if token.partition("=")[0] not in named]
+    return expand([*base, *overrides], config_dir)
+
+
+def build_points(points: Sequence[Point], interactions: int, run: str) -> list[Point]:
+    """Give what is driven to learn, one config a setting."""
+    base = ("memory=online", "experiment=learn-memory")
+    own = ("experiment", "episodes", "seed", "run", "render", "shard")
+    ends = (f"episodes={max(interactions, 1)}", f"seed={FIRST_SEED}", f"run={run}")
+    return [
+        replace(p, overrides=(*base, *(t for t in p.overrides if t.lstrip("+").partition("=")[0] not in own), *ends))
+        for p in points
+    ]
+
+
+def frozen_points(
+    points: Sequence[Point], files: Sequence[Path], sizes: Sequence[int], run: str, controls: Sequence[str] = ()
+) -> list[Point]:
+    """Give what is tested: every setting with the first interactions of its memory, then with its controls."""
+    cells = []
+    for point, file in zip(points, files, strict=True):
+        named = any(t.lstrip("+").startswith("experiment=") for t in point.overrides)
+        base = ("memory=frozen", *(() if named else ("experiment=learn",)))
+        kept = tuple(t for t in point.overrides if t.lstrip("+").partition("=")[0] != "run")
+        for size, control in [*((size, "none") for size in sizes), *((max(sizes), control) for control in controls)]:
+            own = (f"run={run}", f"{KEY}={size}", f"memory.file='{file}'", f"{CONTROL}={control}")
+            swept = {**point.swept, KEY: str(size), CONTROL: control}
+            cells.append(Point((*base, *kept, *own), swept, point.removed))
+    return cells
+
+
+def learned(driven: Driven, settings: int) -> Outputs:
+    """Make the learning table and figure."""
+    paper, each = read_learning(experiments_dir()), len(driven.cells) // settings
+    cells = []
+    for index, (cell, records) in enumerate(zip(driven.cells, driven.records, strict=True)):
+        other = {key: value for key, value in cell.swept.items() if key not in (KEY, CONTROL)}
+        results, memory = results_of(cell, records, other), cell.resolved["memory"]
+        size, control = int(memory["interactions"]), str(memory["control"])
+        cells.append(LearningRow(results, size, index // each, int(memory["shots"]), control=control))
+    rows = learning_rows(cells, paper)
+    swept = tuple(dict.fromkeys(key for row in rows for key in row.cell.swept))
+    table = learning_table(rows, swept)
+    display = print_learning(rows, driven.metrics, swept).with_notes(driven.notes)
+    figures = {f"figures/{name}": content for name, content in learning_figure(rows, paper, driven.metrics).items()}
+    files = {"learn.csv": table.csv().encode(), "learn.md": markdown_text(display).encode(), **figures}
+    return Outputs(files, (display,), (table,))
+
+
+def _sizes(overrides: Sequence[str]) -> tuple[list[int], list[str]]:
+    """Take ``interactions=`` out of the tokens."""
+    given, others = split_interactions(overrides)
+    if not given:
+        return list(SIZES), others
+    texts = given[-1].split(",")
+    sizes = [count_of(text) for text in texts]
+    counts = {size for size in sizes if size is not None and size <= MOST}
+    if None in sizes or len(counts) != len(set(sizes)):
+        raise ConfigError(
+            f"interactions must be whole numbers from 0 to {MOST}, for instance interactions=0,2,5, "
+            f"got {given[-1]!r:.100}"
+        )
+    return sorted(counts), others
