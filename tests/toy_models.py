@@ -9,7 +9,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parent / "episodes"))
+sys.path.insert(0, str(Path(__file__).parent))
 
 from toy_drive import ToyDeliberation, ToyEnvironment, ToyMethod, toy_scorers
 

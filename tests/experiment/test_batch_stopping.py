@@ -16,7 +16,7 @@ from toy_plan import EPISODES, toy, toy_plan
 from codriving.experiment.batch import drive
 from codriving.experiment.stopping import StopSignal, stopped_by_signals
 
-SCRIPT = Path(__file__).with_name("toy_plan.py")
+SCRIPT = Path(__file__).parents[1] / "toy_plan.py"
 DEADLINE = 30.0
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
