@@ -5,6 +5,7 @@ import sqlite3
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner, Result
@@ -103,6 +104,34 @@ def test_a_key_is_found_nowhere(
     assert CANARY not in result.output + captured.out + captured.err
     for path in tmp_path.rglob("*"):
         assert not path.is_file() or CANARY.encode() not in path.read_bytes(), path
+
+
+def test_finish_reasons_and_special_tokens_are_kept(tmp_path: Path) -> None:
+    details = {"prompt_tokens_details": {"cached_tokens": 7}, "completion_tokens_details": {"reasoning_tokens": 3}}
+
+    def wrap(body: dict[str, Any]) -> dict[str, Any]:
+        choice = {**body["choices"][0], "finish_reason": "length"}
+        return {**body, "model": "qwen.gguf", "choices": [choice], "usage": {**body["usage"], **details}}
+
+    with Loopback(lambda request: replace(FAULTS["ok"], wrap=wrap)) as server:
+        result = run(server, tmp_path, "episodes=1", "llm.label=ours")
+    assert result.exit_code == 0, result.output
+    folder = tmp_path / "run" / "mine"
+    [path] = folder.glob("episodes/*/*/record.json")
+    record = json.loads(path.read_text())
+    calls = [
+        c for line in path.with_name("transcript.jsonl").read_text().splitlines() for c in json.loads(line)["calls"]
+    ]
+    number = len(calls)
+    assert record["reasoner"] == "ours"
+    assert [record["counts"][name] for name in ("cut_off", "cached_tokens", "reasoning_tokens")] == [
+        number,
+        7 * number,
+        3 * number,
+    ]
+    assert {(call["finish_reason"], call["model"]) for call in calls} == {("length", "qwen.gguf")}
+    assert json.loads((folder / "manifest.json").read_text())["versions"]["model ours"] == "qwen.gguf"
+    assert "decisions_by_model" in (folder / "summary.csv").read_text()
 
 
 def test_check_asks_for_one_order_and_one_decision() -> None:

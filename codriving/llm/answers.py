@@ -25,8 +25,8 @@ _WORDY = 2_000  # More of one text inside an answer is never used [characters]
 _LONGEST = 500
 _DEEPEST = 40  # Objects in objects that are looked into
 
-_CUT_OFF = ("length", "max_tokens")
-_FILTERED = ("content_filter", "safety", "refusal")
+CUT_OFF = ("length", "max_tokens")
+FILTERED = ("content_filter", "safety", "refusal")
 
 _TAG = re.compile(r"(?i)[<\[◁](/?)(?:think|thinking|thoughts?|reasoning|scratchpad)\b[^<>\[\]\n]{0,40}[>\]▷]|[{\[]")
 _BEGUN = re.compile(r"[{\[]")
@@ -59,7 +59,7 @@ def judge(reply: Reply, question: Question) -> JudgedReply:
                     return JudgedReply(fit, "", mended or isinstance(value, list))
     if not places:
         return JudgedReply(None, "the answer is empty")
-    if reply.finish_reason.lower() in _CUT_OFF:
+    if reply.finish_reason.lower() in CUT_OFF:
         return JudgedReply(None, "the answer was cut off at the token limit; keep it shorter")
     # Of what was said last, and rather of an object that names what is asked for.
     told = max(problems, key=lambda one: one[0], default=(False, "the answer holds no complete JSON object"))
@@ -74,7 +74,7 @@ def _unusable(reply: Reply) -> str:
         return "the reply is no chat completion (a web page, or broken JSON)"
     if reply.refusal:
         return one_line(f"the model refused: {reply.refusal}", _LONGEST)
-    return "the answer was withheld by a content filter" if reply.finish_reason.lower() in _FILTERED else ""
+    return "the answer was withheld by a content filter" if reply.finish_reason.lower() in FILTERED else ""
 
 
 def split_thoughts(text: str) -> tuple[str, str]:

@@ -10,7 +10,7 @@ from typing import Any
 from weakref import WeakValueDictionary
 
 from codriving.errors import ModelError
-from codriving.llm.answers import judge, split_thoughts
+from codriving.llm.answers import CUT_OFF, judge, split_thoughts
 from codriving.llm.attempts import SLOWLY, ConcurrencyLimit, Retries, Retry, Sleep
 from codriving.llm.cache import AnswerCache
 from codriving.llm.faults import SLOW, CallError, FaultKind, unavailable, unusable
@@ -60,6 +60,9 @@ async def converse(question: Question, fetch: Fetch) -> Answer:
             cached=cached,
             problem=read.problem,
             model=reply.model,
+            finish_reason=one_line(reply.finish_reason, 40),
+            cached_tokens=reply.cached_tokens,
+            reasoning_tokens=reply.reasoning_tokens,
         )
         calls.append(call)
         if reply.finish_reason == TOO_LONG:
@@ -79,12 +82,10 @@ async def converse(question: Question, fetch: Fetch) -> Answer:
 
 USED_UP = "the answer was cut off at the token limit before it began, all tokens having gone into thinking"
 
-_CUT_OFF = ("length", "max_tokens")
-
 
 def used_up(reply: Reply) -> bool:
     """Whether a model thought until its tokens were used up."""
-    return reply.finish_reason.lower() in _CUT_OFF and not split_thoughts(reply.text)[0].strip()
+    return reply.finish_reason.lower() in CUT_OFF and not split_thoughts(reply.text)[0].strip()
 
 
 _GREETING = (Message("system", "You check that a connection works."), Message("user", "Answer with the one word: yes"))

@@ -47,6 +47,9 @@ class Call:
     cached: bool
     problem: str = ""
     model: str = ""  # What the server calls the model, if that is another name than it was asked by
+    finish_reason: str = ""  # Why the answer ends, in the words of the server
+    cached_tokens: int = 0  # Of those of the prompt, the ones that the server had in its own cache
+    reasoning_tokens: int = 0  # Of those of the answer, the ones with which the model spoke to itself
 
 
 @dataclass(frozen=True, slots=True)

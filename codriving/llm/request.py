@@ -78,6 +78,8 @@ class Reply:
     beside: tuple[str, ...] = ()
     model: str = ""  # What the server calls the model
     counted: bool = True  # Whether the server counted the tokens; they are estimated otherwise
+    cached_tokens: int = 0  # Of those of the prompt, the ones that the server had in its own cache
+    reasoning_tokens: int = 0  # Of those of the answer, the ones with which the model spoke to itself
 
     @classmethod
     def from_dict(cls, stored: Mapping[str, Any]) -> "Reply":

@@ -166,6 +166,15 @@ def _number(usage: object, name: str) -> int:
     return 0
 
 
+def _details(usage: object) -> dict[str, Any]:
+    """Read of a usage which tokens of the prompt were cached and which of the answer are thoughts; 0 where not said."""
+    told = usage if isinstance(usage, Mapping) else {}
+    cached = _number(told.get("prompt_tokens_details"), "cached_tokens")
+    cached = cached or _number(told, "cache_read_input_tokens") or _number(told, "prompt_cache_hit_tokens")
+    thought = _number(told.get("completion_tokens_details"), "reasoning_tokens")
+    return {"cached_tokens": cached, "reasoning_tokens": thought}
+
+
 def reply_of(
     response: Mapping[str, Any], body: Mapping[str, Any] | None = None, form: str = "", key: str | None = None
 ) -> Reply:
@@ -177,6 +186,7 @@ def reply_of(
     """
     names = ("prompt_tokens", "completion_tokens")
     tokens: dict[str, Any] = {name: _number(response.get("usage"), name) for name in names}
+    tokens |= _details(response.get("usage"))
     served = (body or {}).get("model") or response.get("model") or ""
     tokens["model"] = one_line(without_key(str(served), key), 200)
     if not _first(response):

@@ -15,6 +15,8 @@ from codriving.reports.results import CellResults, named_numbers
 from codriving.reports.subject import METHODS, REFERENCE, Subject
 from codriving.reports.summary import (
     BY_KEY,
+    BY_MODEL,
+    BY_MODEL_TEXTS,
     CLEAN,
     CPU,
     FALLBACK_NOTE,
@@ -22,6 +24,7 @@ from codriving.reports.summary import (
     MEASURED,
     NOTE,
     clean_notes,
+    decided_notes,
     number_notes,
     paper_row,
     remarks,
@@ -103,6 +106,10 @@ def _cells(rows: Iterable[Compared]) -> list[CellResults]:
     return [row.cell for row in rows if row.cell]
 
 
+def _is_decided(rows: Iterable[Compared]) -> bool:
+    return any(cell.decided for cell in _cells(rows))
+
+
 def status_columns(scenario: bool) -> list[Column[Any]]:
     """Give the columns of labels and status, of what has a cell."""
     return [
@@ -138,6 +145,7 @@ def comparison_table(rows: Sequence[Compared], swept: Sequence[str] = ()) -> Tab
         *(column.of(lambda row: row.cell) for column in (*MEASURED, *CLEAN) if column.key not in rates),
         *(column.of(lambda row: row.cell) for column in number_columns(named_numbers(_cells(rows)), MEASURED)),
         *([FALLBACKS.of(lambda row: row.cell)] if any(row.cell and row.cell.asked for row in rows) else []),
+        *(column.of(lambda row: row.cell) for column in (*BY_MODEL, *BY_MODEL_TEXTS) if _is_decided(rows)),
         *(above_columns() if any(row.above for row in rows) else []),
         Column("cpu", lambda r: milliseconds(r.cell.cpu) if r.cell else "", CPU, csv=False, page=False, rank=7),
         *(replace(column, head="").of(lambda r: r.pairs) for column in PAIRED if column.csv),
@@ -282,6 +290,7 @@ def notes_of(rows: Iterable[tuple[str, str, CellResults | None]], screen: bool) 
     theirs = "the paper's go by a language model, the rows above by rules."
     return [
         *([FALLBACK_NOTE] if any(cell and cell.asked for *_, cell in rows) else []),
+        *decided_notes(cell for *_, cell in rows if cell),
         *([ALGORITHM] if any(cell and cell.first.reasoner == "none" for *_, cell in rows) else []),
         *([f"{MISSING.capitalize()}: {missing}; there is no method of this name."] if missing else []),
         *stand_in_notes((cell.first.method, cell.first.reasoner) for *_, cell in rows if cell),

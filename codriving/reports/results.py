@@ -9,6 +9,7 @@ from functools import cached_property
 from codriving.datatypes import Ending, EpisodeRecord, NamedNumber, Score
 from codriving.metrics import wilson_interval
 from codriving.reports.columns import Column, Value, mean, share
+from codriving.reports.decided import COUNTED, Decided
 
 # The columns that every table begins with.
 LABELS: tuple[Column[EpisodeRecord], ...] = (
@@ -40,6 +41,13 @@ ASKED = (
     "repaired_orders",
     "plain_decisions",
     "kept_orders",
+)
+
+# Whose the decisions and the ordered pairs were, in their fixed order: columns where it was counted.
+WHOSE = (
+    *("model_decisions", "mended_decisions", "single_decisions", "fallback_decisions", "decisions_as_rules"),
+    *("model_pairs", "mended_pairs", "repaired_pairs", "fallback_pairs", "pairs_as_rules"),
+    *("cached_tokens", "reasoning_tokens", "cut_off", "withheld"),
 )
 
 UNPRICED = "unpriced_calls"  # Counter of calls whose price is not known; it has no column, it empties that of the cost
@@ -154,6 +162,12 @@ class CellResults:
         """Whether a language model was there to be asked."""
         return any(map(asked, self.records))
 
+    @cached_property
+    def decided(self) -> Decided | None:
+        """Whose its decisions and pairs were; None where no model was asked, or that was not counted."""
+        known = [r.counts for r in self.records if asked(r) and COUNTED in r.counts]
+        return Decided.of(known) if known else None
+
     @property
     def fallback_rate(self) -> float | None:
         """Share of questions without a usable answer; each question counts once, however often it was asked."""
@@ -251,4 +265,5 @@ def counter_names(records: Sequence[EpisodeRecord]) -> list[str]:
     """List the counters that have a column: those of a language model first, all others by name."""
     names = {name for record in records for name in record.counts} - {UNPRICED, WAITED}
     first = [name for name in ASKED if any(map(asked, records)) or name in names]
+    first += [name for name in WHOSE if name in names]
     return [*first, *sorted(names.difference(first))]

@@ -9,6 +9,7 @@ from typing import Any
 
 from codriving.datatypes import Ending
 from codriving.reports.columns import Column, Row, Table, Value, mean, share, swept_columns, table
+from codriving.reports.decided import DECIDED_NOTE, decisions_by_model, pairs_by_model
 from codriving.reports.episodes import counter_columns, episode_columns, number_columns, number_head
 from codriving.reports.fitting import METHOD, PAPER
 from codriving.reports.messages import message_columns
@@ -134,6 +135,18 @@ MEASURED_NOTE = (
 
 FALLBACKS: Column[CellResults] = Column(FALLBACK_RATE, lambda c: c.fallback_rate, "fallbacks", percent, rank=5)
 
+# How much a language model decided; as texts on the screen, so that 0 % is told from what was not counted.
+BY_MODEL: tuple[Column[CellResults], ...] = (
+    Column("decisions_by_model", lambda c: decisions_by_model(c.decided)),
+    Column("pairs_by_model", lambda c: pairs_by_model(c.decided)),
+)
+BY_MODEL_TEXTS: tuple[Column[CellResults], ...] = (
+    Column(
+        "decided_text", lambda c: percent(decisions_by_model(c.decided)), "decisions by model", csv=False, sparse=True
+    ),
+    Column("ordered_text", lambda c: percent(pairs_by_model(c.decided)), "pairs by model", csv=False, sparse=True),
+)
+
 _LABELS = [column.of(lambda c: c.first) for column in LABELS]
 
 BY_KEY = {column.key: column for column in (*_LABELS, *MEASURED, *FURTHER, MEMORY, FALLBACKS)}
@@ -168,8 +181,9 @@ def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Ta
     known += number_columns(named_numbers(cells), known)
     counters = counter_columns(records, known)
     rate = len([column for column in counters if column.key in ASKED]) if model else 0
-    rest = [*counters[:rate], *([replace(FALLBACKS, head="")] if model else []), *counters[rate:]]
-    return table([*known, *rest, *(ASKED_COLUMNS if model else ())], cells)
+    shares = [replace(FALLBACKS, head=""), *(BY_MODEL if any(c.decided for c in cells) else ())] if model else []
+    rest = [*counters[:rate], *shares, *counters[rate:]]
+    return table([*known, *rest, *((*BY_MODEL_TEXTS, *ASKED_COLUMNS) if model else ())], cells)
 
 
 def labels(cells: Sequence[CellResults], scenario: bool) -> list[Column[Any]]:
@@ -205,7 +219,8 @@ def print_summary(
     rows = tuple({**row, "claim": claim} for row, claim in zip(made.rows, claims, strict=True))
     scenarios, reasoners = ([row[key] for row in rows] for key in ("scenario", "reasoner"))
     models = stand_in_notes((row["method"], row["reasoner"]) for row in rows)
-    said = (NOTE, *clean_notes(cells), *number_notes(cells), *models, *remarks(cells), *model_notes(cells), *notes)
+    said = (NOTE, *clean_notes(cells), *number_notes(cells), *models, *remarks(cells), *model_notes(cells))
+    said = (*said, *decided_notes(cells), *notes)
     heading, shown = title("", scenarios, reasoners, metrics), Table((*made.columns, *claimed), rows)
     blocks = [(scenario, cell.is_control) for scenario, cell in zip(scenarios, cells, strict=True)]
     return printed(heading, shown, blocks, said, _beside(cells, paper), screen)
@@ -279,6 +294,20 @@ def model_notes(cells: Sequence[CellResults]) -> list[str]:
         f"{FALLBACK_NOTE} Failed episodes count in all sums.",
         STEP_NOTE,
     ]
+
+
+def decided_notes(cells: Iterable[CellResults]) -> list[str]:
+    """Say whose decisions were, and of which rows too few were the model's."""
+    known = [cell for cell in cells if cell.decided]
+    told = [cell.decided.warning(_row_name(cell)) for cell in known if cell.decided]
+    return [DECIDED_NOTE, *dict.fromkeys(text for text in told if text)] if known else []
+
+
+def _row_name(cell: CellResults) -> str:
+    """Name a row by what tells it from others: scenario, method, model, and what was swept."""
+    first = cell.first
+    words = [f"{key}={value}" for key, value in cell.swept.items()]
+    return " ".join([first.reasoner, f"({', '.join([first.scenario, cell.name, *words])})"])
 
 
 def _count(completed: int, episodes: int) -> str:

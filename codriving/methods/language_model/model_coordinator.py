@@ -1,6 +1,7 @@
 """The conflict coordinator by a language model: asked about CAVs in conflict, if something changed."""
 
 from collections.abc import Iterable, Mapping
+from copy import copy
 from typing import cast
 
 from codriving.datatypes import Conflict, Pair, PassingOrder, SceneDescription
@@ -57,10 +58,17 @@ class ModelCoordinator(Coordinator):
         if agreed is not None:
             self.model.ledger.count("kept_orders")
             return self.rules.settle(moment, problem, {**agreed, **given})
-        agreed = self._ask(moment.scenes, problem, [urgent[pair] for pair in asked])
+        agreed, mended = self._ask(moment.scenes, problem, [urgent[pair] for pair in asked])
+        by_rules = copy(self.rules).settle(moment, problem, given)
         order = self.rules.settle(moment, problem, {**(agreed or {}), **given})
-        # Without an answer nothing has been agreed on, and the next step asks again.
-        self._agreed = None if agreed is None else (now, _decided(order, asked))
+        if agreed is None:
+            # Nothing has been agreed on, and the next step asks again.
+            self._agreed = None
+            self.model.ledger.count("fallback_pairs", len(asked))
+            return order
+        self._agreed = now, _decided(order, asked)
+        said = agreed.keys() & self._agreed[1].keys()
+        self.model.ledger.ordered(len(asked), len(said), mended, len(said & _decided(by_rules, asked).keys()))
         return order
 
     def _kept(self, problem: Problem, now: Premise) -> AgreedPairs | None:
@@ -74,14 +82,14 @@ class ModelCoordinator(Coordinator):
 
     def _ask(
         self, scenes: Mapping[str, SceneDescription], problem: Problem, conflicts: Iterable[Conflict]
-    ) -> AgreedPairs | None:
-        """Ask the model, and repair what it says; None if there is no answer."""
+    ) -> tuple[AgreedPairs | None, bool]:
+        """Ask the model, and repair what it says; None if there is no answer. Tells whether it was read tolerantly."""
         by_urgency = sorted(conflicts, key=lambda c: (c.dttcp + 0.2 * min(c.ttcp), c.ego, c.other))
         pairs = {f"p{k + 1}": c for k, c in enumerate(by_urgency)}
         names = Names(problem.instance.vehicles)
         [answer] = self.model.ask([self._question(scenes, problem, pairs, names)])
         if answer.value is None:
-            return None
+            return None, False
         said = first_of_pairs(cast(OrderReply, answer.value))
         agreed: AgreedPairs = {}
         for name, (first, reason) in said.items():
@@ -95,7 +103,7 @@ class ModelCoordinator(Coordinator):
         )
         if len(acyclic) < len(pairs):
             self.model.ledger.count("repaired_orders")
-        return acyclic
+        return acyclic, answer.mended
 
     def _question(
         self, scenes: Mapping[str, SceneDescription], problem: Problem, pairs: OpenPairs, names: Names

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, cast
 from codriving.datatypes import Action, Decision, Situation
 from codriving.llm import Answer, DecisionReply, Question, decision_reply, decision_view, names_for
 from codriving.methods.language_model.prompted_model import PromptedModel
-from codriving.reasoning import Decider, decide_one, is_plain
+from codriving.reasoning import Decider, RuleDecider, decide_one, is_plain
 
 # Actions in the order in which they stand in for an answer that is missing.
 SAFEST = (Action.SLOWER, Action.IDLE, Action.HOLD, Action.FASTER, Action.LANE_RIGHT, Action.LANE_LEFT)
@@ -32,6 +32,10 @@ class ModelDecider(Decider):
     @abstractmethod
     def substitute(self, situation: Situation) -> Action:
         """Return the action that stands in for an answer that is missing."""
+
+    def by_rules(self, situation: Situation) -> Action | None:
+        """Return what the rules would have decided in a situation; None where there are none to compare with."""
+        return None
 
     def decide(self, situations: Sequence[Situation]) -> list[Decision]:
         """Return one decision a situation, in the same order."""
@@ -58,14 +62,17 @@ class ModelDecider(Decider):
         return Question("decide", situation.scene.ego.id, messages, decision_reply(tuple(allowed)), check, shorter)
 
     def _decision(self, situation: Situation, answer: Answer) -> Decision:
-        ego, reply = situation.scene.ego.id, cast(DecisionReply | None, answer.value)
+        ego, reply, ledger = situation.scene.ego.id, cast(DecisionReply | None, answer.value), self.model.ledger
         if reply is not None and reply.action in situation.allowed:
+            rule = self.by_rules(situation)
+            ledger.decided(len(situation.allowed), answer.mended, None if rule is None else reply.action == rule)
             return Decision(ego, Action(reply.action), reply.reason or "no reason was given")
         problem = answer.problem
         if reply is not None:
             # No chat should let this pass; only what is allowed is done all the same.
-            self.model.ledger.count("fallbacks")
+            ledger.count("fallbacks")
             problem = "the action is not allowed"
+        ledger.count("single_decisions" if len(situation.allowed) == 1 else "fallback_decisions")
         return Decision(ego, self.substitute(situation), f"fallback, no usable answer: {problem}")
 
 
@@ -88,6 +95,9 @@ class CheckedDecider(ModelDecider):
         if len(unclear) < len(situations):
             self.model.ledger.count("plain_decisions", len(situations) - len(unclear))
         return [found.get(s.scene.ego.id) or decide_one(s) for s in situations]
+
+    def by_rules(self, situation: Situation) -> Action:
+        return RuleDecider().decide([situation])[0].action
 
     def variables(self, situation: Situation, nearest: int | None, with_memories: bool) -> dict[str, Any]:
         return decision_view(situation, nearest, with_memories)
