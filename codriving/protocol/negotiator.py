@@ -1,7 +1,8 @@
 """One party of a negotiation: what it answers, what it proposes if it coordinates, and which agreements it holds."""
 
 from collections.abc import Mapping, Sequence
-from math import hypot
+from math import hypot, inf
+from typing import NamedTuple
 
 from codriving.datatypes import (
     EACH,
@@ -20,8 +21,19 @@ from codriving.protocol.refusal import fixed, refused, with_given, without_circl
 from codriving.reasoning import Coordinator, Moment, Problem
 
 
+class _Promise(NamedTuple):
+    number: tuple[int, int]  # Of the proposal, and its round
+    time: float  # When it was accepted [s]
+    until: float  # [s]
+    reason: str
+
+
 class Negotiator(Party):
     """A CAV, or a unit that only coordinates.
+
+    Who has accepted to be second is second from then on, and who is to be first is so only when it has heard of the
+    agreement; so no loss of messages makes both of a pair go first by agreements. A promise ends with the next
+    agreement of its proposer, or after twice the validity of the proposal, which is when no agreement on it can hold.
 
     Between two decisions it answers at once, by what it knew at the last one.
     """
@@ -31,6 +43,8 @@ class Negotiator(Party):
         self._proposals = Proposals(coordination, coordinator, coordination.by == EACH, self._answer_to)
         self._problem: Problem | None = None
         self._held: dict[str, OrderAgreement] = {}
+        # What it has accepted: that others go first, since when and until when [s], by who proposed it and number.
+        self._promised: dict[tuple[str, Pair], _Promise] = {}
         self._out: list[OrderMessage] = []
         self._heard: dict[str, float] = {}  # When each CAV that coordinates was heard last, itself included [s]
 
@@ -71,6 +85,7 @@ class Negotiator(Party):
         """Return the pairs that are agreed on, with the reasons, and propose what is new if this one coordinates."""
         self._problem = problem
         self._held = {sender: a for sender, a in self._held.items() if a.holds(moment.time)}
+        self._promised = {key: promise for key, promise in self._promised.items() if moment.time < promise.until}
         for agreement in self._held.values():
             self._withdraw(agreement, problem, moment.time)
         if self._coordinates(moment, problem):
@@ -91,13 +106,18 @@ class Negotiator(Party):
 
     def agreed(self, time: float) -> dict[Pair, str]:
         """Return the pairs of all agreements in force, those of a newer one in the place of an older one's."""
-        found: dict[frozenset[str], tuple[Pair, str]] = {}
+        found: dict[frozenset[str], tuple[float, Pair, str]] = {}
         for agreement in sorted((a for a in self._held.values() if a.holds(time)), key=lambda a: (a.time, a.sender)):
             told = f"directed by {agreement.sender}, {agreement.authority}"
             how = told if agreement.authority else f"agreed with {agreement.sender}"
             for p in agreement.pairs:
-                found[frozenset((p.first, p.second))] = (p.first, p.second), f"{how}: {p.reason}"
-        return dict(found.values())
+                pair = p.first, p.second
+                found[frozenset(pair)] = agreement.time, pair, f"{how}: {p.reason}"
+        for (sender, pair), promise in sorted(self._promised.items(), key=lambda known: (known[1].time, known[0])):
+            since = found.get(frozenset(pair), (-inf,))[0]
+            if since <= promise.time and time < promise.until:
+                found[frozenset(pair)] = promise.time, pair, f"promised to {sender}: {promise.reason}"
+        return {pair: why for _, pair, why in found.values()}
 
     def directed(self, ego: str) -> bool:
         """Whether a CAV goes by an instruction."""
@@ -113,6 +133,12 @@ class Negotiator(Party):
         known = self._held.get(agreement.sender)
         if known is None or known.time < agreement.time:
             self._held[agreement.sender] = agreement
+            about = agreement.number, agreement.round
+            kept = (
+                key for key, promise in self._promised.items() if key[0] == agreement.sender and promise.number <= about
+            )
+            for key in list(kept):
+                del self._promised[key]
 
     def _answer_to(self, proposal: Proposal, time: float | None = None) -> Response:
         """Accept a proposal, or say what has to be instead."""
@@ -124,6 +150,11 @@ class Negotiator(Party):
             ours = {(p.second, p.first) for p in mine.pairs} - {(p.second, p.first) for p in pairs}
             pairs += [Precedence(p.second, p.first, why) for p in proposal.pairs if (p.first, p.second) in ours]
         now = proposal.time if time is None else time
+        rejected = {frozenset((p.first, p.second)) for p in pairs}
+        for p in proposal.pairs:
+            if p.second == me and frozenset((p.first, p.second)) not in rejected:
+                about, until = (proposal.number, proposal.round), now + 2 * proposal.validity
+                self._promised[proposal.sender, (p.first, p.second)] = _Promise(about, now, until, p.reason)
         return Response(me, now, proposal.number, proposal.round, tuple(pairs), proposal.sender, not pairs)
 
     def _withdraw(self, agreement: OrderAgreement, problem: Problem, now: float) -> None:

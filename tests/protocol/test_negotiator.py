@@ -1,5 +1,7 @@
 """What one party answers, proposes and holds."""
 
+from dataclasses import replace
+
 import pytest
 from agreeing import coordination, precedence, proposal
 from worlds import Junction, car
@@ -91,6 +93,36 @@ def test_the_newer_agreement_of_a_sender_replaces_the_older_one(junction: Juncti
     assert look(junction, made, *EARLY, time=0.6).keys() == {("CAV2", "CAV1")}
     assert look(junction, made, *EARLY, time=3.4).keys() == {("CAV2", "CAV1")}
     assert look(junction, made, *EARLY, time=3.41) == {}
+
+
+def test_who_has_accepted_to_be_second_is_so_before_it_hears_of_the_agreement(junction: Junction) -> None:
+    made = party(junction, "CAV2", *EARLY)
+    made.hear([agreement("CAV2 CAV1", "CAV3 CAV2", time=0.2)], 0.3)
+    assert made.agreed(0.4).keys() == {("CAV2", "CAV1"), ("CAV3", "CAV2")}
+    made.hear([replace(proposal("CAV1 CAV2", to=("CAV2",)), number=2, time=0.4)], 0.5)
+    assert made.agreed(0.5) == {
+        ("CAV1", "CAV2"): "promised to RSU: told so",
+        ("CAV3", "CAV2"): "agreed with RSU: told so",
+    }
+    # What was agreed on before, and arrives late, changes nothing.
+    made.hear([agreement("CAV2 CAV1", time=0.35)], 0.6)
+    assert made.agreed(0.6).keys() == {("CAV1", "CAV2")}
+    # It has heard of no agreement for as long as one may hold.
+    assert made.agreed(6.4).keys() == {("CAV1", "CAV2")}
+    assert made.agreed(6.5) == {}
+    made.hear([replace(agreement("CAV2 CAV1", time=0.7), number=2)], 0.8)
+    assert made.agreed(0.8).keys() == {("CAV2", "CAV1")}
+
+
+def test_who_has_accepted_to_be_first_waits_for_the_agreement(junction: Junction) -> None:
+    made = party(junction, "CAV1", *EARLY)
+    made.hear([replace(agreement("CAV2 CAV1", time=0.2), number=0)], 0.3)
+    assert answer(made, "CAV1 CAV2", to="CAV1", time=0.5).accepted
+    assert made.agreed(0.6).keys() == {("CAV2", "CAV1")}
+    # Nor does one promise what it has rejected.
+    late = party(junction, "CAV2", *LATE)
+    assert not answer(late, "CAV1 CAV2").accepted
+    assert late.agreed(0.2) == {}
 
 
 def test_of_the_agreements_of_several_the_newer_one_counts_pair_by_pair(junction: Junction) -> None:

@@ -41,12 +41,15 @@ def test_both_hold_what_both_have_accepted(junction: Junction) -> None:
     ("lost", "to", "held"),
     [
         (Proposal, "CAV2", ("CAV1", "CAV2")),
-        (Response, "RSU", ("CAV1", "CAV2")),
-        (OrderAgreement, "CAV2", ("CAV1", "CAV2")),
+        # Who has accepted to be second is so without an agreement, too.
+        (Response, "RSU", ("CAV1", "CAV1")),
+        (OrderAgreement, "CAV2", ("CAV1", "CAV1")),
         (OrderAgreement, "CAV1", ("CAV1", "CAV1")),
     ],
 )
-def test_a_lost_message_changes_who_goes_first(junction: Junction, lost: type, to: str, held: tuple[str, str]) -> None:
+def test_a_lost_proposal_lets_both_go_first_and_no_other_lost_message_does(
+    junction: Junction, lost: type, to: str, held: tuple[str, str]
+) -> None:
     def loses(message: OrderMessage, receiver: str) -> bool:
         return isinstance(message, lost) and receiver == to
 
@@ -88,10 +91,14 @@ def test_an_agreement_holds_until_it_expires(junction: Junction) -> None:
 
 def test_an_order_that_is_late_for_a_decision_holds_from_the_next_one_on(junction: Junction) -> None:
     talk = Talk(junction, PAIR, channel={"age": 0.2})
-    talk.until(3)
-    assert talk.holds("CAV2", "CAV1") == "CAV2"
     talk.decide()
-    assert talk.holds("CAV2", "CAV1") == "CAV1"
+    held = []
+    for _ in range(3):
+        talk.decide()
+        [precedence] = talk.situation("CAV2").order.precedences
+        held.append((precedence.first, precedence.reason.partition(":")[0]))
+    assert held == [("CAV2", held[0][1]), ("CAV1", "promised to RSU"), ("CAV1", "agreed with RSU")]
+    assert "RSU" not in held[0][1]
 
 
 def test_who_is_out_of_range_of_the_unit_agrees_on_nothing(junction: Junction) -> None:
