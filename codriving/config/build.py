@@ -20,6 +20,7 @@ from codriving.datatypes import (
     Drivers,
     EpisodeLauncher,
     Flow,
+    HumanJudge,
     Method,
     Metric,
     Model,
@@ -259,6 +260,7 @@ EXPECTED |= {
     "drivers": Drivers,
     "flow": Flow,
     "v2x": Communication,
+    "judgement": HumanJudge,
     "thinking": ThinkingTime,
     "environment": Simulator,  # Last, so that refusals name limits.lateral, as a user does
 }

@@ -30,14 +30,14 @@ def value_shown(value: object) -> str:
 # The choices that the command line names; one YAML a choice.
 GROUPS = (
     *("scenario", "method", "executor", "order", "filter", "cda", "llm", "memory", "metrics", "launcher", "limits"),
-    *("drivers", "flow", "v2x"),
+    *("drivers", "flow", "v2x", "judgement"),
 )
 
 NODES = (*GROUPS, "thinking", "environment")  # The keys of the root that hold a constructor call
 
 SHOWN = ("_tables_", "_style_")  # What a method's YAML says for tables and figures; it is no part of a run
 
-OPTIONAL = ("order", "filter", "memory", "limits", "flow", "v2x")  # Those of them that may be null
+OPTIONAL = ("order", "filter", "memory", "limits", "flow", "v2x", "judgement")  # Those of them that may be null
 
 LARGEST_SEED = 2**31 - 1  # Seeds beyond this are refused by some of the generators below us
 

@@ -13,6 +13,7 @@ from codriving.datatypes.cooperation import (
 )
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Memory, Verdict
 from codriving.datatypes.flow import Flow
+from codriving.datatypes.judgement import GOES, UNCLEAR, YIELDS, Judgement, Judgements
 from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.order import (
     Approach,
@@ -34,6 +35,7 @@ from codriving.datatypes.parts import (
     Cooperation,
     Drivers,
     EpisodeLauncher,
+    HumanJudge,
     Method,
     Metric,
     Model,
@@ -104,15 +106,16 @@ from codriving.datatypes.world import (
 )
 
 __all__ = [
-    "BLOCKER", "EACH", "NEAREST", "UNITS", "Account", "Action", "ActionAssessment", "ActionFilter", "Approach",
-    "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat", "Collision", "Communication", "Conflict", "Cooperation",
-    "Coordination", "Decision", "Deliberation", "Description", "Drivers", "DrivingModel", "Effect", "Ending",
-    "EpisodeLauncher", "EpisodeRecord", "Experience", "Flow", "FlowArrival", "FlowLog", "Instance", "Intent",
-    "Interaction", "Kind", "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory",
-    "Method", "Metric", "Model", "NamedNumber", "OrderAgreement", "OrderExecutor", "OrderMessage", "OrderOfCavs",
-    "Outcome", "Pair", "Participant", "Party", "PassingOrder", "Pet", "Point", "Precedence", "Proposal",
-    "ReasonedDeliberation", "Relation", "Response", "Road", "Role", "Route", "RuleModel", "Scenario", "Scene",
-    "SceneDescription", "Score", "Severity", "Shares", "Simulator", "Sine", "Situation", "Start", "Straight",
-    "StressAxis", "StressLevel", "ThinkingTime", "Told", "Track", "TrackedVehicle", "Trajectory", "TravelScore", "Turn",
-    "VehicleLimits", "VehicleState", "Verdict", "WorldState", "Wrapped", "beside",
+    "BLOCKER", "EACH", "GOES", "NEAREST", "UNCLEAR", "UNITS", "YIELDS", "Account", "Action", "ActionAssessment",
+    "ActionFilter", "Approach", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat", "Collision",
+    "Communication", "Conflict", "Cooperation", "Coordination", "Decision", "Deliberation", "Description", "Drivers",
+    "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience", "Flow", "FlowArrival",
+    "FlowLog", "HumanJudge", "Instance", "Intent", "Interaction", "Judgement", "Judgements", "Kind", "Lane",
+    "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory", "Method", "Metric", "Model",
+    "NamedNumber", "OrderAgreement", "OrderExecutor", "OrderMessage", "OrderOfCavs", "Outcome", "Pair", "Participant",
+    "Party", "PassingOrder", "Pet", "Point", "Precedence", "Proposal", "ReasonedDeliberation", "Relation", "Response",
+    "Road", "Role", "Route", "RuleModel", "Scenario", "Scene", "SceneDescription", "Score", "Severity", "Shares",
+    "Simulator", "Sine", "Situation", "Start", "Straight", "StressAxis", "StressLevel", "ThinkingTime", "Told", "Track",
+    "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleLimits", "VehicleState", "Verdict", "WorldState",
+    "Wrapped", "beside",
 ]  # fmt: skip

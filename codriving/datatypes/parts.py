@@ -330,6 +330,10 @@ class OrderOfCavs:
     most_cavs: int | None = None  # CAVs that it orders at most; None for any number
 
 
+class HumanJudge:
+    """What says of human drivers whether they let a CAV pass: base of what a choice of ``judgement`` may be."""
+
+
 class ActionFilter:
     """What all actions of a method pass: base of what a choice of ``filter`` may be."""
 

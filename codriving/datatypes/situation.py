@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from enum import StrEnum
 from functools import lru_cache
 from math import cos, hypot, isfinite, sin
@@ -10,6 +10,7 @@ from operator import attrgetter
 from typing import Any
 
 from codriving.datatypes.experience import Memory
+from codriving.datatypes.judgement import Judgement
 from codriving.datatypes.order import Conflict, PassingOrder
 from codriving.datatypes.road import LaneId
 from codriving.datatypes.world import Action, Intent, Kind, Told, VehicleState
@@ -162,6 +163,8 @@ class Situation:
     clear_times: tuple[float, ...]
     assessments: tuple[ActionAssessment, ...]
     memories: tuple[Memory, ...] = ()
+    # What is expected of human drivers, by id, of whom another than the rules of the road was asked.
+    judgements: Mapping[str, Judgement] = field(default_factory=dict)
 
     @property
     def allowed(self) -> tuple[Action, ...]:
@@ -248,6 +251,7 @@ def _entry(situation: Situation, decision: Decision, order: dict[str, Any]) -> d
         "memories": [memory.text for memory in situation.memories],
         "similarities": [_plain(memory.similarity) for memory in situation.memories],
         "recalled": list(decision.recalled),
+        **({"judgements": _plain(dict(situation.judgements))} if situation.judgements else {}),
     }
 
 

@@ -12,6 +12,7 @@ from codriving.datatypes import (
     Coordination,
     Decision,
     DrivingModel,
+    HumanJudge,
     Model,
     Outcome,
     ReasonedDeliberation,
@@ -21,6 +22,7 @@ from codriving.datatypes import (
 )
 from codriving.errors import require, require_range
 from codriving.geometry import RoadMap
+from codriving.judgement import Judging
 from codriving.methods.chosen_order import ChosenOrder, order_variant
 from codriving.methods.experience_log import ConflictLog, learn
 from codriving.methods.language_model.prompted_model import ModelMethod, PromptedModel
@@ -51,7 +53,7 @@ from codriving.reasoning import (
 )
 
 
-class CoDriving(ModelMethod):
+class CoDriving(Judging, ModelMethod):
     """The framework of the paper."""
 
     name, reflects, orders = "codriving", "reflect", True
@@ -64,6 +66,7 @@ class CoDriving(ModelMethod):
         margin: float,
         order: OrderRule | None = None,
         by_zone: bool = True,
+        judgement: HumanJudge | None = None,
     ) -> None:
         require_range("margin", margin, 0, 5, " s")
         require(
@@ -77,6 +80,7 @@ class CoDriving(ModelMethod):
         self.order, self.most_cavs = order, order.most_cavs if order is not None else None
         self.is_checked, self.by_zone = cda.safety_check, by_zone and not cda.binding
         self.asked = ("negotiate", "decide") if order is None else ("decide",)
+        self.rely_on(judgement)
 
     def cooperate(self, coordination: Coordination) -> None:
         require(
@@ -93,7 +97,7 @@ class CoDriving(ModelMethod):
         if self.order is not None:
             self.order.reset(seed)
             coordinator = ChosenOrder(self.order, self.cda.binding, self.margin)
-        perception = perception_at(self.cda, road_map, model, self.by_zone)
+        perception = self.judged(perception_at(self.cda, road_map, model, self.by_zone), self._model)
         own = OwnOrders(self.cda.own_order, seed)
         negotiation: Negotiation = AgreedOrder(coordinator) if self.cda.negotiation else own
         if self.coordination is not None:

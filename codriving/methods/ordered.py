@@ -7,7 +7,7 @@ from codriving.datatypes import (
     ActionAssessment,
     Decision,
     DrivingModel,
-    Method,
+    HumanJudge,
     PassingOrder,
     ReasonedDeliberation,
     Shares,
@@ -15,6 +15,7 @@ from codriving.datatypes import (
     WorldState,
 )
 from codriving.geometry import RoadMap
+from codriving.judgement import Judging, judgements_of
 from codriving.methods.chosen_order import ChosenOrder
 from codriving.protocol import Negotiator
 from codriving.reasoning import (
@@ -36,7 +37,7 @@ from codriving.reasoning import (
 )
 
 
-class Ordered(Method):
+class Ordered(Judging):
     """A method that orders all CAVs jointly.
 
     States and intents are shared as in the full framework. Only the choice of the order differs between such methods.
@@ -44,17 +45,18 @@ class Ordered(Method):
 
     shares = Shares(states=True, intents=True, orders=True)
 
-    def __init__(self, rule: OrderRule, executor: Executor) -> None:
+    def __init__(self, rule: OrderRule, executor: Executor, judgement: HumanJudge | None = None) -> None:
         self.rule, self.executor, self.name = rule, executor, rule.name
         self.most_cavs, self.orders, self.by_zone = rule.most_cavs, executor.orders, executor.by_zone
         driven = "" if executor.name == "planned" else executor.name
         self.variant = "/".join(word for word in (rule.variant, driven, executor.variant) if word)
+        self.rely_on(judgement)
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
         forecast = Forecast(model, (*CONTINUATIONS, *plan_library(model), *self.executor.library), road_map)
         known = Tracking(road_map), SharedStates(), SHARED_INTENTS
-        self._perception = Perception(road_map, forecast, *known, by_zone=self.executor.by_zone)
+        self._perception = self.judged(Perception(road_map, forecast, *known, by_zone=self.executor.by_zone))
         self._requests, self._lag = LaneRequests(), round(self.executor.margin / forecast.sample)
         self.rule.reset(seed)
         self.executor.reset()
@@ -100,7 +102,8 @@ def _situation(moment: Moment, name: str, agreed: PassingOrder, drive: Drive, ch
         _assessment(action, progress.get(action), taken, removed.get(action, ())) for action in moment.available[name]
     )
     conflicts = moment.conflicts[name]
-    return Situation(moment.scenes[name], conflicts, agreed, (0.0,) * len(conflicts), assessments)
+    told = judgements_of(moment, name)
+    return Situation(moment.scenes[name], conflicts, agreed, (0.0,) * len(conflicts), assessments, judgements=told)
 
 
 def _assessment(action: Action, gain: float | None, taken: Action, why: tuple[str, ...]) -> ActionAssessment:

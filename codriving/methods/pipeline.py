@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from codriving.datatypes import CaseMemory, ReasonedDeliberation, Situation, WorldState
+from codriving.judgement import judgements_of
 from codriving.llm import Ledger
 from codriving.methods.experience_log import recall
 from codriving.reasoning import (
@@ -47,4 +48,6 @@ class Pipeline:
 
     def _situation(self, given: SafetyInput) -> Situation:
         clear_times = tuple(clear_time(given, c) for c in given.conflicts)
-        return Situation(given.scene, given.conflicts, given.order, clear_times, self.safety.assess(given))
+        told = judgements_of(given.moment, given.ego)
+        assessed = self.safety.assess(given)
+        return Situation(given.scene, given.conflicts, given.order, clear_times, assessed, judgements=told)

@@ -10,7 +10,7 @@ from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinato
 from codriving.reasoning.ordering.negotiation import AgreedOrder, Negotiation, OwnOrders
 from codriving.reasoning.ordering.order_search import Coded, Found, Prefix, SearchedOrder
 from codriving.reasoning.ordering.premise import Premise, find_circle, open_pairs, premise
-from codriving.reasoning.ordering.problem import Problem, pose
+from codriving.reasoning.ordering.problem import Problem, pose, window
 from codriving.reasoning.ordering.protocol import (
     JointPlan,
     JointPlanner,
@@ -38,7 +38,7 @@ from codriving.reasoning.perception import Moment, Perception, single_vehicle_pe
 from codriving.reasoning.prediction.expectation import HEADWAY, Expected, expect_all
 from codriving.reasoning.prediction.forecast import HORIZON, Forecast
 from codriving.reasoning.prediction.idm import IntelligentDriver
-from codriving.reasoning.prediction.right_of_way import gives_way, known_to_give_way
+from codriving.reasoning.prediction.right_of_way import GivesWay, gives_way, known_to_give_way
 from codriving.reasoning.prediction.rollout import Plan, plan_library, rollout
 from codriving.reasoning.safety.assessment import NoCheck, SafetyCheck, ThreeLayers, least_dangerous
 from codriving.reasoning.safety.conflict_lane import PAD
@@ -61,13 +61,13 @@ __all__ = [
     "ALIGNED", "CONTINUATIONS", "CONTROL_RADIUS", "HEADWAY", "HIDDEN_INTENTS", "HORIZON", "LANE_END_GAP",
     "LONGEST_WAIT", "LONGITUDINAL", "OPEN", "PAD", "SAME_LANE", "SHARED_INTENTS", "SIDES", "SLOWEST", "STANDING",
     "AgreedOrder", "CdaLevel", "Coded", "Coordinator", "Decider", "Drive", "Executor", "Expected", "Forecast", "Found",
-    "IntelligentDriver", "JointPlan", "JointPlanner", "JointPlans", "LaneRequests", "Moment", "Negotiation", "NoCheck",
-    "Objective", "OrderRule", "Ordering", "OwnOrders", "Perception", "Places", "Plan", "Prefix", "Premise", "Problem",
-    "Request", "RuleCoordinator", "RuleDecider", "SafetyCheck", "SafetyInput", "SearchedOrder", "SensedStates",
-    "SharedStates", "ThreeLayers", "TicketBook", "Tracking", "after_windows", "agreement", "best_subset", "by_slot",
-    "by_ticket", "carried_over", "clear_time", "decide_one", "describe_scenes", "evacuation_time", "expect_all",
-    "favour", "find_circle", "find_conflicts", "gives_way", "humans_expected", "in_order", "inserted", "is_behind",
-    "is_open", "is_plain", "known_to_give_way", "least_dangerous", "nearest", "open_pairs", "plan_library", "pose",
-    "premise", "reasons", "repaired", "rollout", "safety_input", "schedule", "sequence", "single_vehicle_perception",
-    "then_stop", "timed", "total_delay", "ttcp", "with_roles",
+    "GivesWay", "IntelligentDriver", "JointPlan", "JointPlanner", "JointPlans", "LaneRequests", "Moment", "Negotiation",
+    "NoCheck", "Objective", "OrderRule", "Ordering", "OwnOrders", "Perception", "Places", "Plan", "Prefix", "Premise",
+    "Problem", "Request", "RuleCoordinator", "RuleDecider", "SafetyCheck", "SafetyInput", "SearchedOrder",
+    "SensedStates", "SharedStates", "ThreeLayers", "TicketBook", "Tracking", "after_windows", "agreement",
+    "best_subset", "by_slot", "by_ticket", "carried_over", "clear_time", "decide_one", "describe_scenes",
+    "evacuation_time", "expect_all", "favour", "find_circle", "find_conflicts", "gives_way", "humans_expected",
+    "in_order", "inserted", "is_behind", "is_open", "is_plain", "known_to_give_way", "least_dangerous", "nearest",
+    "open_pairs", "plan_library", "pose", "premise", "reasons", "repaired", "rollout", "safety_input", "schedule",
+    "sequence", "single_vehicle_perception", "then_stop", "timed", "total_delay", "ttcp", "window", "with_roles",
 ]  # fmt: skip

@@ -1,9 +1,9 @@
 """What all CAVs know at one moment, which every method begins with: states, intents, scenes and conflicts."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from codriving.datatypes import Action, Conflict, DrivingModel, SceneDescription, TrackedVehicle, WorldState
+from codriving.datatypes import Action, Conflict, DrivingModel, Judgements, SceneDescription, TrackedVehicle, WorldState
 from codriving.geometry import RoadMap
 from codriving.reasoning.conflicts import find_conflicts
 from codriving.reasoning.prediction.forecast import Forecast, State
@@ -28,6 +28,7 @@ class Moment:
     gives_way: GivesWay = gives_way  # Says why a human driver is expected to let the CAV pass first
     # Whether a CAV may pass a zone before one that precedes it in the order, if it is out of its way in time.
     by_zone: bool = False
+    judgements: Judgements = field(default_factory=dict)  # What `gives_way` goes by, by CAV and driver
 
 
 @dataclass(slots=True)

@@ -65,8 +65,8 @@ CHOICES = ("scenario", "method", "executor", "llm", "memory")
 DRIVERS, ENVIRONMENT = "drivers", "environment"  # Drivers are told by their values in the environment, as before
 
 # Without limits a world is that of a run whose config did not know them yet; without a flow, and with the order that is
-# negotiated, without a filter or without a channel, likewise.
-LIMITS, FLOW, ORDER, FILTER, V2X = "limits", "flow", "order", "filter", "v2x"
+# negotiated, without a filter, without a channel, or with human drivers judged by the rules of the road, likewise.
+LIMITS, FLOW, ORDER, FILTER, V2X, JUDGEMENT = "limits", "flow", "order", "filter", "v2x", "judgement"
 
 THINKING = "thinking"  # Where it takes no time a run is that of before it was known
 
@@ -76,7 +76,7 @@ MEMORY = "memory"
 SNAPSHOT, AUTO = "snapshot", "auto"  # Where a memory's snapshot is told by its contents, its file may lie anywhere
 
 # Nodes of the root to which other nodes refer, and which therefore stand in these once more.
-_COPIED = (*CHOICES, "cda", LIMITS, FLOW, ORDER, FILTER, V2X)
+_COPIED = (*CHOICES, "cda", LIMITS, FLOW, ORDER, FILTER, V2X, JUDGEMENT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ class CellEntry:
 def driving_values(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out of a resolved config what does not change what is driven, the names of classes, and repetitions."""
     values = {key: _plain(node, resolved) for key, node in resolved.items() if key not in WITHOUT_EFFECT}
-    for key in (LIMITS, FLOW, ORDER, FILTER, V2X):
+    for key in (LIMITS, FLOW, ORDER, FILTER, V2X, JUDGEMENT):
         if values.get(key) is None:
             values.pop(key, None)
     if isinstance(thinking := values.get(THINKING), Mapping) and not any(thinking.values()):
@@ -192,7 +192,7 @@ def fingerprint(
     """
     values = driving_values(resolved)
     # Where an order or a filter is chosen its name stands for a class, too: a plug-in may have no settings.
-    groups = (*CHOICES, *(group for group in (ORDER, FILTER, V2X) if group in values))
+    groups = (*CHOICES, *(group for group in (ORDER, FILTER, V2X, JUDGEMENT) if group in values))
     told = {
         "names": list(names),
         "choices": {group: choices[group] for group in groups if group in choices},

@@ -7,7 +7,7 @@ from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise, permutations
 from math import inf
 
-from codriving.datatypes import Instance, Pair, PassingOrder, Precedence
+from codriving.datatypes import YIELDS, Instance, Judgement, Pair, PassingOrder, Precedence
 from codriving.reasoning.ordering.problem import Problem, pose
 from codriving.reasoning.ordering.schedule import schedule, sequence, start_time
 from codriving.reasoning.perception import Moment
@@ -15,7 +15,6 @@ from codriving.reasoning.perception import Moment
 TURN_YIELDS = 1.0  # A turning vehicle goes before one that goes straight only if it can do so this much earlier [s]
 
 KEEPS_TURN = 1.0  # An order that has been agreed on is changed only if the other one can go this much earlier [s]
-
 
 SAVES = 0.3  # Time that another order must save all vehicles together to be taken [s]
 
@@ -143,14 +142,17 @@ def agreement(
         for human, (begin, end) in people.items():
             human_first = times[ego] > begin
             first, second = (human, ego) if human_first else (ego, human)
-            precedences.append(Precedence(first, second, reason_human(human_first, begin, end, times[ego])))
+            why = reason_human(human_first, begin, end, times[ego], moment.judgements.get((ego, human)))
+            precedences.append(Precedence(first, second, why))
             arrivals[human] = min(arrivals.get(human, begin), begin)
     kept, sequence = without_cycles(precedences, arrivals)
     return PassingOrder(sequence, kept, binding)
 
 
-def reason_human(human_first: bool, begin: float, end: float, time: float) -> str:
+def reason_human(human_first: bool, begin: float, end: float, time: float, judged: Judgement | None = None) -> str:
     """Explain the order of a CAV and a human driver."""
+    if begin == inf and judged is not None and judged.answer == YIELDS:
+        return judged.reason
     if human_first:
         return f"a human driver shares no intent and may use the zone until {end:.1f} s from now"
     if begin == inf:

@@ -17,7 +17,6 @@ from codriving.reasoning.prediction.rollout import Plan, plan_library, starts_wi
 # Time gap to the vehicle ahead that is planned for [s]; the safety check alone would allow less or ask for more.
 HEADWAY = 0.8
 
-
 # What a motion has to stay behind: the zone in which both meet, the places of the other one, the lag in samples, the
 # time between two samples if it must be able to stop there, too [s], and whether it may as well be past before.
 Bound = tuple[ConflictZone, Array, int, float, bool]

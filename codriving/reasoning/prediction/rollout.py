@@ -16,7 +16,6 @@ Plan = tuple[Action, ...]  # Actions, one a decision; the last one is repeated f
 # Every other action leaves the target alone.
 CHANGE = {Action.SLOWER: -1.0, Action.FASTER: 1.0, Action.HOLD: nan}
 
-
 FIRST = (Action.FASTER, Action.IDLE, Action.HOLD, Action.SLOWER)  # What a vehicle may do now, most progress first
 
 WAITS = (0, 1, 2, 3, 4, 6, 8, 11, 14)  # For how many decisions it may then slow down before it goes for good

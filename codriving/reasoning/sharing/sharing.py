@@ -80,7 +80,6 @@ HIDDEN_INTENTS = IntentSharing(shared=False, finds_conflicts=False)
 # Nothing is shared, and conflicts are found with all ways that the map allows.
 GUESSED_INTENTS = IntentSharing(shared=False, finds_conflicts=True)
 
-
 OwnOrder = Literal["own_view", "same_rule", "independent"]
 
 
