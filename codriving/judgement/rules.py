@@ -63,7 +63,10 @@ class Same(Judge):
 class ToldJudge(Judge):
     """A control that is told how each driver treats the right of way."""
 
-    name, knows_drivers = "oracle", True
+    knows_drivers = True
+
+    def __init__(self, name: str) -> None:
+        self.name = name
 
     def reset(self, road_map: RoadMap, model: Asked | None) -> None:
         self._road_map = road_map

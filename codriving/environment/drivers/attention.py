@@ -82,7 +82,7 @@ class Look:
     occupied: float | None  # Before an occupied conflict zone, at this arc length [m]
 
 
-class Judgement:
+class DriverJudgement:
     """The right of way as one driver sees it, a reaction time late."""
 
     def __init__(self, traits: DriverTraits) -> None:
@@ -175,7 +175,7 @@ def look_round(road_map: RoadMap, vehicles: Sequence[RouteFollower], every: floa
         spot = believed(road_map, vehicle)
         around.append((vehicle, spot, motions(vehicle, TIMES) - vehicle.s + spot[1]))
     for vehicle in vehicles:
-        judgement: Judgement | None = getattr(vehicle, "judgement", None)
+        judgement: DriverJudgement | None = getattr(vehicle, "judgement", None)
         if judgement is None:
             continue
         waited = vehicle.waits_at is not None

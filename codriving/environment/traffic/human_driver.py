@@ -10,7 +10,7 @@ from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.objects import Obstacle, RoadObject
 
 from codriving.datatypes import BLOCKER, LaneId, Manner, Start
-from codriving.environment.drivers.attention import Judgement
+from codriving.environment.drivers.attention import DriverJudgement
 from codriving.environment.drivers.style import DriverMix, DriverTraits
 from codriving.environment.motion import STANDSTILL, clip
 from codriving.environment.settings import Corrections, DriverProfile
@@ -32,7 +32,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
     sight: float  # How far ahead along the route it looks for bodies [m]
     stands: float = 0.0  # How long it still stands before it drives [s]
     traits: DriverTraits | None = None
-    judgement: Judgement | None = None
+    judgement: DriverJudgement | None = None
 
     @classmethod
     def start(
@@ -51,7 +51,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
             traits.profile.apply(driver, to_class=False)
             driver.sight, driver.DELTA, driver.target_speed = profile.sight, traits.exponent, start.speed * traits.speed
             driver.traits, driver.style, driver.signals = traits, traits.style, traits.signals
-            driver.judgement = Judgement(traits)
+            driver.judgement = DriverJudgement(traits)
         else:
             assert isinstance(profile, DriverProfile)
             profile.apply(driver, to_class=not corrections.own_parameters)
