@@ -32,8 +32,8 @@ class Negotiator(Party):
     """A CAV, or a unit that only coordinates.
 
     Who has accepted to be second is second from then on, and who is to be first is so only when it has heard of the
-    agreement; so no loss of messages makes both of a pair go first by agreements. A promise ends with the next
-    agreement of its proposer, or after twice the validity of the proposal, which is when no agreement on it can hold.
+    agreement; so no loss of messages makes both of a pair go first by agreements. A promise ends with an
+    agreement of its proposer about the pair, or after twice the validity, when no agreement on it can hold any more.
 
     Between two decisions it answers at once, by what it knew at the last one.
     """
@@ -133,12 +133,14 @@ class Negotiator(Party):
         known = self._held.get(agreement.sender)
         if known is None or known.time < agreement.time:
             self._held[agreement.sender] = agreement
-            about = agreement.number, agreement.round
-            kept = (
-                key for key, promise in self._promised.items() if key[0] == agreement.sender and promise.number <= about
-            )
-            for key in list(kept):
-                del self._promised[key]
+            settled = {frozenset((p.first, p.second)) for p in agreement.pairs}
+            self._promised = {
+                key: promise
+                for key, promise in self._promised.items()
+                if key[0] != agreement.sender
+                or promise.number > (agreement.number, agreement.round)
+                or frozenset(key[1]) not in settled
+            }
 
     def _answer_to(self, proposal: Proposal, time: float | None = None) -> Response:
         """Accept a proposal, or say what has to be instead."""

@@ -107,6 +107,9 @@ def test_who_has_accepted_to_be_second_is_so_before_it_hears_of_the_agreement(ju
     # What was agreed on before, and arrives late, changes nothing.
     made.hear([agreement("CAV2 CAV1", time=0.35)], 0.6)
     assert made.agreed(0.6).keys() == {("CAV1", "CAV2")}
+    # Nor does a newer one that leaves the pair open.
+    made.hear([replace(agreement("CAV3 CAV2", time=0.6), number=2)], 0.65)
+    assert made.agreed(0.65).keys() == {("CAV1", "CAV2"), ("CAV3", "CAV2")}
     # It has heard of no agreement for as long as one may hold.
     assert made.agreed(6.4).keys() == {("CAV1", "CAV2")}
     assert made.agreed(6.5) == {}
