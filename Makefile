@@ -7,10 +7,11 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 TORCH := $(VENV)/.torch
+BROWSER := $(VENV)/.browser
 ARGS ?=
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 # Rebuilt from nothing when the locked versions change, so that no leftover package hides a missing one.
 $(READY): requirements.lock pyproject.toml
@@ -27,6 +28,14 @@ run: $(READY) ## drive 20 episodes at the intersection and print the table
 
 test: $(READY) ## run the tests
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
+
+# A stamp of its own: only these tests need playwright. Its own browsers are not downloaded; chromium is the system's.
+$(BROWSER): $(READY) requirements-browser.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements-browser.lock
+	@touch $(BROWSER)
+
+test-browser: $(BROWSER) ## test the page of codriving report in chromium, which has to be installed
+	$(BIN)/python -m pytest tests/pages/test_page_browser.py $(ARGS)
 
 coverage: $(READY) ## run the tests and measure which lines of codriving/ they run through
 	$(BIN)/python -m pytest -n auto --dist worksteal --cov --cov-report=term:skip-covered $(ARGS)
@@ -99,4 +108,4 @@ clean: ## remove .venv and what the tools left behind; outputs/ stays
 	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test coverage mutants fuzz check-all hooks torch train ablate compare bench tables pictures lint types format lock clean
+.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch train ablate compare bench tables pictures lint types format lock clean

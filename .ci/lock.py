@@ -1,4 +1,4 @@
-"""Write requirements.lock and requirements-train.lock, with hashes: run by ``make lock``.
+"""Write requirements.lock, requirements-train.lock and requirements-browser.lock, with hashes: run by ``make lock``.
 
 The hashes are those of every file of a version, so that no other file is installed under its name. Of PyTorch the lock
 holds wheels for Python 3.11: on Linux and x86 the one for the CPU alone, which comes from another index and is kept as
@@ -29,13 +29,17 @@ TRAIN = """\
 # Networks of this size are trained on the CPU: on Linux by the wheel without CUDA, from its own index:
 #     PIP_EXTRA_INDEX_URL=https://download.pytorch.org/whl/cpu make torch
 """
+BROWSER = """\
+# Exact versions of what codriving[browser] needs beyond requirements.lock, for Python 3.11. Made by: make lock
+# No browser is among them: the tests take the chromium of the system.
+"""
+LOCKS = {"dev": "requirements.lock", "train": "requirements-train.lock", "browser": "requirements-browser.lock"}
 
 
 def compiled(folder: Path, extra: str, *arguments: str) -> dict[str, str]:
     """Return the locked packages: name to the text of its version and hashes."""
     target = folder / extra
-    known = {"dev": "requirements.lock", "train": "requirements-train.lock"}[extra]
-    target.write_text((ROOT / known).read_text(encoding="utf-8"), encoding="utf-8")
+    target.write_text((ROOT / LOCKS[extra]).read_text(encoding="utf-8"), encoding="utf-8")
     command = [*COMPILE, *arguments, "--extra", extra, "--output-file", str(target), str(ROOT / "pyproject.toml")]
     subprocess.run(command, check=True, cwd=ROOT)
     return packages(target.read_text(encoding="utf-8"))
@@ -67,15 +71,18 @@ def torch(version: str, entry: str) -> str:
 
 
 def main() -> None:
-    """Write both files; ``--upgrade`` takes the newest versions within the ranges of pyproject.toml."""
+    """Write the files; ``--upgrade`` takes the newest versions within the ranges of pyproject.toml."""
     with tempfile.TemporaryDirectory() as name:
         dev = compiled(Path(name), "dev", *sys.argv[1:])
         (ROOT / "requirements.lock").write_text(LOCK + "\n".join(dev.values()) + "\n", encoding="utf-8")
-        train = compiled(Path(name), "train", "--constraint", str(ROOT / "requirements.lock"), *sys.argv[1:])
+        known = ("--constraint", str(ROOT / "requirements.lock"), *sys.argv[1:])
+        train, browser = (compiled(Path(name), extra, *known) for extra in ("train", "browser"))
     beyond = {name: text for name, text in train.items() if name not in dev and not name.startswith(CUDA)}
     version = beyond["torch"].split("==")[1].split()[0].split("+")[0]
     beyond["torch"] = torch(version, beyond["torch"])
     (ROOT / "requirements-train.lock").write_text(TRAIN + "\n".join(beyond.values()) + "\n", encoding="utf-8")
+    tested = [text for name, text in browser.items() if name not in dev]
+    (ROOT / "requirements-browser.lock").write_text(BROWSER + "\n".join(tested) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

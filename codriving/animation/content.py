@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from codriving.animation.reading import map_in, maps_in, number_in, text_in, texts_in
 from codriving.animation.talk import Talk
 from codriving.datatypes import Action, Kind, Outcome, Relation, Severity, Track, Trajectory
 from codriving.geometry import RoadMap
@@ -67,11 +68,11 @@ class FrameContent:
 
 def deliberated(line: Mapping[str, Any], road_map: RoadMap) -> FrameContent:
     """Read a line."""
-    cavs = {name: entry for entry in _maps(line, "cavs") if (name := _text(entry, "id"))}
+    cavs = {name: entry for entry in maps_in(line, "cavs") if (name := text_in(entry, "id"))}
     order, title = _order(list(cavs.values()))
-    routes = {name: _text(_map(_map(entry, "scene"), "intent"), "route") for name, entry in cavs.items()}
+    routes = {name: text_in(map_in(map_in(entry, "scene"), "intent"), "route") for name, entry in cavs.items()}
     return FrameContent(
-        time=_number(line, "time") or 0.0,
+        time=number_in(line, "time") or 0.0,
         thoughts={name: _thought(name, entry) for name, entry in cavs.items()},
         routes={name: route for name, route in routes.items() if route},
         meetings=_meetings(cavs.values(), road_map),
@@ -85,43 +86,15 @@ def action_named(name: str) -> Action | None:
     return Action(name) if name in {str(action) for action in Action} else None
 
 
-def _text(entry: Mapping[str, Any], key: str) -> str:
-    value = entry.get(key)
-    return value if isinstance(value, str) else ""
-
-
-def _number(entry: Mapping[str, Any], key: str) -> float | None:
-    value = entry.get(key)
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
-
-
-def _map(entry: Mapping[str, Any], key: str) -> Mapping[str, Any]:
-    value = entry.get(key)
-    return value if isinstance(value, Mapping) else {}
-
-
-def _maps(entry: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
-    return [value for value in _list(entry, key) if isinstance(value, Mapping)]
-
-
-def _texts(entry: Mapping[str, Any], key: str) -> tuple[str, ...]:
-    return tuple(value for value in _list(entry, key) if isinstance(value, str))
-
-
-def _list(entry: Mapping[str, Any], key: str) -> Sequence[Any]:
-    value = entry.get(key)
-    return value if isinstance(value, list | tuple) else ()
-
-
 def _thought(name: str, entry: Mapping[str, Any]) -> DrawnDecision:
-    pairs = _maps(_map(entry, "order"), "precedences")
-    firsts = dict.fromkeys(_text(pair, "first") for pair in pairs if _text(pair, "second") == name)
-    return DrawnDecision(action_named(_text(entry, "action")), _text(entry, "reason"), tuple(filter(None, firsts)))
+    pairs = maps_in(map_in(entry, "order"), "precedences")
+    firsts = dict.fromkeys(text_in(pair, "first") for pair in pairs if text_in(pair, "second") == name)
+    return DrawnDecision(action_named(text_in(entry, "action")), text_in(entry, "reason"), tuple(filter(None, firsts)))
 
 
 def _order(entries: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, ...] | None, str]:
-    orders = [_map(entry, "order") for entry in entries]
-    sequences = [_texts(order, "sequence") for order in orders]
+    orders = [map_in(entry, "order") for entry in entries]
+    sequences = [texts_in(order, "sequence") for order in orders]
     if not any(sequences):
         return None, ""
     if len(set(sequences)) > 1:
@@ -133,7 +106,7 @@ def _order(entries: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, ...] | None
 
 def _meetings(entries: Iterable[Mapping[str, Any]], road_map: RoadMap) -> tuple[DrawnConflict, ...]:
     worst: dict[frozenset[str], DrawnConflict] = {}
-    for meeting in (_meeting(conflict, road_map) for entry in entries for conflict in _maps(entry, "conflicts")):
+    for meeting in (_meeting(conflict, road_map) for entry in entries for conflict in maps_in(entry, "conflicts")):
         if meeting is not None:
             pair = frozenset((meeting.one, meeting.other))
             if pair not in worst or meeting.dttcp < worst[pair].dttcp:
@@ -142,8 +115,8 @@ def _meetings(entries: Iterable[Mapping[str, Any]], road_map: RoadMap) -> tuple[
 
 
 def _meeting(conflict: Mapping[str, Any], road_map: RoadMap) -> DrawnConflict | None:
-    one, other, dttcp = _text(conflict, "ego"), _text(conflict, "other"), _number(conflict, "dttcp")
-    severity = _text(conflict, "severity")
+    one, other, dttcp = text_in(conflict, "ego"), text_in(conflict, "other"), number_in(conflict, "dttcp")
+    severity = text_in(conflict, "severity")
     if not one or not other or dttcp is None or severity not in {str(band) for band in Severity}:
         return None
     certain = conflict.get("certain") is not False
@@ -152,7 +125,7 @@ def _meeting(conflict: Mapping[str, Any], road_map: RoadMap) -> DrawnConflict | 
 
 def _ways(conflict: Mapping[str, Any], road_map: RoadMap) -> tuple[tuple[str, float], tuple[str, float]] | None:
     """Where the centre lines cross or come together; one behind the other meet nowhere on the map."""
-    routes, index = _texts(conflict, "routes"), conflict.get("zone")
+    routes, index = texts_in(conflict, "routes"), conflict.get("zone")
     if conflict.get("relation") == Relation.FOLLOWING or len(routes) != 2 or not isinstance(index, int):
         return None
     one, other = routes

@@ -1,6 +1,7 @@
 """What does not move: asphalt, painted lines, goals and what stands on the road."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -18,28 +19,49 @@ _PAINT = 0.18  # Width of a painted line [m]
 _MARKS = 50.0  # Distance between two marks beside a long road [m]
 
 
+@dataclass(frozen=True, slots=True)
+class GroundShapes:
+    """What does not move, as polygons and lines [m]."""
+
+    asphalt: tuple[Points, ...]
+    full: tuple[Points, ...]  # Painted lines
+    striped: tuple[Points, ...]
+    goals: tuple[Points, ...]
+    blocks: tuple[Points, ...]
+    buildings: tuple[Points, ...]
+
+
+def ground_shapes(road_map: RoadMap) -> GroundShapes:
+    """Work out what of a road does not move."""
+    ways = [(lane, _way(lane)) for lane in road_map.road.lanes]
+    lines = [
+        (paint, side(way, sign * lane.width / 2))
+        for lane, way in ways
+        for sign, paint in zip((-1, 1), lane.lines, strict=True)
+    ]
+    blocks, buildings = (
+        tuple(corners(*b.position, b.heading, b.length, b.width) for b in solid)
+        for solid in (road_map.road.blocks, road_map.road.buildings)
+    )
+    return GroundShapes(
+        tuple(np.concatenate((side(way, -lane.width / 2), side(way, lane.width / 2)[::-1])) for lane, way in ways),
+        tuple(line for paint, line in lines if paint in (Line.CONTINUOUS, Line.CONTINUOUS_LINE)),
+        tuple(line for paint, line in lines if paint is Line.STRIPED),
+        tuple(_goals(road_map)),
+        blocks,
+        buildings,
+    )
+
+
 class Ground:
     """The road as shapes in metres, worked out once."""
 
     def __init__(self, road_map: RoadMap) -> None:
-        ways = [(lane, _way(lane)) for lane in road_map.road.lanes]
-        self._asphalt = Shape(
-            (np.concatenate((side(way, -lane.width / 2), side(way, lane.width / 2)[::-1])) for lane, way in ways),
-            closed=True,
-        )
-        lines = [
-            (paint, side(way, sign * lane.width / 2))
-            for lane, way in ways
-            for sign, paint in zip((-1, 1), lane.lines, strict=True)
-        ]
-        self._full = Shape(line for paint, line in lines if paint in (Line.CONTINUOUS, Line.CONTINUOUS_LINE))
-        self._striped = Shape(line for paint, line in lines if paint is Line.STRIPED)
-        self._goals = Shape(_goals(road_map))
-        blocks = [corners(*b.position, b.heading, b.length, b.width) for b in road_map.road.blocks]
-        houses = [corners(*b.position, b.heading, b.length, b.width) for b in road_map.road.buildings]
-        self._buildings = Shape(houses, closed=True)
-        self._blocks = Shape(blocks, closed=True)
-        self._crosses = Shape(block[pair] for block in blocks for pair in ([0, 2], [1, 3]))
+        shapes = ground_shapes(road_map)
+        self._asphalt = Shape(shapes.asphalt, closed=True)
+        self._full, self._striped, self._goals = Shape(shapes.full), Shape(shapes.striped), Shape(shapes.goals)
+        self._buildings, self._blocks = Shape(shapes.buildings, closed=True), Shape(shapes.blocks, closed=True)
+        self._crosses = Shape(block[pair] for block in shapes.blocks for pair in ([0, 2], [1, 3]))
 
     def draw(self, canvas: Canvas, windows: tuple[Window, ...]) -> None:
         """Draw it through each window."""

@@ -23,6 +23,7 @@ from codriving.cli.commands import (
     learn,
     list_choices,
     replay,
+    report,
     run,
     score,
     stress,
@@ -172,6 +173,7 @@ app.command(epilog="Example: codriving learn scenario=intersection interactions=
 app.command(epilog="Example: codriving join outputs/run/big")(join)
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
+app.command(epilog="Example: codriving report outputs/run/first outputs/run/second --out page.html")(report)
 app.command(epilog="Example: codriving score recording.csv outputs/run/first metrics=authors --csv scores.csv")(score)
 app.command(epilog="Example: codriving export outputs/run/first --to fcd --episode 3")(export)
 app.add_typer(memory, name="memory")

@@ -186,6 +186,27 @@ def replay(
     print(run_replay(run, options))
 
 
+def report(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Run folders, or names of some under outputs/.")],
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="In the folder of the first run if not given.")
+    ] = None,
+    cell: Annotated[str | None, typer.Option(metavar="NAME", help="A row of the table, or a part of its name.")] = None,
+    replays: Annotated[
+        int | None, typer.Option(metavar="N", help="How many episodes can be replayed: 40, bad endings first.")
+    ] = None,
+    config_dir: ConfigDir = None,
+) -> None:
+    """Make one page of runs, a file for any browser: tables, figures, and every episode replayed.
+
+    Beside the road of a replay: what a CAV knew at each step, conflicts, order, removed actions, memories, messages,
+    prompt and answer. Of several runs it says where they part on equal seeds. The page asks nothing of the network.
+    """
+    from codriving.commands import ReportOptions, run_report
+
+    print(run_report(runs, ReportOptions(out, cell, replays, config_dir)))
+
+
 def score(
     words: Annotated[
         list[str] | None,

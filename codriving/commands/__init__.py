@@ -14,15 +14,16 @@ if TYPE_CHECKING:
     from codriving.commands.memory_build import BUILD
     from codriving.commands.memory_pages import merge_page, search_page, show_page
     from codriving.commands.replay import ReplayOptions, run_replay
+    from codriving.commands.report import ReportOptions, run_report
     from codriving.commands.run import RUN, Results, run_command, run_frames
     from codriving.commands.score import ScoreOptions, run_score
     from codriving.commands.stress import stress_command
 
 __all__ = [
-    "ABLATE", "BUILD", "RUN", "BoundOptions", "Comparison", "ExportOptions", "JoinOptions", "ReplayOptions", "Results",
-    "ScoreOptions", "compare_frames", "comparison_command", "merge_page", "run_bound", "run_check", "run_command",
-    "run_export", "run_frames", "run_join", "run_learn", "run_replay", "run_score", "search_page", "show_page",
-    "stress_command",
+    "ABLATE", "BUILD", "RUN", "BoundOptions", "Comparison", "ExportOptions", "JoinOptions", "ReplayOptions",
+    "ReportOptions", "Results", "ScoreOptions", "compare_frames", "comparison_command", "merge_page", "run_bound",
+    "run_check", "run_command", "run_export", "run_frames", "run_join", "run_learn", "run_replay", "run_report",
+    "run_score", "search_page", "show_page", "stress_command",
 ]  # fmt: skip
 
 _FILES = {
@@ -36,6 +37,7 @@ _FILES = {
     "memory_build": ("BUILD",),
     "memory_pages": ("merge_page", "search_page", "show_page"),
     "replay": ("ReplayOptions", "run_replay"),
+    "report": ("ReportOptions", "run_report"),
     "run": ("RUN", "Results", "run_command", "run_frames"),
     "score": ("ScoreOptions", "run_score"),
     "stress": ("stress_command",),

@@ -1,0 +1,61 @@
+"""Figures that stand in a page: no style, no id twice, the page's own colour for words, the same bytes each time."""
+
+import re
+from xml.etree import ElementTree
+
+import pytest
+
+from codriving.datatypes.record import Ending, EpisodeRecord, Outcome, Pet, Score, TravelScore
+from codriving.pages.figures import figures
+from codriving.reports.results import CellResults
+
+
+def cell(*pets: float, ending: Ending = Ending.SUCCESS) -> CellResults:
+    score = Score(
+        ending is Ending.SUCCESS,
+        tuple(Pet("CAV1", "CAV2", "crossing", pet) for pet in pets),
+        (TravelScore("CAV1", 6.5, 20.0, 2.0),),
+    )
+    record = EpisodeRecord(
+        "intersection", "fcfs", "", "none", 3, Outcome(ending, 20.0, {}), {"standard": score}, (), 40, {}
+    )
+    return CellResults([record], papers_setting=False, as_in_paper=False)
+
+
+@pytest.fixture(scope="module")
+def drawn() -> list[tuple[str, str]]:
+    return figures([("one <b>", cell(1.0, 4.0)), ("other", cell(2.0)), ("hit", cell(ending=Ending.COLLISION))])
+
+
+def test_one_for_endings_pets_and_the_trade_off(drawn: list[tuple[str, str]]) -> None:
+    assert [name for name, _ in drawn] == [
+        "How episodes ended",
+        "Post-encroachment times (PET) of all episodes",
+        "Velocity against severe PETs",
+    ]
+    endings, pets, trade = (set(ElementTree.fromstring(svg).itertext()) for _, svg in drawn)
+    assert {"success", "collision", "one <b>", "other", "hit"} <= endings
+    assert {"severe below 1.5 s", "one <b>", "other"} <= pets
+    assert "hit" not in pets
+    assert {"one <b>", "other"} <= trade
+
+
+def test_they_suit_a_strict_page(drawn: list[tuple[str, str]]) -> None:
+    ids = [name for _, svg in drawn for name in re.findall(r' id="([^"]+)"', svg)]
+    assert len(ids) == len(set(ids)) > 0
+    for _, svg in drawn:
+        assert " style=" not in svg
+        assert "<style" not in svg
+        assert "currentColor" in svg
+        assert "#010203" not in svg
+        for name in re.findall(r'(?:href="#|url\(#)([^")]+)', svg):
+            assert name in ids
+
+
+def test_the_same_bytes_each_time(drawn: list[tuple[str, str]]) -> None:
+    again = figures([("one <b>", cell(1.0, 4.0)), ("other", cell(2.0)), ("hit", cell(ending=Ending.COLLISION))])
+    assert again == drawn
+
+
+def test_one_row_has_no_trade_off() -> None:
+    assert [name for name, _ in figures([("hit", cell(ending=Ending.COLLISION))])] == ["How episodes ended"]
