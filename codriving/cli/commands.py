@@ -45,7 +45,7 @@ def compare(
         str | None,
         typer.Argument(
             metavar="TABLE",
-            help="Which table: baselines, single-vehicle, all, load, orders or filters.",
+            help="Which table: baselines, single-vehicle, all, load, orders, filters or models.",
             autocompletion=complete_table,
         ),
     ] = None,
@@ -60,7 +60,8 @@ def compare(
 
     baselines: each method against codriving. single-vehicle: those by which each CAV is on its own. all: both.
     load: baselines with 4, 6, 8 and 12 CAVs. orders: codriving with each passing order. filters: each method with and
-    without the safety check behind it.
+    without the safety check behind it. models: codriving with each model that llm=NAME,NAME names, and with
+    controls and rules in its place; epochs=N drives each seed N times.
 
     method=NAME adds a method of your own; controls=false leaves controls out.
     """

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from codriving.commands.compare_filters import NO_FLOWS, filter_points, make_filters
+from codriving.commands.compare_models import check_models, make_models, model_points
 from codriving.commands.compare_orders import ORDER, as_orders, order_points, subject_of
 from codriving.commands.controls import split_controls
 from codriving.commands.run import Command
@@ -61,11 +62,11 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 BASELINES, SINGLE_VEHICLE, ALL = "baselines", "single-vehicle", "all"
-LOAD, ORDERS, FILTERS = "load", "orders", "filters"
+LOAD, ORDERS, FILTERS, MODELS = "load", "orders", "filters", "models"
 
 # The folder of each table's runs, if the user names none.
 EXPERIMENT = {BASELINES: "compare", SINGLE_VEHICLE: "compare-single-vehicle", ALL: "compare-all", LOAD: "load"}
-EXPERIMENT |= {ORDERS: "compare-orders", FILTERS: "compare-filters"}
+EXPERIMENT |= {ORDERS: "compare-orders", FILTERS: "compare-filters", MODELS: "compare-models"}
 
 CAVS = "scenario.cavs"  # The key that the load is
 
@@ -96,12 +97,14 @@ def comparison_command(table: str | None, bounded: bool = False) -> Command:
         given = "compare needs the name of a table" if table is None else f"unknown table {table!r}"
         raise ConfigError(f"{given}; write codriving compare TABLE [KEY=VALUE]..., tables: {', '.join(TABLES)}")
     points, name = partial(comparison, table), f"compare {table}"
-    if bounded and table in (LOAD, FILTERS):
+    if bounded and table in (LOAD, FILTERS, MODELS):
         raise ConfigError(f"compare {table} has no columns of the bound; write codriving compare baselines --bound")
     if table == LOAD:
         return Command(name, points, partial(refuse_flows, UNLOADED), make_loads)
     if table == FILTERS:
         return Command(name, points, partial(refuse_flows, NO_FLOWS), make_filters)
+    if table == MODELS:
+        return Command(name, points, check_models, make_models)
     if bounded:
         made = partial(make_comparison, table, bounded=True)
         return Command(f"{name} --bound", points, partial(refuse_flows, UNBOUNDED), made)
@@ -114,7 +117,7 @@ def compare_frames(
     """Drive all methods on the same seeds and give the tables as data frames; prints no table.
 
     Args:
-        table: ``baselines``, ``single-vehicle``, ``all``, ``load``, ``orders`` or ``filters``.
+        table: ``baselines``, ``single-vehicle``, ``all``, ``load``, ``orders``, ``filters`` or ``models``.
         *overrides: ``key=value`` tokens that hold for every cell; ``method=`` adds methods.
         bound: Whether it is said how far each row is above the bound of its scenes.
 
@@ -134,6 +137,8 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
 
     Every method of the table that has a YAML takes part. ``method=`` adds others to them; controls come last.
     """
+    if table == MODELS:
+        return model_points(_named(table, overrides), written(overrides), config_dir)
     controlled, overrides = split_controls(written(overrides), usual=table not in (LOAD, ORDERS, FILTERS))
     keys = [parse(token).key_or_group for token in overrides]
     added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
@@ -141,8 +146,7 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
     if table == LOAD:
         named = [*keys, *(["scenario"] if sets_scenario(overrides, config_dir) else [])]
         others = [*(token for token in LOADED if token.partition("=")[0] not in named), *others]
-    # Asked for once more on the command line, it is the user's.
-    base = () if "experiment" in keys else (f"experiment={EXPERIMENT[table]}",)
+    base = _named(table, overrides)
     methods = list(dict.fromkeys([*_methods(table, added, config_dir), *(taking_part(CONTROLS) if controlled else ())]))
     if table == ORDERS:
         return order_points(base, others, methods, config_dir)
@@ -153,6 +157,12 @@ def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = N
         for point in expand(others, config_dir)
         for name in methods
     ]
+
+
+def _named(table: str, overrides: Sequence[str]) -> tuple[str, ...]:
+    """Name the folder of a table's runs; asked for once more on the command line, it is the user's."""
+    keys = [token.lstrip("+").partition("=")[0] for token in overrides]
+    return () if "experiment" in keys else (f"experiment={EXPERIMENT[table]}",)
 
 
 def _methods(table: str, added: Sequence[str], config_dir: Path | None) -> list[str]:

@@ -32,6 +32,7 @@ TABLES = {
     "load": "The methods of the first table with 4, 6, 8 and 12 CAVs.",
     "orders": "The paper's method with each passing order, each against the order that is negotiated.",
     "filters": "The methods of both tables, each with and without the safety check of codriving.",
+    "models": "One method with each model that llm= names, and with controls and the rules in its place.",
 }
 
 CONTROLS, ABLATION = "controls", "ablation"  # The tables below others in which controls say their place
@@ -43,7 +44,7 @@ FIRST = {
     "order": ("negotiated",),
     "filter": ("false", "true"),
     "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
-    "llm": ("offline",),
+    "llm": ("offline", "first", "random"),
     "limits": ("none", "road"),
     "drivers": ("simulator", "attentive", "mixed", "rough"),
     "flow": ("none", "steady"),

@@ -11,11 +11,11 @@ REPLAY = "replay"  # The setting of ``llm.cache`` with which no server is asked
 
 
 class Asked:
-    """The models of some cells."""
+    """The models of some cells whose answers have to be waited for."""
 
     def __init__(self, cells: Iterable[Cell]) -> None:
         found = {cell.folder: model_of(cell.resolved) for cell in cells}
-        self.models = {folder: model for folder, model in found.items() if model and model.chat()}
+        self.models = {folder: model for folder, model in found.items() if model and model.waits and model.chat()}
         self.retries = 0
         for client in _clients(self.models.values()):
             client.on_retry, client.on_note = self._tell_retry, announce

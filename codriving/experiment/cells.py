@@ -113,7 +113,7 @@ def make_cell(
     notes = thinking_of(resolved).notes(method) + communication_of(resolved).notes(method, brief)
     told = labels, resolved, scorer.metric.name, swept, chosen, files
     points = (point.swept,) if point else ()
-    repeatable = False if llm is not None and llm.latency == "measured" and llm.cache != "replay" else None
+    repeatable = False if llm and llm.waits and llm.latency == "measured" and llm.cache != "replay" else None
     return Cell(folder_name(labels), *told, remark=remark, repeatable=repeatable, notes=notes, points=points)
 
 

@@ -209,6 +209,7 @@ class ModelChat(Chat):
         """Reply to a conversation from the cache or by asking, and say which."""
         request = self._request(messages, schema_of(question.schema))
         request = replace(request, max_tokens=request.max_tokens + question.more_tokens)
+        request = replace(request, occasion=question.occasion if self._sender.marked else "")
         try:
             if self._cache is not None:
                 return await self._cached(self._cache, request)
@@ -243,7 +244,8 @@ class ModelChat(Chat):
         prices = self.settings.input_cost_per_token, self.settings.output_cost_per_token
         cost = cost_of(self.settings.model, reply.prompt_tokens, reply.completion_tokens, *prices)
         self.spending.add(reply.prompt_tokens, reply.completion_tokens, cost)
-        return replace(reply, cost=cost, seconds=round(time.perf_counter() - begun, 3))
+        seconds = round(time.perf_counter() - begun, 3) if self._sender.timed else 0.0
+        return replace(reply, cost=cost, seconds=seconds)
 
     async def _ask_plainer(self, request: ChatRequest) -> Reply:
         """Ask, and where the request is refused ask in a plainer way; what works is remembered.
@@ -329,7 +331,7 @@ class ModelChat(Chat):
         s = self.settings
         asked = ChatRequest(s.model, s.api_base, messages, s.temperature, s.max_tokens, schema)
         asked = replace(asked, max_tokens_field=s.max_tokens_field, system_role=s.system_role)
-        return replace(asked, extra=s.extra, headers=s.headers, stream=s.stream)
+        return replace(asked, extra=s.extra, headers=s.headers, stream=s.stream, epoch=s.epoch)
 
     def _key(self) -> str | None:
         s = self.settings

@@ -11,6 +11,7 @@ from codriving.datatypes import Model, RuleModel
 from codriving.llm.settings import ModelSettings
 
 if TYPE_CHECKING:
+    from codriving.llm.cache import AnswerCache
     from codriving.llm.client import ModelChat
 
 _NOT_THE_CLIENTS = ("failures_in_a_row", "ask_plain", "prompts", "latency")
@@ -34,12 +35,17 @@ class LanguageModel(ModelSettings, Model):
     def chat(self) -> "ModelChat":
         """Return the client for these settings; the whole process shares one."""
         from codriving.llm.cache import AnswerCache
-        from codriving.llm.client import ModelChat
 
         own = [getattr(self, field.name) for field in fields(self) if field.name not in _NOT_THE_CLIENTS]
-        key = f"{os.getpid()} {json.dumps(own, sort_keys=True)}"
+        key = f"{os.getpid()} {type(self).__name__} {json.dumps(own, sort_keys=True)}"
         with self._lock:
             if key not in self._shared:
                 cache = None if self.cache == "off" else AnswerCache(Path(self.cache_file), self.cache)
-                self._shared[key] = ModelChat(self, cache=cache)
+                self._shared[key] = self.client(cache)
             return self._shared[key]
+
+    def client(self, cache: "AnswerCache | None") -> "ModelChat":
+        """Make a client for these settings."""
+        from codriving.llm.client import ModelChat
+
+        return ModelChat(self, cache=cache)

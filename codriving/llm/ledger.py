@@ -15,12 +15,18 @@ WHOSE = (
 
 
 class Ledger:
-    """Notes every answer; one for each episode."""
+    """Notes every answer; one for each episode, whose seed for what is drawn it may be told."""
 
-    def __init__(self) -> None:
+    def __init__(self, seed: int = 0) -> None:
+        self._seed, self._asked = seed, 0
         self._counts = _zeros()
         self._cost = 0.0
         self._noted: list[tuple[Question, Answer]] = []
+
+    def occasion(self) -> str:
+        """Mark the next question of the episode."""
+        self._asked += 1
+        return f"{self._seed} {self._asked}"
 
     def note(self, question: Question, answer: Answer) -> None:
         """Note an answer."""

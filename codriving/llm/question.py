@@ -30,6 +30,7 @@ class Question:
     # out.
     shorter: "Callable[[], Question | None]" = lambda: None
     more_tokens: int = 0  # How much longer the answer may be than ``llm.max_tokens`` [tokens]
+    occasion: str = ""  # What tells it from the same words at another place of an episode; no part of what is asked
 
 
 @dataclass(frozen=True, slots=True)

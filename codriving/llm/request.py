@@ -47,12 +47,15 @@ class ChatRequest:
     stream: bool = False
     extra: Mapping[str, Any] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
+    epoch: int = 1  # Which time the same is asked
+    occasion: str = ""  # Where it is asked, for what draws its answers; a server is not told
 
     def told(self) -> dict[str, Any]:
         """What an answer depends on, by which it is kept; what is not set is left out."""
         told = asdict(self)
         del told["stream"]
-        plain = {"max_tokens_field": LIMIT, "system_role": "system", "extra": {}, "headers": {}}
+        plain: dict[str, Any] = {"max_tokens_field": LIMIT, "system_role": "system", "extra": {}, "headers": {}}
+        plain |= {"epoch": 1, "occasion": ""}
         return {name: value for name, value in told.items() if name not in plain or value != plain[name]}
 
     def without(self, left_out: Iterable[str]) -> "ChatRequest":

@@ -29,6 +29,9 @@ _COMPATIBLE = "openai"  # LiteLLM's word for a server that speaks OpenAI's proto
 class Sender:
     """Sends through LiteLLM, over connections that the whole process shares."""
 
+    timed = True  # Whether it is measured how long an answer takes
+    marked = False  # Whether it is told on which occasion something is asked
+
     async def load(self) -> None:
         """Import LiteLLM, which takes seconds the first time, so that no deadline runs meanwhile."""
         await load_litellm()

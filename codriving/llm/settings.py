@@ -24,6 +24,7 @@ _RANGES = {
     "max_concurrency": (1, 1000, ""),
     "failures_in_a_row": (1, 1000, ""),
     "fallbacks_at_first": (1, 100_000, ""),
+    "epoch": (1, 100, ""),
 }
 _HEADER = re.compile(r"[!#$%&'*+.^_`|~0-9A-Za-z-]+")
 _OURS = {"model": "llm.model", "messages": "prompts", "stream": "llm.stream"}  # Set elsewhere, not by ``extra``
@@ -71,6 +72,7 @@ class ModelSettings:
     api_key_header: str | None  # Header that carries the key, as it is; None takes the provider's own
     fallbacks_at_first: int  # The batch stops if the first so many questions had no usable answer
     latency: str | float  # How long a question takes in the world: ``none``, ``measured`` or a time [s]
+    epoch: int  # Which time the same seeds are driven; each asks anew
 
     def __post_init__(self) -> None:
         prices = self.input_cost_per_token, self.output_cost_per_token

@@ -22,6 +22,7 @@ from codriving.reports.filters import FILTERED, FilterRow, filter_rows, filter_t
 from codriving.reports.flows import flow_table, flow_tables, print_flows
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
 from codriving.reports.load import load_rows, load_table, print_each_load, print_loads
+from codriving.reports.models import ModelRow, Repetition, model_rows, model_table, print_models
 from codriving.reports.paper import Paper, read_learning, read_paper
 from codriving.reports.printed import PrintedTable, markdown_text, print_table
 from codriving.reports.profile import profile_figure
@@ -34,13 +35,13 @@ from codriving.reports.summary import RunTables, run_tables
 
 __all__ = [
     "FILTERED", "METHODS", "METHOD_CHOICE", "REFERENCE", "BoundRow", "BuiltMemory", "CellResults", "Compared",
-    "Condition", "FilterRow", "LearningRow", "Paper", "PrintedTable", "RunTables", "SceneBounds", "ScoredFiles",
-    "StressCurve", "Subject", "Table", "TimedEpisode", "ablation_rows", "ablation_table", "breaking_table",
-    "comparison_rows", "comparison_table", "cpu_per_decision", "filter_rows", "filter_table", "flow_table",
-    "flow_tables", "learning_figure", "learning_rows", "learning_table", "load_figure", "load_rows",
-    "load_table", "markdown_text", "pet_table", "print_bounds", "print_built", "print_comparison",
-    "print_each_load", "print_filters", "print_flows", "print_learning", "print_loads", "print_pairs",
-    "print_scores", "print_stress", "print_table", "profile_figure", "read_learning", "read_paper",
-    "run_tables", "score_table", "stress_figure", "stress_notes", "stress_table", "table", "timing_columns",
-    "with_bounds", "with_corrected",
+    "Condition", "FilterRow", "LearningRow", "ModelRow", "Paper", "PrintedTable", "Repetition", "RunTables",
+    "SceneBounds", "ScoredFiles", "StressCurve", "Subject", "Table", "TimedEpisode", "ablation_rows",
+    "ablation_table", "breaking_table", "comparison_rows", "comparison_table", "cpu_per_decision",
+    "filter_rows", "filter_table", "flow_table", "flow_tables", "learning_figure", "learning_rows",
+    "learning_table", "load_figure", "load_rows", "load_table", "markdown_text", "model_rows", "model_table",
+    "pet_table", "print_bounds", "print_built", "print_comparison", "print_each_load", "print_filters",
+    "print_flows", "print_learning", "print_loads", "print_models", "print_pairs", "print_scores",
+    "print_stress", "print_table", "profile_figure", "read_learning", "read_paper", "run_tables", "score_table",
+    "stress_figure", "stress_notes", "stress_table", "table", "timing_columns", "with_bounds", "with_corrected",
 ]  # fmt: skip

@@ -80,8 +80,9 @@ class CellResults:
 
     @property
     def is_control(self) -> bool:
-        """Whether it is no method: its variant says so with its first word."""
-        return self.first.variant.replace("/", " ").split(" ")[0] == "control"
+        """Whether it is no method: its variant, or the name of its reasoner, says so with its first word."""
+        said = self.first.variant.replace("/", " "), self.first.reasoner
+        return any(text.split(" ")[0] == "control" for text in said)
 
     @cached_property
     def episodes(self) -> "list[ScoredEpisode]":

@@ -48,8 +48,8 @@ __all__ = [
     "TRAJECTORY", "UNNAMED", "CellEntry", "Manifest", "NamedFile", "Part", "RunFolder", "Shard", "Timing",
     "changed_versions", "check_files", "checked_record", "commit", "difference", "driving_values", "episode_folder",
     "files_of", "fingerprint", "flat", "locked", "machine", "nested", "new_run_path", "only_old_world",
-    "read_decisions", "read_manifest", "read_part", "read_record", "read_timing", "read_trajectory",
-    "read_transcript", "redact", "removed", "rewrite_record", "same_cell", "secrets_of", "settings_of",
-    "snapshot_of", "timing_of", "unwritable", "variables_in", "versions", "whole_file", "whole_folder", "within",
-    "write_episode", "write_part", "write_text",
+    "read_decisions", "read_manifest", "read_part", "read_record", "read_timing", "read_trajectory", "read_transcript",
+    "redact", "removed", "rewrite_record", "same_cell", "secrets_of", "settings_of", "snapshot_of", "timing_of",
+    "unwritable", "variables_in", "versions", "whole_file", "whole_folder", "within", "write_episode", "write_part",
+    "write_text",
 ]  # fmt: skip

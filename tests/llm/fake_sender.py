@@ -108,6 +108,7 @@ SETTINGS = ModelSettings(
     headers={},
     api_key_header=None,
     fallbacks_at_first=20,
+    epoch=1,
 )
 
 

@@ -23,6 +23,7 @@ from codriving.reports.comparison import (
 from codriving.reports.episodes import TimedEpisode, timing_columns
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
 from codriving.reports.load import load_rows, load_table, print_each_load, print_loads
+from codriving.reports.models import Repetition, model_rows, model_table, print_models
 from codriving.reports.paper import Paper, read_learning, read_paper
 from codriving.reports.printed import PrintedTable, markdown_text, print_table
 from codriving.reports.results import CellResults
@@ -133,7 +134,7 @@ def tables() -> dict[str, str]:
         made = run_tables(cells, paper, **more)
         found[f"{name}-episodes.csv"], found[f"{name}-summary.csv"] = made.episodes.csv(), made.summary.csv()
         found[f"{name}-summary.md"], found[f"{name}-printed.txt"] = markdown_text(made.page), printed(made.printed)
-    found |= _comparisons()
+    found |= _comparisons() | _models()
     loads = [
         (cavs, CellResults([replace(r, scenario=s) for r in cell[: cavs + 3]], {"environment.x": x}, cpu=cavs / 1000))
         for s, x in (("intersection", "1"), ("intersection", "2"), ("merge", "1"))
@@ -193,6 +194,31 @@ def _comparisons() -> dict[str, str]:
         found[f"{name}.md"] = markdown_text(kept) + (markdown_text(against, level=2) if against else "")
         found[f"{name}-printed.txt"] = printed(screen, against)
     return found | _suites(paper)
+
+
+WHOSE = {"model_decisions": 40, "mended_decisions": 4, "plain_decisions": 30, "single_decisions": 20,
+         "fallback_decisions": 10, "decisions_as_rules": 30, "model_pairs": 19, "mended_pairs": 0, "repaired_pairs": 1,
+         "fallback_pairs": 0, "pairs_as_rules": 10, "cached_tokens": 1000, "reasoning_tokens": 70, "cut_off": 2,
+         "withheld": 0}  # fmt: skip
+
+
+def _models() -> dict[str, str]:
+    """A model driven three times, one of a version that did not count, a control that decides all, and the rules."""
+    told = {"counts": {**ASKED, **WHOSE}, "variant": "full"}
+    every = {"model_decisions": 9, "model_pairs": 9, "decisions_as_rules": 3, "pairs_as_rules": 9, "model_calls": 9}
+    cells = [
+        CellResults(episodes({2: Ending.TIMEOUT}, reasoner="openai/toy", faster=1.0, **told)),
+        CellResults(episodes({}, reasoner="old", counts=ASKED)),
+        CellResults(episodes({4: Ending.COLLISION, 5: Ending.COLLISION}, reasoner="control first", counts=every)),
+        CellResults(FULL),
+    ]
+    rows = model_rows([(cell, Repetition(3, 7, 8, 20, 24) if k == 0 else None) for k, cell in enumerate(cells)])
+    kept, screen = (print_models(rows, cells, "standard", (), ["A note."], s) for s in (False, True))
+    return {
+        "models.csv": model_table(rows).csv(),
+        "models.md": markdown_text(kept),
+        "models-printed.txt": printed(screen),
+    }
 
 
 def _suites(paper: Paper) -> dict[str, str]:

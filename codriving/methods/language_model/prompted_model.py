@@ -1,7 +1,7 @@
 """A language model as methods use it: with its templates, and with the ledger in which its answers are counted."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
@@ -24,19 +24,20 @@ class PromptedModel:
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
         """Ask all questions at once, and note the answers."""
-        answers = self.chat.ask(questions) if questions else []
+        marked = [replace(question, occasion=self.ledger.occasion()) for question in questions]
+        answers = self.chat.ask(marked) if marked else []
         for question, answer in zip(questions, answers, strict=True):
             self.ledger.note(question, answer)
         return answers
 
 
-def prompted(llm: Model) -> PromptedModel | None:
+def prompted(llm: Model, seed: int = 0) -> PromptedModel | None:
     """Return the model of an episode, with an empty ledger; None for the built-in rules."""
     if (chat := llm.chat()) is None:
         return None
     from codriving.llm import load_prompts
 
-    return PromptedModel(chat, load_prompts(llm.prompts), Ledger())
+    return PromptedModel(chat, load_prompts(llm.prompts), Ledger(seed))
 
 
 def check_model(llm: Model, memory: CaseMemory | None) -> None:
@@ -74,7 +75,7 @@ class ModelMethod(Method):
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode."""
-        self._model = prompted(self.llm)
+        self._model = prompted(self.llm, seed)
 
     def unfinished_step(self, time: float) -> Account:
         return self._model.ledger.close_step(time) if self._model is not None else ({}, [])
