@@ -1,6 +1,7 @@
 """A stored episode as numbers and words that a browser replays: tracks, conflicts, and what each CAV decided."""
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -93,7 +94,7 @@ def _step(line: Line, asked: Mapping[float, Sequence[Line]], talk: Talk, road_ma
             "w": list(thought.waits_for),
             "x": len(entry["removed"]) if isinstance(entry.get("removed"), Mapping) else 0,
             "route": content.routes.get(text_in(entry, "id"), ""),
-            "s": sections(entry, said, questions),
+            "s": sections(entry, said, questions_of(text_in(entry, "id"), content.thoughts, questions)),
         }
         for entry in maps_in(line, "cavs")
         if (thought := content.thoughts.get(text_in(entry, "id"))) is not None
@@ -106,6 +107,12 @@ def _step(line: Line, asked: Mapping[float, Sequence[Line]], talk: Talk, road_ma
         "marks": marks,
         "cavs": cavs,
     }
+
+
+def questions_of(name: str, cavs: Collection[str], asked: Iterable[Line]) -> list[Line]:
+    """Choose what was asked for a CAV: what names it, and what names none."""
+    named = [(line, set(re.findall(r"[\w-]+", text_in(line, "subject")))) for line in asked]
+    return [line for line, words in named if name in words or not words & set(cavs)]
 
 
 def _steps(values: NDArray[np.float64], scale: float) -> list[int]:

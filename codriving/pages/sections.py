@@ -13,7 +13,7 @@ Entry: TypeAlias = Mapping[str, Any]
 
 KNOWN = {
     *("id", "action", "reason", "scene", "conflicts", "order", "allowed", "removed", "assessments", "memories"),
-    *("similarities", "recalled", "agreements", "filter"),
+    *("similarities", "recalled", "judgements", "agreements", "filter"),
 }
 
 
@@ -23,7 +23,7 @@ def sections(entry: Entry, said: Sequence[Entry], asked: Sequence[Entry]) -> lis
     Args:
         entry: What ``decisions.jsonl`` says of a CAV at one step.
         said: The messages about orders since the step before.
-        asked: The lines of ``transcript.jsonl`` of this step.
+        asked: The lines of ``transcript.jsonl`` of this step that concern it.
     """
     name = text_in(entry, "id")
     found = [
@@ -36,7 +36,7 @@ def sections(entry: Entry, said: Sequence[Entry], asked: Sequence[Entry]) -> lis
         _knew(entry),
         _memories(entry),
         _messages(name, entry, said),
-        *(_question(line) for line in asked if text_in(line, "subject") in ("", name)),
+        *map(_question, asked),
         _others(entry),
     ]
     return [section for section in found if section is not None]
@@ -101,8 +101,14 @@ def _order(name: str, entry: Entry) -> Section | None:
 
 
 def _humans(name: str, entry: Entry) -> Section | None:
-    """How human drivers that meet this CAV are judged: by what the order says of them."""
-    people, rows = _people(entry), []
+    """How human drivers that meet this CAV are judged: by who was asked for it, and by what the order says of them."""
+    people, judged = _people(entry), map_in(entry, "judgements")
+    rows = []
+    for driver in judged:
+        one = map_in(judged, driver)
+        share = number_in(one, "yields")
+        likely = "" if share is None else f", lets it pass with {100 * share:.0f} %"
+        rows.append((driver, f"{text_in(one, 'answer')}{likely}", text_in(one, "reason")))
     for pair in maps_in(map_in(entry, "order"), "precedences"):
         if _judged(name, people, pair):
             first, second, why = (text_in(pair, key) for key in ("first", "second", "reason"))

@@ -8,7 +8,7 @@ import pytest
 
 from codriving.experiment.stored import find_episode, read_episode, road_of
 from codriving.geometry.road_map import road_map
-from codriving.pages.replay import replay_data, road_data
+from codriving.pages.replay import questions_of, replay_data, road_data
 from codriving.runs.episode_folder import read_decisions
 
 
@@ -38,6 +38,13 @@ def test_tracks_are_those_of_the_trajectory(two_runs: tuple[Path, Path]) -> None
         assert 0 <= apart <= 8
         assert certain in (0, 1)
         assert place is None or max(map(abs, place)) < 15_000  # On the junction, in centimetres
+
+
+def test_questions_of_a_cav_and_of_none() -> None:
+    asked = [{"subject": words, "text": words} for words in ("", "CAV1", "CAV12", "CAV1 and HDV2", "HDV2")]
+    assert [line["text"] for line in questions_of("CAV1", ["CAV1", "CAV12"], asked)] == [
+        *("", "CAV1", "CAV1 and HDV2", "HDV2"),
+    ]
 
 
 def test_a_road_as_lines_in_centimetres(two_runs: tuple[Path, Path]) -> None:

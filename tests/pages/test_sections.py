@@ -73,6 +73,7 @@ ENTRY: dict[str, Any] = {
     "recalled": [17],
     "agreements": [{"sender": "RSU", "until": 7.0, "pairs": [["CAV2", "CAV1", "earlier"]]}],
     "filter": {"wanted": "FASTER", "taken": "HOLD", "removed": {"FASTER": ["too near"]}},
+    "judgements": {"HDV1": {"yields": 0.815, "answer": "yields", "reason": "it brakes"}},
     "bids": {"CAV1": 3},
 }
 
@@ -100,7 +101,6 @@ ASKED = [
             }
         ],
     },
-    {"purpose": "decide", "subject": "CAV2", "value": {}, "calls": [{"messages": [], "text": "not of this CAV"}]},
 ]
 
 
@@ -131,7 +131,10 @@ def test_the_order_with_own_pairs_first_and_people_apart() -> None:
     order = found()["Passing order"]
     assert order["p"] == ["CAV2, then CAV1, then HDV1.", "The order is advice."]
     assert order["r"] == [["CAV2", "CAV1", "earlier"], ["CAV2", "CAV3", "nearer"]]
-    assert found()["Judgement of human drivers"]["r"] == [["HDV1", "gives way", "it stands"]]
+    assert found()["Judgement of human drivers"]["r"] == [
+        ["HDV1", "yields, lets it pass with 82 %", "it brakes"],
+        ["HDV1", "gives way", "it stands"],
+    ]
 
 
 def test_what_it_knew_and_from_where() -> None:
@@ -173,7 +176,7 @@ def test_memories_messages_and_filter() -> None:
     assert check["r"] == [["FASTER", "too near"]]
 
 
-def test_prompt_and_answer_of_this_cav_alone() -> None:
+def test_prompt_and_answer() -> None:
     asked = [section for section in sections(ENTRY, SAID, ASKED) if section["h"].startswith("The model was asked")]
     assert len(asked) == 1
     assert asked[0]["t"] == [["system", "You decide."], ["user", "1. State"], ["answer", "I hold"]]
