@@ -25,7 +25,14 @@ KNOWS = "which no vehicle can know."  # What ends the remark on a method that is
 
 _LABELS = {"scenario": "scenario", "method": "method"}
 # The label in which a group, or a key of it, may show.
-_LABELS_BELOW = {"cda": "variant", "order": "variant", "filter": "variant", "method": "variant", "llm": "reasoner"}
+_LABELS_BELOW = {
+    "cda": "variant",
+    "order": "variant",
+    "filter": "variant",
+    "judgement": "variant",
+    "method": "variant",
+    "llm": "reasoner",
+}
 
 
 @dataclass(frozen=True)
@@ -189,7 +196,7 @@ def repeated(cells: Sequence[Cell]) -> tuple[str, ...]:
 
 
 def without_effect(cells: Sequence[Cell]) -> tuple[str, ...]:
-    """Say of an order or a filter that was chosen which methods take no notice of it, and what else several share."""
+    """Say of an order, filter or judge that was chosen which methods do not notice it, and what else several share."""
     notes: dict[str, dict[str, None]] = {}
     for cell in cells:
         method, order = cell.resolved["method"], cell.resolved.get("order")
@@ -198,6 +205,10 @@ def without_effect(cells: Sequence[Cell]) -> tuple[str, ...]:
             said.append("order={order} has no effect on {}: what orders by itself, or not at all, does not read it.")
         if cell.resolved.get("filter") is not None and not cell.labels.variant.endswith(FILTERED):
             said.append("filter={filter} has no effect on {}: what has this check or gives no actions is not filtered.")
+        if cell.resolved.get("judgement") is not None and "judgement=" not in cell.labels.variant:
+            said.append(
+                "judgement={judgement} has no effect on {}: it asks no judge of human drivers, or has no model to ask."
+            )
         for text in said:
             notes.setdefault(text.format("{}", **cell.choices), {})[cell.labels.method] = None
     return tuple(text.format(", ".join(names)) for text, names in notes.items())

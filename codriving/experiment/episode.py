@@ -21,6 +21,7 @@ from codriving.datatypes import (
     Trajectory,
 )
 from codriving.errors import MemoryFileError, ModelError, ModelUnavailableError
+from codriving.judgement import look_back
 from codriving.metrics import Scorer, with_alone
 
 
@@ -109,6 +110,7 @@ def run_episode(
             world = environment.step(deliberation.actions)
         log.add(*method.conclude(world, outcome))
         trajectory = environment.trajectory()
+        log.add(look_back(log.decisions, trajectory, environment.road_map), [])
         if outcome.ending is not Ending.ERROR:
             measured = with_alone(trajectory, environment, seed, metrics.values())
             scores = {n: scorer.score(measured, outcome, environment.road_map) for n, scorer in metrics.items()}

@@ -105,9 +105,9 @@ class Judging(Method):
 
     judge: Judge | None = None
 
-    def rely_on(self, judge: HumanJudge | None) -> None:
-        """Take a judge; it shows in the variant."""
-        if not isinstance(judge, Judge):
+    def rely_on(self, judge: HumanJudge | None, asks_model: bool = False) -> None:
+        """Take a judge, but none that asks a language model where the method asks none; it shows in the variant."""
+        if not isinstance(judge, Judge) or (judge.asks_model and not asks_model):
             return
         self.judge, self.knows_drivers = judge, self.knows_drivers or judge.knows_drivers
         words = ["" if self.variant == "full" else self.variant, f"judgement={judge.name}"]

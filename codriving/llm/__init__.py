@@ -7,6 +7,7 @@ if TYPE_CHECKING:
     from codriving.llm.embeddings import EmbeddingModel
     from codriving.llm.ledger import Ledger
     from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for, one_line, seen_names
+    from codriving.llm.prompts.judging import ContestView, JudgementReply, chances, judgement_reply
     from codriving.llm.prompts.render import Prompts, load_prompts, template_files
     from codriving.llm.prompts.replies import (
         CorrectionReply,
@@ -24,11 +25,11 @@ if TYPE_CHECKING:
     from codriving.llm.sqlite_file import connect_sqlite, create_sqlite
 
 __all__ = [
-    "LONGEST_MEMORY", "Answer", "Chat", "CorrectionReply", "DecisionReply", "EmbeddingModel", "Ledger", "LessonReply",
-    "MeaningView", "Names", "OrderReply", "Prompts", "Question", "SeenView", "WayView", "connect_sqlite",
-    "correction_reply", "create_sqlite", "decision_reply", "decision_view", "first_of_pairs", "lane_views",
-    "load_prompts", "names_for", "negotiation_view", "one_line", "order_reply", "reflection_view", "seen_names",
-    "template_files",
+    "LONGEST_MEMORY", "Answer", "Chat", "ContestView", "CorrectionReply", "DecisionReply", "EmbeddingModel",
+    "JudgementReply", "Ledger", "LessonReply", "MeaningView", "Names", "OrderReply", "Prompts", "Question", "SeenView",
+    "WayView", "chances", "connect_sqlite", "correction_reply", "create_sqlite", "decision_reply", "decision_view",
+    "first_of_pairs", "judgement_reply", "lane_views", "load_prompts", "names_for", "negotiation_view", "one_line",
+    "order_reply", "reflection_view", "seen_names", "template_files",
 ]  # fmt: skip
 
 
@@ -36,6 +37,7 @@ _FILES = {
     "embeddings": ("EmbeddingModel",),
     "ledger": ("Ledger",),
     "prompts.free_text": ("LONGEST_MEMORY", "Names", "names_for", "one_line", "seen_names"),
+    "prompts.judging": ("ContestView", "JudgementReply", "chances", "judgement_reply"),
     "prompts.render": ("Prompts", "load_prompts", "template_files"),
     "prompts.replies": (
         "CorrectionReply", "DecisionReply", "LessonReply", "OrderReply", "correction_reply", "decision_reply",

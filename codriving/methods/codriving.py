@@ -80,7 +80,8 @@ class CoDriving(Judging, ModelMethod):
         self.order, self.most_cavs = order, order.most_cavs if order is not None else None
         self.is_checked, self.by_zone = cda.safety_check, by_zone and not cda.binding
         self.asked = ("negotiate", "decide") if order is None else ("decide",)
-        self.rely_on(judgement)
+        self.rely_on(judgement, asks_model=llm.chat() is not None)
+        self.asked = (*self.asked, *(("judge",) if self.judge is not None and self.judge.asks_model else ()))
 
     def cooperate(self, coordination: Coordination) -> None:
         require(

@@ -12,6 +12,7 @@ from codriving.reports.columns import Column, Row, Table, Value, mean, share, sw
 from codriving.reports.decided import DECIDED_NOTE, decisions_by_model, pairs_by_model
 from codriving.reports.episodes import counter_columns, episode_columns, number_columns, number_head
 from codriving.reports.fitting import METHOD, PAPER
+from codriving.reports.judgements import judgement_columns, judgement_notes
 from codriving.reports.messages import message_columns
 from codriving.reports.paper import WHOLE, Paper, PaperRow
 from codriving.reports.printed import PrintedTable, markdown_text, printed
@@ -177,6 +178,7 @@ def summary_table(cells: Sequence[CellResults], swept: Sequence[str] = ()) -> Ta
         *([MEMORY] if any(record.memory for record in records) else []),
         *([] if all(cell.repeatable for cell in cells) else [REPEATABLE]),
         *message_columns(cells),
+        *judgement_columns(cells),
     ]
     known += number_columns(named_numbers(cells), known)
     counters = counter_columns(records, known)
@@ -220,7 +222,7 @@ def print_summary(
     scenarios, reasoners = ([row[key] for row in rows] for key in ("scenario", "reasoner"))
     models = stand_in_notes((row["method"], row["reasoner"]) for row in rows)
     said = (NOTE, *clean_notes(cells), *number_notes(cells), *models, *remarks(cells), *model_notes(cells))
-    said = (*said, *decided_notes(cells), *notes)
+    said = (*said, *decided_notes(cells), *judgement_notes(cells), *notes)
     heading, shown = title("", scenarios, reasoners, metrics), Table((*made.columns, *claimed), rows)
     blocks = [(scenario, cell.is_control) for scenario, cell in zip(scenarios, cells, strict=True)]
     return printed(heading, shown, blocks, said, _beside(cells, paper), screen)

@@ -14,7 +14,7 @@ MAY_IMPORT = {
     "geometry": set(),
     "environment": {"geometry"},
     "reasoning": {"geometry"},
-    "judgement": {"geometry", "reasoning"},
+    "judgement": {"geometry", "reasoning", "llm"},
     "llm": set(),
     "memory": {"llm"},
     "methods": {"geometry", "reasoning", "judgement", "protocol", "memory", "llm"},
@@ -31,7 +31,7 @@ MAY_IMPORT = {
     "reports": {"metrics", "runs", "memory"},
     "pages": {"geometry", "animation", "reports", "runs"},
     "config": set(),
-    "experiment": {"config", "runs", "reports", "metrics", "memory", "animation"},
+    "experiment": {"config", "runs", "reports", "metrics", "memory", "animation", "judgement"},
     "commands": {
         "bound",
         "config",

@@ -3,6 +3,7 @@
 from math import inf
 from typing import Any
 
+from codriving.llm.prompts.judging import ContestView
 from codriving.llm.prompts.views import (
     ActionView,
     ConflictView,
@@ -39,6 +40,13 @@ _SINGLE_VEHICLE: dict[str, Any] = {
     ],
     "actions": [MeaningView("SLOWER", 6.0), MeaningView("IDLE", 9.0), MeaningView("LANE_RIGHT", None)],
     "allowed": ["SLOWER", "IDLE", "LANE_RIGHT"],
+}
+
+_MOVING = {
+    **{"cav_speed": 8.0, "cav_distance": 29.0, "cav_time": 3.3, "cav_in_junction": 1.0, "cav_committed": 1.0},
+    **{"cav_held_up": 1.0, "human_speed": 8.0, "human_acceleration": 0.0, "human_distance": 33.0, "human_time": 4.5},
+    **{"human_braking": 1.1, "human_standing": 1.5, "human_in_junction": 1.0, "human_held_up": 1.0, "ways": 3.0},
+    **{"priority": 0.0, "converging": 0.0, "time_ahead": 1.1, "human_occupies": 1.0, "cav_turns": 0.0},
 }
 
 # Variables of every kind by purpose: every list has an entry and every condition holds at least once.
@@ -123,6 +131,13 @@ EXAMPLES: dict[str, dict[str, Any]] = {
         "forced_braking": 4.5,
         "collision": 2.5,
         "needless": True,
+    },
+    "judge": {
+        "pairs": [
+            ContestView("p1", "CAV1", "HDV1", {**_MOVING, "human_acceleration": -1.2, "priority": 1.0}, "it waits", ""),
+            ContestView("p2", "CAV1", "HDV2", {**_MOVING, "human_acceleration": 1.0, "priority": -1.0}, "", "HDV3"),
+            ContestView("p3", "CAV2", "HDV3", {**_MOVING, "human_speed": 0.0, "ways": 1.0, "converging": 1.0}, "", ""),
+        ]
     },
     "dilu": {**_SINGLE_VEHICLE, "interval": 1.0, "memories": ["At 8.0 m/s, no conflict: FASTER. No mistake."]},
     "dilu_reflect": {
