@@ -35,6 +35,7 @@ class Judge(HumanJudge, ABC):
     name: str  # In tables
     knows_drivers = False  # Whether it is told what no vehicle can know
     asks_model = False  # Whether it asks the language model of the method
+    drives = True  # Whether its answers are relied on; if not, they are noted and the rules of the road drive
 
     def reset(self, road_map: RoadMap, model: Asked | None) -> None:
         """Begin an episode.
@@ -77,7 +78,8 @@ class JudgedPerception(Perception):
         answers = self.judge.judge(asked)
         pairs = [(contest.cav, contest.human) for contest in asked]
         found = {pair: answers[pair] for pair in pairs if pair in answers and is_valid(answers[pair])}
-        return replace(moment, gives_way=relying_on(found, moment.gives_way), judgements=found)
+        relied_on = relying_on(found, moment.gives_way) if self.judge.drives else moment.gives_way
+        return replace(moment, gives_way=relied_on, judgements=found)
 
 
 def is_valid(judgement: Judgement) -> bool:

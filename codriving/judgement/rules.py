@@ -13,7 +13,7 @@ from codriving.reasoning import known_to_give_way
 class RulesNoted(Judge):
     """The rules of the road, noted so that they are measured as the others are."""
 
-    name = "rules_noted"
+    name, drives = "rules_noted", False
 
     def judge(self, asked: Sequence[Contest]) -> Judgements:
         return {(c.cav, c.human): said(float(bool(c.rule)), c.rule or "no rule of the road holds it up") for c in asked}

@@ -146,3 +146,12 @@ def test_the_variant_says_who_judges() -> None:
     assert made("method=fcfs", "judgement=always").variant == "judgement=always"
     assert made("method=codriving", "cda=prescriptive", "judgement=never").variant == "full/binding/judgement=never"
     assert made("method=codriving", "judgement=oracle").knows_drivers
+
+
+def test_rules_that_are_noted_drive_as_the_rules_do(junction: Junction) -> None:
+    world = rivals(junction, "east-west", "south-north", car("CAV2", "north-south", 80.0, 8.0, 9.0))
+    ruled = seen(made("method=codriving"), junction, world)
+    found = seen(made("method=codriving", "judgement=rules_noted"), junction, world)
+    assert found.judgements["HDV1"].answer == "yields"
+    assert found.assessments == ruled.assessments
+    assert found.order.sequence == ruled.order.sequence
