@@ -19,6 +19,8 @@ JUDGEMENT_NOTE = (
 
 def _share(cell: CellResults, part: str, whole: str | None) -> float | None:
     """Give a counter as a share of another one; of the episodes for None."""
+    if JUDGED not in cell.counters:
+        return None
     counted = float(cell.counters.get(part) or 0.0)
     of = len(cell.records) if whole is None else float(cell.counters.get(whole) or 0.0)
     return counted / of if of else None
