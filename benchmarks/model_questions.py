@@ -12,6 +12,7 @@ from typing import Any
 from benchmarks.served import served
 from codriving.commands import run_frames
 from codriving.config.choices import choices
+from codriving.llm.prompts.render import SETS
 
 CAVS, EPISODES, FIRST_SEED = 4, 3, 10_000
 AUTHORS_CALLS, AUTHORS_TOKENS = 5, 4400
@@ -63,18 +64,19 @@ def summary(lines: Iterable[dict[str, Any]], decisions: int, tokens: Callable[[s
     }
 
 
-def measure(scenario: str, tokens: Callable[[str], int], model: Sequence[str]) -> dict[str, float]:
+def measure(scenario: str, tokens: Callable[[str], int], model: Sequence[str], episodes: int) -> dict[str, float]:
     """Drive whole episodes and read their transcripts.
 
     Args:
         scenario: Name of the scenario.
         tokens: Counts the tokens of a text.
         model: Settings of the model.
+        episodes: How many.
 
     Returns:
         See ``summary``.
     """
-    asked = [f"scenario={scenario}", f"scenario.cavs={CAVS}", f"seed={FIRST_SEED}", f"episodes={EPISODES}"]
+    asked = [f"scenario={scenario}", f"scenario.cavs={CAVS}", f"seed={FIRST_SEED}", f"episodes={episodes}"]
     with tempfile.TemporaryDirectory() as output:
         folder = run_frames(*asked, *model, f"output={output}", "run=asked").folder
         episodes = list(folder.glob("episodes/*/*"))
@@ -91,17 +93,24 @@ def main(arguments: list[str]) -> None:
     """
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
     parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--episodes", type=int, default=EPISODES, help="episodes of each scenario")
     wanted = parser.parse_args(arguments)
     tokens = tokenizer()
     with served(0.0) as model:
-        found = {name: measure(name, tokens, model) for name in choices("scenario")}
+        found = {
+            name: {
+                scenario: measure(scenario, tokens, [*model, f"llm.prompts={name}"], wanted.episodes)
+                for scenario in choices("scenario")
+            }
+            for name in SETS
+        }
     if wanted.json:
         print(json.dumps({"model_questions": found}))
         return
     print(f"model_questions: asked in a decision step with {CAVS} CAVs; in brackets the share of what the authors ask")
-    for name, row in found.items():
+    for name, row in ((f"{prompts} {name}", row) for prompts, rows in found.items() for name, row in rows.items()):
         print(
-            f"  {name:14}{row['calls']:5.2f} calls ({row['calls_share']:4.0%}){row['tokens']:6} prompt tokens "
+            f"  {name:24}{row['calls']:5.2f} calls ({row['calls_share']:4.0%}){row['tokens']:6} prompt tokens "
             f"({row['tokens_share']:4.0%}); if all are asked{row['full_step_tokens']:6} tokens "
             f"({row['full_step_share']:4.0%})"
         )

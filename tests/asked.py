@@ -25,6 +25,7 @@ class Scripted(Model):
     cache: str = "off"
     prompts: str | None = None
     ask_plain: bool = False
+    thoughts: bool = False
     name: str = "scripted"
 
     def chat(self) -> ScriptedChat:
@@ -47,8 +48,9 @@ class Reasoned:
 
 
 def reasoned(world: Junction, script: Script, **change: Any) -> Reasoned:
-    """The method with a model behind its ports, ready for an episode; toggles that differ from full are named."""
-    model = Scripted(ScriptedChat(script), ask_plain=change.pop("ask_plain", False))
+    """The method with a model behind its ports, ready for an episode; what differs from the full framework is named."""
+    asked = {key: change.pop(key) for key in ("ask_plain", "prompts", "thoughts") if key in change}
+    model = Scripted(ScriptedChat(script), **asked)
     level = CdaLevel(**{**FULL, **change})
     method = CoDriving(level, model, None, 1.5)
     method.reset(world.road_map, world.model, 0)
@@ -70,7 +72,7 @@ def allowed(question: Question) -> list[str]:
 def pairs(question: Question) -> dict[str, tuple[str, str]]:
     """The pairs that a negotiation prompt asks about."""
     block = question.messages[1].content.split("Pairs to order:\n")[1]
-    return {name: (one, other) for name, one, other in re.findall(r"^- (p\d+): (\S+) and (\S+) \(", block, re.M)}
+    return {name: (one, other) for name, one, other in re.findall(r"^- (\S+): (\S+) and (\S+) \(", block, re.M)}
 
 
 def orders(*said: tuple[str, str]) -> str:
@@ -86,7 +88,7 @@ def sensible(question: Question) -> str:
     if question.purpose == "negotiate":
         earliest = {name: float(t) for name, t in re.findall(r"^- (\S+): .*?earliest ([\d.]+) s", text, re.M)}
         return orders(*((name, min(pair, key=lambda v: (earliest[v], v))) for name, pair in pairs(question).items()))
-    order = ["SLOWER", "IDLE", "FASTER", "LANE_LEFT", "LANE_RIGHT"]
+    order = ["SLOWER", "HOLD", "IDLE", "FASTER", "LANE_LEFT", "LANE_RIGHT"]
     gains: dict[str, int] = {}
     for words, gain in re.findall(r"^- ([A-Z_, ]+): gets (\d+) m", text, re.M):
         gains.update(dict.fromkeys(words.split(", "), int(gain)))

@@ -61,7 +61,7 @@ def test_a_model_drives_every_scenario(scenario: str, tmp_path: Path) -> None:
     counts: dict[str, float] = {}
     for record in folder.glob("episodes/*/*/record.json"):
         found = json.loads(record.read_text())
-        assert found["reasoner"] == "openai/toy"
+        assert found["reasoner"] == "openai/toy (informed)"
         for name, number in found["counts"].items():
             counts[name] = counts.get(name, 0) + number
     # One more than the episodes count: the request before the first of them.
@@ -123,7 +123,7 @@ def test_finish_reasons_and_special_tokens_are_kept(tmp_path: Path) -> None:
         c for line in path.with_name("transcript.jsonl").read_text().splitlines() for c in json.loads(line)["calls"]
     ]
     number = len(calls)
-    assert record["reasoner"] == "ours"
+    assert record["reasoner"] == "ours (informed)"
     assert [record["counts"][name] for name in ("cut_off", "cached_tokens", "reasoning_tokens")] == [
         number,
         7 * number,
@@ -195,7 +195,7 @@ def test_a_label_and_the_servers_name_are_in_table_manifest_and_transcript(tmp_p
         next(folder.glob("episodes/*/*/record.json")),
         next(folder.glob("episodes/*/*/transcript.jsonl")),
     )
-    assert json.loads(record.read_text())["reasoner"] == "ours"
+    assert json.loads(record.read_text())["reasoner"] == "ours (informed)"
     assert '"model": "qwen.gguf"' in transcript.read_text()
     assert "ours" in (folder / "summary.md").read_text()
 

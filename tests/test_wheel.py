@@ -63,7 +63,7 @@ def test_wheel_holds_configs_and_experiments(wheel: Path) -> None:
     assert "codriving/_experiments/experiments/paper_comparison.csv" in names
     assert "codriving/cli/app.py" in names
     assert "codriving/_conf/llm/openai.yaml" in names
-    assert "codriving/llm/prompts/planner/decide.user.md.j2" in names
+    assert {f"codriving/llm/prompts/{name}/decide.user.md.j2" for name in ("informed", "planner")} <= names
     assert len([name for name in names if name.startswith("codriving/bound/envelopes/")]) == 4
     assert "codriving/_conf/train/madqn_junction.yaml" in names
     for family in ("junction", "lanes"):

@@ -26,6 +26,7 @@ from codriving.datatypes.order import (
     Relation,
     Severity,
 )
+from codriving.datatypes.outlook import ActionOutlook, ExpectedPassage, HumanOutlook, Outlook, PastDecision
 from codriving.datatypes.parts import (
     Account,
     ActionFilter,
@@ -107,15 +108,15 @@ from codriving.datatypes.world import (
 
 __all__ = [
     "BLOCKER", "EACH", "GOES", "NEAREST", "UNCLEAR", "UNITS", "YIELDS", "Account", "Action", "ActionAssessment",
-    "ActionFilter", "Approach", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat", "Collision",
-    "Communication", "Conflict", "Cooperation", "Coordination", "Decision", "Deliberation", "Description", "Drivers",
-    "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "Experience", "Flow", "FlowArrival",
-    "FlowLog", "HumanJudge", "Instance", "Intent", "Interaction", "Judgement", "Judgements", "Kind", "Lane",
-    "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory", "Method", "Metric", "Model",
-    "NamedNumber", "OrderAgreement", "OrderExecutor", "OrderMessage", "OrderOfCavs", "Outcome", "Pair", "Participant",
-    "Party", "PassingOrder", "Pet", "Point", "Precedence", "Proposal", "ReasonedDeliberation", "Relation", "Response",
-    "Road", "Role", "Route", "RuleModel", "Scenario", "Scene", "SceneDescription", "Score", "Severity", "Shares",
-    "Simulator", "Sine", "Situation", "Start", "Straight", "StressAxis", "StressLevel", "ThinkingTime", "Told", "Track",
-    "TrackedVehicle", "Trajectory", "TravelScore", "Turn", "VehicleLimits", "VehicleState", "Verdict", "WorldState",
-    "Wrapped", "beside",
+    "ActionFilter", "ActionOutlook", "Approach", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat",
+    "Collision", "Communication", "Conflict", "Cooperation", "Coordination", "Decision", "Deliberation", "Description",
+    "Drivers", "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "ExpectedPassage", "Experience",
+    "Flow", "FlowArrival", "FlowLog", "HumanJudge", "HumanOutlook", "Instance", "Intent", "Interaction", "Judgement",
+    "Judgements", "Kind", "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory",
+    "Method", "Metric", "Model", "NamedNumber", "OrderAgreement", "OrderExecutor", "OrderMessage", "OrderOfCavs",
+    "Outcome", "Outlook", "Pair", "Participant", "Party", "PassingOrder", "PastDecision", "Pet", "Point", "Precedence",
+    "Proposal", "ReasonedDeliberation", "Relation", "Response", "Road", "Role", "Route", "RuleModel", "Scenario",
+    "Scene", "SceneDescription", "Score", "Severity", "Shares", "Simulator", "Sine", "Situation", "Start", "Straight",
+    "StressAxis", "StressLevel", "ThinkingTime", "Told", "Track", "TrackedVehicle", "Trajectory", "TravelScore", "Turn",
+    "VehicleLimits", "VehicleState", "Verdict", "WorldState", "Wrapped", "beside",
 ]  # fmt: skip

@@ -117,6 +117,7 @@ class Model(ABC):
     cache: str  # ``off``, ``use`` or ``replay``
     ask_plain: bool  # Whether it is asked even where no other vehicle is near and the best action is plain
     prompts: str | None  # Set of prompts, or folder with templates that replace them; None takes the first set
+    thoughts: bool = False  # Whether it writes its thoughts down before it answers
     latency: str | float = "none"  # How long a question takes in the world: ``none``, ``measured`` or a time [s]
     waits: bool = True  # Whether a server answers, for which episodes wait in threads of one process
 

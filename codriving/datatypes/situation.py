@@ -12,6 +12,7 @@ from typing import Any
 from codriving.datatypes.experience import Memory
 from codriving.datatypes.judgement import Judgement
 from codriving.datatypes.order import Conflict, PassingOrder
+from codriving.datatypes.outlook import Outlook
 from codriving.datatypes.road import LaneId
 from codriving.datatypes.world import Action, Intent, Kind, Told, VehicleState
 
@@ -165,6 +166,7 @@ class Situation:
     memories: tuple[Memory, ...] = ()
     # What is expected of human drivers, by id, of whom another than the rules of the road was asked.
     judgements: Mapping[str, Judgement] = field(default_factory=dict)
+    outlook: Outlook | None = None  # What a language model is told besides; None where none is asked
 
     @property
     def allowed(self) -> tuple[Action, ...]:

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from codriving.llm.ledger import Ledger
     from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for, one_line, seen_names
     from codriving.llm.prompts.judging import ContestView, JudgementReply, chances, judgement_reply
-    from codriving.llm.prompts.render import Prompts, load_prompts, template_files
+    from codriving.llm.prompts.render import Prompts, load_prompts, prompts_name, template_files
     from codriving.llm.prompts.replies import (
         CorrectionReply,
         DecisionReply,
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         decision_reply,
         first_of_pairs,
         order_reply,
+        pair_names,
     )
     from codriving.llm.prompts.variables import decision_view, lane_views, negotiation_view, reflection_view
     from codriving.llm.prompts.views import MeaningView, SeenView, WayView
@@ -29,7 +30,7 @@ __all__ = [
     "JudgementReply", "Ledger", "LessonReply", "MeaningView", "Names", "OrderReply", "Prompts", "Question", "SeenView",
     "WayView", "chances", "connect_sqlite", "correction_reply", "create_sqlite", "decision_reply", "decision_view",
     "first_of_pairs", "judgement_reply", "lane_views", "load_prompts", "names_for", "negotiation_view", "one_line",
-    "order_reply", "reflection_view", "seen_names", "template_files",
+    "order_reply", "pair_names", "prompts_name", "reflection_view", "seen_names", "template_files",
 ]  # fmt: skip
 
 
@@ -38,10 +39,10 @@ _FILES = {
     "ledger": ("Ledger",),
     "prompts.free_text": ("LONGEST_MEMORY", "Names", "names_for", "one_line", "seen_names"),
     "prompts.judging": ("ContestView", "JudgementReply", "chances", "judgement_reply"),
-    "prompts.render": ("Prompts", "load_prompts", "template_files"),
+    "prompts.render": ("Prompts", "load_prompts", "prompts_name", "template_files"),
     "prompts.replies": (
         "CorrectionReply", "DecisionReply", "LessonReply", "OrderReply", "correction_reply", "decision_reply",
-        "first_of_pairs", "order_reply",
+        "first_of_pairs", "order_reply", "pair_names",
     ),
     "prompts.variables": ("decision_view", "lane_views", "negotiation_view", "reflection_view"),
     "prompts.views": ("MeaningView", "SeenView", "WayView"),

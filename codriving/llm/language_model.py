@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from codriving.llm.cache import AnswerCache
     from codriving.llm.client import ModelChat
 
-_NOT_THE_CLIENTS = ("failures_in_a_row", "ask_plain", "prompts", "latency")
+_NOT_THE_CLIENTS = ("failures_in_a_row", "ask_plain", "thoughts", "prompts", "latency")
 
 
 class Offline(RuleModel):

@@ -61,6 +61,7 @@ class ModelSettings:
     output_cost_per_token: float | None  # Price of a token of the answer [USD]; None takes LiteLLM's
     failures_in_a_row: int
     ask_plain: bool
+    thoughts: bool  # Whether a model writes its thoughts down before it answers
     prompts: str | None  # Set of prompts, or folder with templates that replace them; None takes the first set
     label: str | None  # Name in tables; None takes the model's
     model_prefix: str | None  # What the model's name has to begin with; None leaves it free

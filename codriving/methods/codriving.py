@@ -25,7 +25,7 @@ from codriving.geometry import RoadMap
 from codriving.judgement import Judging
 from codriving.methods.chosen_order import ChosenOrder, order_variant
 from codriving.methods.experience_log import ConflictLog, learn
-from codriving.methods.language_model.prompted_model import ModelMethod, PromptedModel
+from codriving.methods.language_model.prompted_model import ModelMethod, PromptedModel, reasons_by
 from codriving.methods.pipeline import Pipeline
 from codriving.protocol import ByMessages, Negotiator
 from codriving.reasoning import (
@@ -75,6 +75,7 @@ class CoDriving(Judging, ModelMethod):
             "leave order= out, or choose a cda= with negotiation",
         )
         super().__init__(llm, memory)
+        self.reasoner = reasons_by(llm)
         self.cda, self.margin, self.variant = cda, margin, order_variant(cda.variant, order)
         self.shares = Shares(cda.state_sharing, cda.intent_sharing, cda.negotiation)
         self.order, self.most_cavs = order, order.most_cavs if order is not None else None

@@ -6,6 +6,7 @@ from codriving.reasoning.decision.rules import Decider, RuleDecider, decide_one,
 from codriving.reasoning.execution.joint_planner import JointPlans
 from codriving.reasoning.execution.lane_requests import LaneRequests
 from codriving.reasoning.execution.planned import Drive, Executor, humans_expected
+from codriving.reasoning.exits import full_exit
 from codriving.reasoning.ordering.coordinator import Coordinator, RuleCoordinator, agreement
 from codriving.reasoning.ordering.negotiation import AgreedOrder, Negotiation, OwnOrders
 from codriving.reasoning.ordering.order_search import Coded, Found, Prefix, SearchedOrder
@@ -52,7 +53,7 @@ from codriving.reasoning.safety.safety_input import (
     safety_input,
     then_stop,
 )
-from codriving.reasoning.safety.same_lane import LANE_END_GAP
+from codriving.reasoning.safety.same_lane import LANE_END_GAP, forced_braking
 from codriving.reasoning.sharing.scenes import ALIGNED, SAME_LANE, describe_scenes, with_roles
 from codriving.reasoning.sharing.sharing import HIDDEN_INTENTS, SHARED_INTENTS, CdaLevel, SensedStates, SharedStates
 from codriving.reasoning.sharing.tracking import STANDING, Places, Tracking
@@ -66,8 +67,9 @@ __all__ = [
     "Problem", "Request", "RuleCoordinator", "RuleDecider", "SafetyCheck", "SafetyInput", "SearchedOrder",
     "SensedStates", "SharedStates", "ThreeLayers", "TicketBook", "Tracking", "after_windows", "agreement",
     "best_subset", "by_slot", "by_ticket", "carried_over", "clear_time", "decide_one", "describe_scenes",
-    "evacuation_time", "expect_all", "favour", "find_circle", "find_conflicts", "gives_way", "humans_expected",
-    "in_order", "inserted", "is_behind", "is_open", "is_plain", "known_to_give_way", "least_dangerous", "nearest",
-    "open_pairs", "plan_library", "pose", "premise", "reasons", "repaired", "rollout", "safety_input", "schedule",
-    "sequence", "single_vehicle_perception", "then_stop", "timed", "total_delay", "ttcp", "window", "with_roles",
+    "evacuation_time", "expect_all", "favour", "find_circle", "find_conflicts", "forced_braking", "full_exit",
+    "gives_way", "humans_expected", "in_order", "inserted", "is_behind", "is_open", "is_plain", "known_to_give_way",
+    "least_dangerous", "nearest", "open_pairs", "plan_library", "pose", "premise", "reasons", "repaired", "rollout",
+    "safety_input", "schedule", "sequence", "single_vehicle_perception", "then_stop", "timed", "total_delay", "ttcp",
+    "window", "with_roles",
 ]  # fmt: skip

@@ -44,7 +44,7 @@ HOW_A_MODEL_IS_ASKED = (
 
 # Settings of ``llm`` that came later, with the values that change nothing: runs of before are gone on with.
 _CAME_LATER: dict[str, Any] = {"label": None, "max_tokens_field": "max_tokens", "system_role": "system"}
-_CAME_LATER |= {"extra": {}, "headers": {}, "latency": "none", "epoch": 1}
+_CAME_LATER |= {"extra": {}, "headers": {}, "latency": "none", "epoch": 1, "thoughts": False}
 
 # The same for ``memory``.
 _RECALLED: dict[str, Any] = {"control": "none"}

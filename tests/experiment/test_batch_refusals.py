@@ -69,7 +69,7 @@ def test_a_changed_template_of_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     shutil.copytree(PROMPTS, ours)
     monkeypatch.setattr("codriving.llm.prompts.render.OURS", ours)
     run = Run(tmp_path, *MODEL)
-    assert "(template negotiate.system.md.j2) has changed" in run.changes(ours / "planner" / "negotiate.system.md.j2")
+    assert "(template negotiate.system.md.j2) has changed" in run.changes(ours / "informed" / "negotiate.system.md.j2")
 
 
 def test_a_changed_cell_is_refused_beside_others_that_have_not_changed(tmp_path: Path) -> None:

@@ -99,6 +99,7 @@ SETTINGS = ModelSettings(
     ask_plain=False,
     latency="none",
     prompts=None,
+    thoughts=False,
     label=None,
     model_prefix=None,
     max_tokens_field="max_tokens",

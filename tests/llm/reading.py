@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-ACTIONS = ("SLOWER", "IDLE", "FASTER", "LANE_LEFT", "LANE_RIGHT")
+ACTIONS = ("SLOWER", "IDLE", "HOLD", "FASTER", "LANE_LEFT", "LANE_RIGHT")
 
 _ALLOWED = re.compile(r"^\W*Allowed actions:[ \t]*(.+)$", re.MULTILINE)
 _PAIRS = re.compile(r"^\W*Pairs to order:[^\n]*\n((?:[ \t]*\n|[ \t]*- .*\n?|[ \t]+.*\n?)*)", re.MULTILINE)
@@ -14,6 +14,10 @@ _PAIR = re.compile(r"^[ \t]*- ([^:\n]+): ([\w.-]+?) and ([\w.-]+)(.*(?:\n[ \t]+(
 _SUGGESTED = re.compile(r"(?:suggested|agreed)\W+([\w-]+)", re.IGNORECASE)
 _EARLIEST = re.compile(r"^[ \t]*- ([\w.-]+):.*\bearliest (-?\d+(?:\.\d+)?) s\b", re.MULTILINE)
 _SECONDS = re.compile(r"(-?\d+(?:\.\d+)?) ?s\b")
+_TARGETS = re.compile(r"^[ \t]*- ([A-Z_, ]+) to (\d+(?:\.\d+)?) m/s(.*)$", re.MULTILINE)
+_LEAVES = re.compile(r"^[ \t]*- ([\w.-]+).*\bzone (?:from [\d.]+ s to|until) (\d+(?:\.\d+)?) s", re.MULTILINE)
+_BEFORE = re.compile(r"^[ \t]*- ([\w.-]+) before you\b", re.MULTILINE)
+_ZONE = re.compile(r"([\w.-]+)'s(?: zone)? in (\d+(?:\.\d+)?) s")
 _GETS = re.compile(r"^[ \t]*- ([A-Z_, ]+):.*\bgets (-?\d+(?:\.\d+)?) m\b", re.MULTILINE)
 
 
@@ -71,8 +75,20 @@ def read(messages: Sequence[dict[str, Any]]) -> Reading:
             return Reading(pairs=tuple(_pairs(found.group(1), earliest)))
         if found := _ALLOWED.search(text):
             allowed = tuple(word for word in re.findall(r"[A-Z_]+", found.group(1)) if word in ACTIONS)
-            return Reading(action=_farthest(text, allowed), allowed=allowed)
+            return Reading(action=_chosen(text, allowed), allowed=allowed)
     return Reading()
+
+
+def _chosen(text: str, allowed: Sequence[str]) -> str:
+    """The allowed action that is said to get farthest; without metres the fastest that lets those before it leave."""
+    if _GETS.search(text) or not _TARGETS.search(text):
+        return _farthest(text, allowed)
+    leaves, before = {name: float(time) for name, time in _LEAVES.findall(text)}, set(_BEFORE.findall(text))
+    worth: dict[str, tuple[bool, float]] = {}
+    for names, speed, rest in _TARGETS.findall(text):
+        waits = all(float(time) >= leaves.get(name, 0.0) for name, time in _ZONE.findall(rest) if name in before)
+        worth |= dict.fromkeys(re.findall("[A-Z_]+", names), (waits, float(speed) if waits else -float(speed)))
+    return max(allowed, key=lambda action: worth.get(action, (False, float("-inf"))), default="")
 
 
 def _farthest(text: str, allowed: Sequence[str]) -> str:

@@ -43,6 +43,8 @@ PAIRS = {
     "order": {"p1": ("CAV1", "CAV2"), "p2": ("CAV2", "CAV12")},
     "numbers": {"p1": ("7", "8")},
     "alike": {"p1": ("CAV-1", "CAV_1")},
+    "named": {"CAV1_CAV2": ("CAV1", "CAV2"), "CAV2_CAV12": ("CAV2", "CAV12")},
+    "pondered": {"CAV1_CAV2": ("CAV1", "CAV2"), "CAV2_CAV12": ("CAV2", "CAV12")},
 }
 
 
@@ -50,14 +52,17 @@ def question(number: int) -> Question:
     """Ask what a case asks, with its number."""
     messages = (Message("system", "You drive."), Message("user", f"Case {number}"))
     ask = CASES[number]["ask"]
-    if ask == "decide":
-        return Question("decide", "x", messages, decision_reply(ACTIONS), _allowed)
+    if ask in ("decide", "ponder"):
+        form = decision_reply(ACTIONS, thoughts=ask == "ponder", plan=ask == "ponder")
+        return Question("decide", "x", messages, form, _allowed)
     if ask == "lesson":
         return Question("reflect", "x", messages, LessonReply, lambda said: "" if said.lesson else "it is empty")  # type: ignore[attr-defined]
     pairs = PAIRS[ask]
     wanted = "; ".join(f"{name}: {one} or {other}" for name, (one, other) in pairs.items())
     wish = f"no pair was ordered; say who goes first in each pair ({wanted})"
-    return Question("negotiate", "x", messages, order_reply(pairs), lambda said: "" if _order(said) else wish)
+    return Question(
+        "negotiate", "x", messages, order_reply(pairs, ask == "pondered"), lambda said: "" if _order(said) else wish
+    )
 
 
 def _allowed(said: Any) -> str:

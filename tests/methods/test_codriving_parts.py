@@ -41,5 +41,7 @@ def test_broken_templates_are_found_before_anything_is_driven(tmp_path: Path) ->
     check_model(Offline(), None)
     check_model(Scripted(ScriptedChat(sensible)), None)
     (tmp_path / "negotiate.user.md.j2").write_text("{{ pears }}")
-    with pytest.raises(ConfigError, match="no variable 'pears'; there are binding, fixed, pairs, vehicles"):
+    with pytest.raises(
+        ConfigError, match="no variable 'pears'; there are binding, everyone, fixed, humans, norms, pairs"
+    ):
         check_model(Scripted(ScriptedChat(sensible), prompts=str(tmp_path)), None)

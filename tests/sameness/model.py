@@ -13,7 +13,7 @@ from threading import Thread
 from typing import Any, Self
 
 _ALLOWED = re.compile(r"^Allowed actions: (.+)$", re.MULTILINE)
-_PAIR = re.compile(r"^- (p\d+): (\S+) and (\S+) \(", re.MULTILINE)
+_PAIR = re.compile(r"^- (\S+): (\S+) and (\S+) \(", re.MULTILINE)
 
 
 def answer(messages: Sequence[dict[str, str]]) -> str:

@@ -33,7 +33,7 @@ EGO, NEAR = car("CAV1", "south-north", 60.0, 6.0, 9.0), car("HDV1", "south-north
 class Scripted(Model):
     """A language model that answers by a script."""
 
-    name, ask_plain, prompts = "scripted", False, None
+    name, ask_plain, prompts = "scripted", False, "planner"
 
     def __init__(self, script: Callable[[Question], str]) -> None:
         self.asked = ScriptedChat(script)

@@ -4,6 +4,7 @@ from math import inf
 from typing import Any
 
 from codriving.llm.prompts.judging import ContestView
+from codriving.llm.prompts.told import ArrivalView, BlockView, ChoiceView, HumanView, MeetingView, PastView
 from codriving.llm.prompts.views import (
     ActionView,
     ConflictView,
@@ -20,6 +21,10 @@ from codriving.llm.prompts.views import (
     WayView,
 )
 
+_ENTRANTS = [
+    EntrantView("CAV1", 8.0, "north-south", False, 9.0, 30.0, 3.6, True, "CAV3", ((2.0, 4.0), (6.0, 8.0))),
+    EntrantView("CAV2", 6.0, "west-north", True, 6.0, 2.0, 0.3, False, "", ()),
+]
 _KNOWN = (VehicleView("CAV3", "CAV", 12.0, 7.0), VehicleView("HDV1", "human", 9.0, 8.0))
 _SEEN = (VehicleView("V1", "unknown driver", 12.0, 7.0), VehicleView("V3", "unknown driver", 9.0, 8.0))
 _WAYS = (WayView("crossing", 30.0, 12.0, 3.8, 2.0, 1.8, "serious danger"),)
@@ -52,10 +57,15 @@ _MOVING = {
 # Variables of every kind by purpose: every list has an entry and every condition holds at least once.
 EXAMPLES: dict[str, dict[str, Any]] = {
     "negotiate": {
-        "vehicles": [
-            EntrantView("CAV1", 8.0, "north-south", False, 9.0, 30.0, 3.6, True, "CAV3", ((2.0, 4.0), (6.0, 8.0))),
-            EntrantView("CAV2", 6.0, "west-north", True, 6.0, 2.0, 0.3, False, "", ()),
+        "vehicles": _ENTRANTS,
+        "everyone": _ENTRANTS,
+        "humans": [
+            BlockView("HDV1", 8.0, (("CAV1", 0.0, 4.0), ("CAV2", 2.0, 6.0)), ("CAV3",)),
+            BlockView("HDV2", 0.0, (("CAV1", 0.0, 1000.0),), ()),
+            BlockView("HDV3", 8.0, (), ()),
         ],
+        "norms": ["turning yields to going straight, but for one that is there 1 s earlier"],
+        "thoughts": True,
         "pairs": [
             PairView(
                 "p1",
@@ -106,14 +116,39 @@ EXAMPLES: dict[str, dict[str, Any]] = {
         "intents": [IntentView("CAV2", "west-north", 6.0)],
         "no_intents": ["HDV1"],
         "binding": False,
-        "before": [OrderView("CAV2", "CAV2 can no longer stop before the conflict zone")],
-        "after": [OrderView("HDV2", "the CAV is through (3.6 s) before the human driver can be there")],
+        "before": [OrderView("CAV2", "CAV2 can no longer stop before the conflict zone", "CAV2 can no longer stop")],
+        "after": [
+            OrderView("HDV2", "the CAV is through (3.6 s) before the human driver can be there", "it is through")
+        ],
         "actions": [
             ActionView(("SLOWER",), True, (), 40.0, (4.2, 4.2), 6.0),
             ActionView(("IDLE",), True, ("no action is safe; this one is the least dangerous",), None, (inf,)),
             ActionView(("FASTER",), False, ("same lane: FASTER leaves too little room",), None, ()),
         ],
         "may_hold": True,
+        "meetings": [
+            MeetingView("CAV2", "CAV", "crossing", 3.0, 4.5, True, False, "it", True),
+            MeetingView("HDV1", "human", "converging", 0.0, 2.0, False, True, "you", False),
+            MeetingView("HDV2", "human", "weaving", inf, inf, False, False, "", True),
+        ],
+        "humans": [
+            HumanView("HDV1", 8.0, 9.0, -1.5, 0.0, ("left", "straight"), "you", "", 2.5, "CAV2", 12.0, "unclear"),
+            HumanView("HDV2", 8.0, None, 1.0, 0.0, ("right",), "it", "", inf, "", 0.0, ""),
+            HumanView("HDV3", 0.0, 0.0, None, 3.0, ("straight",), "", "it has been standing", 0.0, "", 0.0, ""),
+        ],
+        "choices": [
+            ChoiceView(("SLOWER",), 6.0, True, (), (ArrivalView("CAV2", 4.2),), True, (), "CAV4", 1.2, ("CAV3",), 0.6),
+            ChoiceView(
+                ("IDLE",), 9.0, True, ("as it is",), (ArrivalView("HDV1", inf),), False, ("HDV1",), "", 0.0, (), 0.0
+            ),
+            ChoiceView(
+                ("HOLD",), 8.0, True, (), (ArrivalView("HDV1", 3.0),), False, (), "", 0.0, ("CAV2", "CAV3"), inf
+            ),
+            ChoiceView(("FASTER",), None, False, ("too little room",), (), False, (), "", 0.0, (), 0.0),
+        ],
+        "norms": ["a lane ends beside yours"],
+        "past": PastView("SLOWER", "CAV2 goes first.", "Go after CAV2.", 2, ("CAV3 now goes before you",)),
+        "thoughts": True,
         "memories": ["Slowing down early let CAV2 pass without a stop."],
         "allowed": ["SLOWER", "IDLE"],
     },

@@ -18,7 +18,7 @@ ROLES = ("system", "user")
 PURPOSES = tuple(EXAMPLES)
 FILES = tuple(f"{purpose}.{role}.md.j2" for purpose in PURPOSES for role in ROLES)  # The templates that there are
 
-SETS = ("planner",)  # Sets that ship, each a folder here; the first one is taken where none is named
+SETS = ("informed", "planner")  # Sets that ship, each a folder here; the first one is taken where none is named
 OF_A_SET = ("negotiate", "decide")  # What a set has templates of; those of all else belong to all sets
 
 _POWER = 1_000  # Of larger numbers a template forms no power
@@ -44,7 +44,7 @@ class Prompts:
     """
 
     def __init__(self, chosen: str | None = None) -> None:
-        self.name = prompts_name(chosen)
+        self.name, self.informed = prompts_name(chosen), chosen != SETS[1]
         environment = _sandbox()
         environment.filters.update(_FILTERS)
         self._templates: dict[str, Template] = {}

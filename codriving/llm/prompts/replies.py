@@ -4,6 +4,7 @@ They take in a little more than they ask for, so that an answer which only names
 whole; the check of each question says what is wrong.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Annotated, Any, ClassVar
@@ -41,6 +42,23 @@ Reason = Annotated[str, BeforeValidator(_short), WithJsonSchema({"type": "string
 ActionWord = Annotated[str, BeforeValidator(_action)]
 
 
+def _thought(value: Any) -> str:  # noqa: ANN401 - anything that the model put there
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        value = " ".join(text for text in value if isinstance(text, str))
+    return one_line(value, LONGEST_THOUGHTS) if isinstance(value, str) else ""
+
+
+LONGEST_THOUGHTS = 600  # Characters of the thoughts that are kept
+
+
+class ThoughtfulReply(BaseModel):
+    """Thoughts, before anything else: in one text, or point by point."""
+
+    thoughts: Annotated[str, BeforeValidator(_thought), WithJsonSchema({"type": "string", "maxLength": 900})] = ""
+
+
 class DecisionReply(BaseModel):
     """A decision: the reason first, since what is written first shapes what follows."""
 
@@ -70,7 +88,7 @@ class OrderReply(BaseModel):
     @classmethod
     def _listed(cls, said: Any) -> dict[str, Any]:  # noqa: ANN401 - anything that the model put there
         """Take what can be used: pairs that exist, of which one of the two goes first, and always the same."""
-        of = {"reason": said.get("reason")} if isinstance(said, dict) else {}
+        of = {key: said.get(key) for key in ("thoughts", "reason")} if isinstance(said, dict) else {}
         found: dict[str, dict[str, Any]] = {}
         torn: set[str] = set()
         # One pair alone is part of an order; it counts in a list.
@@ -120,9 +138,12 @@ class CorrectionReply(BaseModel):
 
 
 @lru_cache(maxsize=64)
-def decision_reply(allowed: tuple[str, ...]) -> type[DecisionReply]:
-    """Return the form of a decision."""
-    return create_model("Decision", __base__=DecisionReply, action=(ActionWord, _one_of(allowed)))
+def decision_reply(allowed: tuple[str, ...], thoughts: bool = False, plan: bool = False) -> type[DecisionReply]:
+    """Return the form of a decision, with thoughts before it and a plan after it if they are asked for."""
+    fields: dict[str, Any] = {"action": (ActionWord, _one_of(allowed))} | ({"plan": (Reason, "")} if plan else {})
+    bases: Any = (DecisionReply, ThoughtfulReply) if thoughts else DecisionReply
+    made: type[DecisionReply] = create_model("Decision", __base__=bases, **fields)
+    return made
 
 
 @lru_cache(maxsize=64)
@@ -131,15 +152,26 @@ def correction_reply(allowed: tuple[str, ...]) -> type[CorrectionReply]:
     return create_model("Reflection", __base__=CorrectionReply, action=(ActionWord, _one_of(allowed)))
 
 
-def order_reply(pairs: Mapping[str, tuple[str, str]]) -> type[OrderReply]:
-    """Return the form of a passing order."""
-    return _order_reply(tuple(pairs.items()))
+def order_reply(pairs: Mapping[str, tuple[str, str]], thoughts: bool = False) -> type[OrderReply]:
+    """Return the form of a passing order, with thoughts before it if they are asked for."""
+    return _order_reply(tuple(pairs.items()), thoughts)
+
+
+def pair_names(pairs: Sequence[tuple[str, str]], lasting: bool) -> list[str]:
+    """Name pairs after their vehicles, so that a name means the same in the next question; else ``p1``, ``p2``, ..."""
+    named = [f"{one}_{other}" for one, other in pairs]
+    plain = all(_PLAIN.fullmatch(name) and not hasattr(OrderReply, name) for name in named)
+    return named if lasting and plain else [f"p{k + 1}" for k in range(len(pairs))]
+
+
+_PLAIN = re.compile(r"[A-Za-z0-9][\w.-]{0,63}", re.ASCII)  # What servers take as a key
 
 
 @lru_cache(maxsize=64)
-def _order_reply(pairs: tuple[tuple[str, tuple[str, str]], ...]) -> type[OrderReply]:
+def _order_reply(pairs: tuple[tuple[str, tuple[str, str]], ...], thoughts: bool) -> type[OrderReply]:
     fields: dict[str, Any] = {name: (Annotated[PairReply | None, _one_word(both)], None) for name, both in pairs}
-    made = create_model("Order", __base__=OrderReply, **fields)
+    bases: Any = (OrderReply, ThoughtfulReply) if thoughts else OrderReply
+    made: type[OrderReply] = create_model("Order", __base__=bases, **fields)
     made.pairs = dict(pairs)
     return made
 

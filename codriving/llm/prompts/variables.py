@@ -1,6 +1,6 @@
 """The variables of the prompts of CoDrivingLLM: to decide, to negotiate and to reflect."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import inf
 from typing import Any
@@ -12,13 +12,17 @@ from codriving.datatypes import (
     Experience,
     Instance,
     LaneId,
+    Memory,
     PassingOrder,
+    PastDecision,
+    Precedence,
     Role,
     SceneDescription,
     Situation,
     TrackedVehicle,
 )
 from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for
+from codriving.llm.prompts.told import blocks, choices, humans, meetings, near, past_view, timeless, waits
 from codriving.llm.prompts.views import (
     ActionView,
     ConflictView,
@@ -37,11 +41,19 @@ DRIVERS = {"CAV": "CAV", "HDV": "human", None: "unknown driver"}  # Who drives, 
 OTHERS = 4  # Vehicles at most that are mentioned though it is not known which lane they are on
 
 
-def decision_view(situation: Situation, nearest: int | None = None, with_memories: bool = True) -> dict[str, Any]:
+def decision_view(
+    situation: Situation,
+    nearest: int | None = None,
+    with_memories: bool = True,
+    past: PastDecision | None = None,
+    thoughts: bool = False,
+) -> dict[str, Any]:
     """Return the variables of the decision prompt.
 
     Args:
         nearest: Number of vehicles, nearest first, that are mentioned; None for all.
+        past: What was decided last.
+        thoughts: Whether the model is to write its thoughts down.
     """
     scene, names = situation.scene, names_for(situation)
     mentioned = {n.id for n in scene.by_distance()[:nearest]}
@@ -54,6 +66,9 @@ def decision_view(situation: Situation, nearest: int | None = None, with_memorie
     seen = {n.id for n in scene.neighbours}
     pairs = [p for p in situation.order.precedences if ego in (p.first, p.second)]
     pairs = [p for p in pairs if not seen & {p.first, p.second} - mentioned]
+    drivers, each = {n.id: DRIVERS[n.kind] for n in scene.neighbours}, list(groups.values())
+    outlook = situation.outlook
+    reasons = {h.id: h.gives_way for h in outlook.humans} if outlook is not None else {}
     return {
         "ego": names(ego),
         "speed": scene.ego.speed,
@@ -74,13 +89,30 @@ def decision_view(situation: Situation, nearest: int | None = None, with_memorie
         ],
         "no_intents": [names(n.id) for n in neighbours if n.intent is None and n.role is not Role.OTHER],
         "binding": situation.order.binding,
-        "before": [OrderView(names(p.first), names.sentence(p.reason)) for p in pairs if p.second == ego],
-        "after": [OrderView(names(p.second), names.sentence(p.reason)) for p in pairs if p.first == ego],
-        "actions": _actions(situation.assessments, list(groups.values()), names),
+        "before": [_ordered(p, p.first, names, "") for p in pairs if p.second == ego],
+        "after": [_ordered(p, p.second, names, reasons.get(p.second, "")) for p in pairs if p.first == ego],
+        "actions": _actions(situation.assessments, each, names),
+        "meetings": meetings(situation, near(situation, each), names, drivers),
+        "humans": humans(situation, names, mentioned),
+        "choices": choices(situation, near(situation, each), names),
+        "norms": [names.sentence(norm) for norm in outlook.norms] if outlook is not None else [],
+        "past": past_view(past, names),
+        "thoughts": thoughts,
         "may_hold": any(a.action is Action.HOLD for a in situation.assessments),
-        "memories": [names.sentence(m.text, LONGEST_MEMORY) for m in situation.memories] if with_memories else [],
+        "memories": [_remembered(m, names) for m in situation.memories] if with_memories else [],
         "allowed": [str(action) for action in situation.allowed],
     }
+
+
+def _ordered(p: Precedence, other: str, names: Names, held: str) -> OrderView:
+    """Say who goes before or after the CAV; of the reasons for which a human driver gives way the one that held."""
+    told = held or timeless(p.reason.partition(": it stands, or ")[0])
+    return OrderView(names(other), names.sentence(p.reason), names.sentence(told))
+
+
+def _remembered(memory: Memory, names: Names) -> str:
+    times = "once" if memory.count == 1 else f"{memory.count} times"
+    return f"{names.sentence(memory.text, LONGEST_MEMORY)} ({memory.similarity:.0%} alike, {times})"
 
 
 def lane_name(lane: LaneId) -> str:
@@ -144,10 +176,18 @@ def negotiation_view(
     previous: PassingOrder | None,
     names: Names,
     binding: bool,
+    passages: Mapping[str, Mapping[str, tuple[float, float]]] | None = None,
+    thoughts: bool = False,
 ) -> dict[str, Any]:
-    """Return the variables of the negotiation prompt."""
+    """Return the variables of the negotiation prompt.
+
+    Args:
+        passages: When each human driver may be in the way of each CAV, by CAV and driver [s].
+        thoughts: Whether the model is to write its thoughts down.
+    """
     asked = sorted({name for _, c in pairs for name in (c.ego, c.other)})
     ahead = {instance.vehicles[name].leader for name in asked} - {None}
+    speeds = {n.id: n.speed for scene in scenes.values() for n in scene.neighbours}
     # That one drives behind the other is said of that vehicle.
     fixed = sorted(
         (first, second)
@@ -156,10 +196,26 @@ def negotiation_view(
     )
     return {
         "vehicles": [_approaching(scenes, instance, name, names) for name in asked],
-        "pairs": [_pair(name, c, instance, previous, names) for name, c in pairs],
+        "everyone": [_approaching(scenes, instance, name, names) for name in instance.vehicles],
+        "humans": blocks(passages or {}, speeds, names),
+        "pairs": (views := [_pair(name, c, instance, previous, names) for name, c in pairs]),
         "fixed": [FixedView(names(first), names(second)) for first, second in fixed],
         "binding": binding,
+        "norms": list(_norms(views, instance, asked)),
+        "thoughts": thoughts,
     }
+
+
+def _norms(pairs: Sequence[PairView], instance: Instance, asked: Sequence[str]) -> Iterator[str]:
+    """Give the rules of an order that apply to what is asked."""
+    if any(not all(p.can_stop) for p in pairs):
+        yield "who cannot stop before the zone any more goes first"
+    if len({instance.vehicles[name].turning for name in asked}) > 1:
+        yield "turning yields to going straight, but for one that is there 1 s earlier"
+    if any(p.agreed for p in pairs):
+        yield "what was agreed is changed only to save more than 1 s"
+    if len(pairs) > 2:
+        yield "never in a circle: if A goes before B and B before C, C does not go before A"
 
 
 def _approaching(scenes: Mapping[str, SceneDescription], instance: Instance, name: str, names: Names) -> EntrantView:
@@ -196,8 +252,8 @@ def _pair(name: str, c: Conflict, instance: Instance, previous: PassingOrder | N
     ego, other, relation, severity = names(c.ego), names(c.other), str(c.relation), str(c.severity)
     one, two = instance.approach(c.ego, c.other), instance.approach(c.other, c.ego)
     earliest, can_stop = (max(one.earliest, 0.0), max(two.earliest, 0.0)), (one.can_stop, two.can_stop)
-    distances = one.distance, two.distance
-    return PairView(name, ego, other, relation, distances, c.ttcp, c.dttcp, severity, first, earliest, can_stop)
+    distances, lost = (one.distance, two.distance), waits(instance, c.ego, c.other)
+    return PairView(name, ego, other, relation, distances, c.ttcp, c.dttcp, severity, first, earliest, can_stop, lost)
 
 
 def reflection_view(experience: Experience) -> dict[str, Any]:

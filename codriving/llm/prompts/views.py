@@ -77,6 +77,7 @@ class OrderView:
 
     id: str
     reason: str
+    told: str = ""  # The reason as it holds later, too, and of several the one that held
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +123,10 @@ class PairView:
     agreed: str
     earliest: tuple[float, float]  # Earliest times at which they can be at the zone
     can_stop: tuple[bool, bool]  # Whether they can still stop before it
+    waits: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # How long the other one waits if the one goes first, and the other way round
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,8 @@ from copy import copy
 from typing import cast
 
 from codriving.datatypes import Conflict, Pair, PassingOrder, SceneDescription
-from codriving.llm import Names, OrderReply, Question, first_of_pairs, negotiation_view, order_reply
+from codriving.llm import Names, OrderReply, Question, first_of_pairs, negotiation_view, order_reply, pair_names
+from codriving.methods.language_model.model_decider import THOUGHTS
 from codriving.methods.language_model.prompted_model import PromptedModel
 from codriving.protocol import with_given, without_circles
 from codriving.reasoning import (
@@ -85,8 +86,9 @@ class ModelCoordinator(Coordinator):
     ) -> tuple[AgreedPairs | None, bool]:
         """Ask the model, and repair what it says; None if there is no answer. Tells whether it was read tolerantly."""
         by_urgency = sorted(conflicts, key=lambda c: (c.dttcp + 0.2 * min(c.ttcp), c.ego, c.other))
-        pairs = {f"p{k + 1}": c for k, c in enumerate(by_urgency)}
-        names = Names(problem.instance.vehicles)
+        names = Names([*problem.instance.vehicles, *sorted({h for each in problem.passages.values() for h in each})])
+        both = [(names(c.ego), names(c.other)) for c in by_urgency]
+        pairs = dict(zip(pair_names(both, self.model.prompts.informed), by_urgency, strict=True))
         [answer] = self.model.ask([self._question(scenes, problem, pairs, names)])
         if answer.value is None:
             return None, False
@@ -110,7 +112,8 @@ class ModelCoordinator(Coordinator):
     ) -> Question:
         shown = _shown(pairs, names)
         listed, rules = list(pairs.items()), self.rules
-        values = negotiation_view(scenes, problem.instance, listed, rules.previous, names, rules.binding)
+        told = rules.previous, names, rules.binding, problem.passages, self.model.thoughts
+        values = negotiation_view(scenes, problem.instance, listed, *told)
 
         def check(reply: object) -> str:
             if first_of_pairs(cast(OrderReply, reply)):
@@ -124,7 +127,8 @@ class ModelCoordinator(Coordinator):
             return self._question(scenes, problem, half, names) if half else None
 
         messages = self.model.prompts.messages("negotiate", values)
-        return Question("negotiate", "", messages, order_reply(shown), check, shorter, TOKENS_A_PAIR * len(pairs))
+        more = TOKENS_A_PAIR * len(pairs) + (THOUGHTS if self.model.thoughts else 0)
+        return Question("negotiate", "", messages, order_reply(shown, self.model.thoughts), check, shorter, more)
 
 
 def _most_urgent(problem: Problem, conflicts: Mapping[str, tuple[Conflict, ...]]) -> dict[Pair, Conflict]:

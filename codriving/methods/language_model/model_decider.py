@@ -4,19 +4,24 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any, ClassVar, cast
 
+from codriving.briefing import PastDecisions, nothing_to_judge
 from codriving.datatypes import Action, Decision, Situation
 from codriving.llm import Answer, DecisionReply, Question, decision_reply, decision_view, names_for
 from codriving.methods.language_model.prompted_model import PromptedModel
-from codriving.reasoning import Decider, RuleDecider, decide_one, is_plain
+from codriving.reasoning import Decider, RuleDecider, is_plain
 
 # Actions in the order in which they stand in for an answer that is missing.
 SAFEST = (Action.SLOWER, Action.IDLE, Action.HOLD, Action.FASTER, Action.LANE_RIGHT, Action.LANE_LEFT)
+
+
+THOUGHTS = 250  # How much longer an answer may be that thoughts precede [tokens]
 
 
 class ModelDecider(Decider):
     """Asks a model for every CAV, all in one go; a method has a template, its variables and a fallback of its own."""
 
     template: ClassVar[str]  # Which template is filled in
+    plans = False  # Whether a decision comes with a plan
 
     def __init__(self, model: PromptedModel) -> None:
         self.model = model
@@ -59,7 +64,9 @@ class ModelDecider(Decider):
 
         variables = self.variables(situation, nearest, with_memories)
         messages = self.model.prompts.messages(self.template, variables)
-        return Question("decide", situation.scene.ego.id, messages, decision_reply(tuple(allowed)), check, shorter)
+        form = decision_reply(tuple(allowed), self.model.thoughts, self.plans)
+        more = THOUGHTS if self.model.thoughts else 0
+        return Question("decide", situation.scene.ego.id, messages, form, check, shorter, more)
 
     def _decision(self, situation: Situation, answer: Answer) -> Decision:
         ego, reply, ledger = situation.scene.ego.id, cast(DecisionReply | None, answer.value), self.model.ledger
@@ -79,8 +86,8 @@ class ModelDecider(Decider):
 class CheckedDecider(ModelDecider):
     """CoDrivingLLM's: each CAV may choose what the safety check has left.
 
-    The model is not asked for a CAV whose decision is plain, see ``is_plain``; the rules decide, and the ledger counts
-    it.
+    The model is not asked for a CAV whose decision is plain, see ``is_plain``, nor, but with the prompts ``planner``,
+    for one that has nothing to judge, see ``nothing_to_judge``; the rules decide, and the ledger counts it.
     """
 
     template = "decide"
@@ -88,19 +95,30 @@ class CheckedDecider(ModelDecider):
     def __init__(self, model: PromptedModel, ask_plain: bool, sees_conflicts: bool) -> None:
         super().__init__(model)
         self.ask_plain, self.sees_conflicts = ask_plain, sees_conflicts
+        self.plans, self._past = model.prompts.informed, PastDecisions()
 
     def decide(self, situations: Sequence[Situation]) -> list[Decision]:
-        unclear = [s for s in situations if self.ask_plain or not is_plain(s, self.sees_conflicts)]
+        self._past.begin_step()
+        unclear = [s for s in situations if self.ask_plain or not self._is_plain(s)]
         found = {decision.ego: decision for decision in super().decide(unclear)}
         if len(unclear) < len(situations):
             self.model.ledger.count("plain_decisions", len(situations) - len(unclear))
-        return [found.get(s.scene.ego.id) or decide_one(s) for s in situations]
+        return [found.get(s.scene.ego.id) or RuleDecider().decide([s])[0] for s in situations]
+
+    def _is_plain(self, situation: Situation) -> bool:
+        plain = is_plain(situation, self.sees_conflicts)
+        return plain or (self.model.prompts.informed and nothing_to_judge(situation))
+
+    def _decision(self, situation: Situation, answer: Answer) -> Decision:
+        decision = super()._decision(situation, answer)
+        self._past.note(situation, decision, getattr(answer.value, "plan", ""))
+        return decision
 
     def by_rules(self, situation: Situation) -> Action:
         return RuleDecider().decide([situation])[0].action
 
     def variables(self, situation: Situation, nearest: int | None, with_memories: bool) -> dict[str, Any]:
-        return decision_view(situation, nearest, with_memories)
+        return decision_view(situation, nearest, with_memories, self._past.of(situation), self.model.thoughts)
 
     def objection(self, situation: Situation, action: str) -> str:
         names = names_for(situation)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from codriving.datatypes import Account, CaseMemory, DrivingModel, Method, Model, Road
+from codriving.datatypes import Account, CaseMemory, DrivingModel, Method, Model, Road, RuleModel
 from codriving.errors import ConfigError
 from codriving.geometry import RoadMap
 from codriving.llm import Answer, Chat, Ledger, Question
@@ -21,6 +21,7 @@ class PromptedModel:
     chat: Chat
     prompts: "Prompts"
     ledger: Ledger
+    thoughts: bool = False  # Whether it writes its thoughts down before it answers
 
     def ask(self, questions: Sequence[Question]) -> list[Answer]:
         """Ask all questions at once, and note the answers."""
@@ -37,7 +38,16 @@ def prompted(llm: Model, seed: int = 0) -> PromptedModel | None:
         return None
     from codriving.llm import load_prompts
 
-    return PromptedModel(chat, load_prompts(llm.prompts), Ledger(seed))
+    return PromptedModel(chat, load_prompts(llm.prompts), Ledger(seed), llm.thoughts)
+
+
+def reasons_by(llm: Model) -> str:
+    """Return what reasons, for tables: the rules, or a model with the prompts by which it is asked."""
+    if isinstance(llm, RuleModel):
+        return llm.name
+    from codriving.llm import prompts_name
+
+    return f"{llm.name} ({prompts_name(llm.prompts)})"
 
 
 def check_model(llm: Model, memory: CaseMemory | None) -> None:

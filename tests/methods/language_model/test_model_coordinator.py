@@ -29,7 +29,7 @@ THREE = (
 
 def coordinator(thoughts: Thoughts, script: Script) -> tuple[ModelCoordinator, ScriptedChat, Ledger]:
     chat, ledger = ScriptedChat(script), Ledger()
-    return ModelCoordinator(PromptedModel(chat, load_prompts(None), ledger), False), chat, ledger
+    return ModelCoordinator(PromptedModel(chat, load_prompts("planner"), ledger), False), chat, ledger
 
 
 def again(made: ModelCoordinator, thoughts: Thoughts) -> PassingOrder:

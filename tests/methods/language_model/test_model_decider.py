@@ -36,7 +36,7 @@ def told(junction: Junction) -> tuple[Situation, ...]:
 
 def decider(script: Script, ask_plain: bool = False) -> tuple[CheckedDecider, ScriptedChat, Ledger]:
     chat, ledger = ScriptedChat(script), Ledger()
-    return CheckedDecider(PromptedModel(chat, load_prompts(None), ledger), ask_plain, True), chat, ledger
+    return CheckedDecider(PromptedModel(chat, load_prompts("planner"), ledger), ask_plain, True), chat, ledger
 
 
 def says(action: str) -> str:
@@ -134,7 +134,9 @@ def test_chat_that_checks_nothing_can_do_nothing_forbidden(told: tuple[Situation
             return [Answer(decision_reply(("FASTER",)).model_validate({"action": "FASTER"}), ()) for _ in questions]
 
     ledger = Ledger()
-    [decision] = CheckedDecider(PromptedModel(Careless(), load_prompts(None), ledger), False, True).decide(told[2:])
+    [decision] = CheckedDecider(PromptedModel(Careless(), load_prompts("planner"), ledger), False, True).decide(
+        told[2:]
+    )
     assert decision.action is Action.SLOWER
     assert ledger.close_step(0.0)[0]["fallbacks"] == 1
 

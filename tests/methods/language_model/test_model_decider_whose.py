@@ -40,7 +40,7 @@ def told(junction: Junction) -> tuple[Situation, ...]:
 def negotiated(junction: Junction, script: Script) -> tuple[dict[str, float], int]:
     """What is counted of one negotiation, and how many of its three pairs are as the rules have them."""
     ledger, thoughts = Ledger(), junction.thoughts(*THREE)
-    made = ModelCoordinator(PromptedModel(ScriptedChat(script), load_prompts(None), ledger), False)
+    made = ModelCoordinator(PromptedModel(ScriptedChat(script), load_prompts("planner"), ledger), False)
     order = made.negotiate(thoughts.moment())
     by_rule = RuleCoordinator(False).negotiate(thoughts.moment())
     alike = {(p.first, p.second) for p in order.precedences} & {(p.first, p.second) for p in by_rule.precedences}
@@ -75,14 +75,14 @@ def test_pairs_read_tolerantly_are_the_models_and_mended(junction: Junction) -> 
 def test_a_shadow_of_the_rules_leaves_no_trace(junction: Junction) -> None:
     thoughts = junction.thoughts(*THREE)
     ledger = Ledger()
-    made = ModelCoordinator(PromptedModel(ScriptedChat(last_first(3)), load_prompts(None), ledger), False)
+    made = ModelCoordinator(PromptedModel(ScriptedChat(last_first(3)), load_prompts("planner"), ledger), False)
     order = made.negotiate(thoughts.moment())
     assert made.rules.previous is order
 
 
 def decided(told: tuple[Situation, ...], script: Script) -> dict[str, float]:
     ledger = Ledger()
-    CheckedDecider(PromptedModel(ScriptedChat(script), load_prompts(None), ledger), True, True).decide(told)
+    CheckedDecider(PromptedModel(ScriptedChat(script), load_prompts("planner"), ledger), True, True).decide(told)
     return ledger.close_step(0.0)[0]
 
 
