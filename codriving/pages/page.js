@@ -141,6 +141,8 @@ function pathOf(road) {
   const xs = data.asphalt.flatMap((p) => p.filter((_, i) => i % 2 === 0)), ys = data.asphalt.flatMap((p) => p.filter((_, i) => i % 2));
   const least = (values) => values.reduce((a, b) => Math.min(a, b)) / 100, most = (values) => values.reduce((a, b) => Math.max(a, b)) / 100;
   made.box = [least(xs), least(ys), most(xs), most(ys)];
+  const [wide, tall] = [made.box[2] - made.box[0], made.box[3] - made.box[1]];
+  made.long = Math.max(wide, tall) > 4 * Math.min(wide, tall);
   paths.set(road, made);
   return made;
 }
@@ -162,12 +164,21 @@ function canvasOf(id, height) {
 }
 function draw() {
   if (!episode || $("replay").hidden) return;
-  const { pen, width, height, ratio } = canvasOf("road"), c = colours(), road = pathOf(episode.road);
+  const c = colours(), road = pathOf(episode.road);
+  $("road").classList.toggle("long", road.long);
+  const { pen, width, height, ratio } = canvasOf("road");
   if (!width) return;
   const box = $("follow").checked ? episode.views[Math.min(Math.round(now / EVERY), episode.views.length - 1)] : road.box;
   const margin = $("follow").checked ? 16 : 2, least = 60;
-  const zoom = Math.min(width / Math.max(box[2] - box[0] + 2 * margin, least), height / Math.max(box[3] - box[1] + 2 * margin, least * height / width), 12);
-  const x0 = width / 2 - zoom * (box[0] + box[2]) / 2, y0 = height / 2 - zoom * (box[1] + box[3]) / 2;
+  const chosen = episode.vehicles.find((v) => v.id === cav), here = chosen && at(chosen, now, episode.step);
+  const fitting = Math.min(width / Math.max(box[2] - box[0] + 2 * margin, least), height / Math.max(box[3] - box[1] + 2 * margin, least * height / width), 12);
+  // A long road does not fit in: what is seen of it moves with the chosen CAV.
+  const zoom = road.long && $("follow").checked ? Math.max(fitting, 4.5) : fitting;
+  const centre = (k, size) => {
+    const [low, high] = [box[k] - margin + size / zoom / 2, box[k + 2] + margin - size / zoom / 2];
+    return low < high && here ? Math.min(Math.max(k ? here.y : here.x, low), high) : (low + high) / 2;
+  };
+  const x0 = width / 2 - zoom * centre(0, width), y0 = height / 2 - zoom * centre(1, height);
   const on = (x, y) => [x0 + zoom * x, y0 + zoom * y];
   pen.fillStyle = c.ground;
   pen.fillRect(0, 0, width, height);
@@ -180,7 +191,6 @@ function draw() {
   stroke(road.goals, c.good, 3, [4 / zoom, 3 / zoom]);
   pen.fillStyle = c.ink; pen.fill(road.blocks);
   const step = episode.steps[stepAt(episode, now)], own = step && step.cavs[cav];
-  const chosen = episode.vehicles.find((v) => v.id === cav), here = chosen && at(chosen, now, episode.step);
   if (here) { pen.globalAlpha = 0.6; stroke(road.ahead((own && own.route) || chosen.route, here), c.cav, 2.5); pen.globalAlpha = 1; }
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   const seen = new Map();
@@ -190,14 +200,16 @@ function draw() {
   for (const vehicle of episode.vehicles) if (seen.has(vehicle.id)) body(pen, c, on, zoom, vehicle, seen.get(vehicle.id), false);
   pen.font = "600 11px system-ui, sans-serif"; pen.textAlign = "center"; pen.lineJoin = "round"; pen.textBaseline = "alphabetic";
   const written = [];
-  for (const vehicle of episode.vehicles) {
+  const rank = (vehicle) => (vehicle.id === cav ? 0 : vehicle.kind === "CAV" ? 1 : 2);
+  for (const vehicle of [...episode.vehicles].sort((a, b) => rank(a) - rank(b))) {
     const place = seen.get(vehicle.id);
     if (!place) continue;
     const [x, y] = on(place.x, place.y), decided = step && step.cavs[vehicle.id], sign = decided ? ` ${SIGNS[decided.a] || decided.a}` : "";
     const words = `${vehicle.id}${sign} ${place.v.toFixed(1)}`, half = pen.measureText(words).width / 2, off = 1.6 * zoom + 5;
     // Above it, or where that is taken below it, or above that.
     const free = (top) => written.every(([a, b, wide]) => Math.abs(a - x) > wide + half + 3 || Math.abs(b - top) > 12);
-    const top = [y - off, y + off + 9, y - off - 13, y + off + 22].find(free) || y - off;
+    const top = [y - off, y + off + 9, y - off - 13, y + off + 22].find(free);
+    if (top === undefined) continue;
     written.push([x, top, half]);
     pen.strokeStyle = c.ground; pen.lineWidth = 3; pen.globalAlpha = 0.85; pen.strokeText(words, x, top); pen.globalAlpha = 1;
     pen.fillStyle = vehicle.kind === "CAV" ? c.ink : c.faint; pen.fillText(words, x, top);
