@@ -58,7 +58,7 @@ def test_a_changed_template_of_the_users(tmp_path: Path) -> None:
     run = Run(tmp_path, *MODEL, f"prompts={mine}")
     said = run.changes(mine / "decide.user.md.j2")
     assert said.startswith(f"{mine / 'decide.user.md.j2'} (template decide.user.md.j2) has changed since")
-    shutil.copy(PROMPTS / "planner" / "negotiate.user.md.j2", mine)
+    shutil.copy(PROMPTS / "informed" / "negotiate.user.md.j2", mine)
     run.go_on()
     (mine / "dilu.user.md.j2").write_text("Nothing that this method asks.")
     run.go_on()
