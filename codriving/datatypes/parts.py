@@ -125,6 +125,10 @@ class Model(ABC):
     def chat(self) -> Chat | None:
         """Return the client, one for all methods with the same settings; None for the built-in rules."""
 
+    def files(self) -> Mapping[str, Path]:
+        """Name the files, by what they are, on whose content its answers depend, beside the templates."""
+        return {}
+
 
 class RuleModel(Model):
     """The built-in rules: no network, no key, deterministic."""

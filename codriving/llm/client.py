@@ -30,7 +30,7 @@ from codriving.llm.request import (
     worded,
 )
 from codriving.llm.send import Sender
-from codriving.llm.settings import ModelSettings, read_key
+from codriving.llm.settings import ModelSettings
 from codriving.llm.spending import Spending, cost_of
 
 # Gives the reply to a conversation, and whether it came from the cache.
@@ -180,7 +180,7 @@ class ModelChat(Chat):
         if self.settings.cache == "replay" or self._worked:
             return
         self.spending.check()
-        self._key()
+        self.settings.key()
         loop().run(self._greet())
 
     async def _greet(self) -> None:
@@ -301,7 +301,7 @@ class ModelChat(Chat):
     async def _attempt(self, request: ChatRequest, form: str) -> Reply:
         async with self._limit.slot() as ticket:
             begun, s = time.perf_counter(), self.settings
-            sending = self._sender.send(request, form, self._key(), s.deadline, s.api_key_header)
+            sending = self._sender.send(request, form, self.settings.key(), s.deadline, s.api_key_header)
             try:
                 reply = await self._retries.within_deadline(sending)
             except CallError as fault:
@@ -329,10 +329,6 @@ class ModelChat(Chat):
 
     def _request(self, messages: tuple[Message, ...], schema: dict[str, Any] | None) -> ChatRequest:
         s = self.settings
-        asked = ChatRequest(s.model, s.api_base, messages, s.temperature, s.max_tokens, schema)
+        asked = ChatRequest(s.model, s.address, messages, s.temperature, s.max_tokens, schema)
         asked = replace(asked, max_tokens_field=s.max_tokens_field, system_role=s.system_role)
         return replace(asked, extra=s.extra, headers=s.headers, stream=s.stream, epoch=s.epoch)
-
-    def _key(self) -> str | None:
-        s = self.settings
-        return read_key(s.api_key_env, s.api_base, "model", "llm.api_base", "llm.api_key_env")

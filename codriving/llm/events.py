@@ -1,6 +1,7 @@
 """A chat completion out of the events of a server that sends it bit by bit."""
 
 import json
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -9,23 +10,30 @@ from codriving.llm.faults import CallError, FaultKind
 
 def completion_of(text: str) -> bytes:
     """Put the events of a stream together to the body that would have been sent at once."""
+    return json.dumps(joined(_events(text), "data: [DONE]" in text)).encode()
+
+
+def joined(events: Iterable[Mapping[str, Any]], done: bool = False) -> dict[str, Any]:
+    """Put events together to one chat completion, or to the error that one of them tells.
+
+    Args:
+        done: Whether the stream said that it is at its end.
+    """
     whole: dict[str, Any] = {"object": "chat.completion"}
     message: dict[str, Any] = {"role": "assistant", "content": ""}
     ended = None
-    for event in _events(text):
+    for event in events:
         if event.get("error"):
-            return json.dumps({"error": event["error"]}).encode()
+            return {"error": event["error"]}
         whole |= {name: event[name] for name in ("id", "created", "model", "usage") if event.get(name) is not None}
         choices = event.get("choices")
         choice = choices[0] if isinstance(choices, list) and choices and isinstance(choices[0], dict) else {}
         said = choice.get("delta") or choice.get("message")
         _add(message, said if isinstance(said, dict) else {})
         ended = choice.get("finish_reason") or ended
-    if ended is None and "data: [DONE]" not in text:
+    if ended is None and not done:
         raise CallError(FaultKind.DROPPED, "the stream broke off")
-    return json.dumps(
-        {**whole, "choices": [{"index": 0, "finish_reason": ended or "stop", "message": message}]}
-    ).encode()
+    return {**whole, "choices": [{"index": 0, "finish_reason": ended or "stop", "message": message}]}
 
 
 def _events(text: str) -> list[dict[str, Any]]:

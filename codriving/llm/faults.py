@@ -280,7 +280,7 @@ def _retry_after(headers: Mapping[str, str]) -> float | None:
 
 def unusable(fault: CallError, settings: ModelSettings) -> ModelError:
     """Say that a model cannot be used, and what to set."""
-    where, said = _server(settings), f" ({fault.detail})" if fault.detail else ""
+    where, said = settings.where, f" ({fault.detail})" if fault.detail else ""
     variable = settings.api_key_env
     key = variable or "the variable that llm.api_key_env names"
     if fault.kind is FaultKind.KEY and variable is None:
@@ -346,8 +346,4 @@ def unavailable(fault: CallError, settings: ModelSettings) -> ModelUnavailableEr
     times = "once" if fault.attempts == 1 else f"{fault.attempts} times"
     cures = {FaultKind.TIMEOUT: f"; {SLOW}", FaultKind.REFUSED: f"; {_cure(fault.detail)}"}
     cure = cures.get(fault.kind, "")
-    return ModelUnavailableError(f"{settings.model}: {_server(settings)} {fault}, asked {times}{cure}")
-
-
-def _server(settings: ModelSettings) -> str:
-    return settings.api_base or f"the provider of {settings.model}"
+    return ModelUnavailableError(f"{settings.model}: {settings.where} {fault}, asked {times}{cure}")

@@ -77,53 +77,67 @@ class ModelSettings:
 
     def __post_init__(self) -> None:
         prices = self.input_cost_per_token, self.output_cost_per_token
-        _require(self.model.strip(), "model must be the name of a model, got an empty text")
+        require(self.model.strip(), "model must be the name of a model, got an empty text")
         self._check_request()
         check_address("api_base", self.api_base)
-        _require(
+        require(
             self.api_key_env is None or _VARIABLE.fullmatch(self.api_key_env),
             "api_key_env must be the name of an environment variable, in capitals, and never the key itself; "
             "what was given is not shown",
         )
         for name, (low, high, unit) in _RANGES.items():
             value = getattr(self, name)
-            _require(value is None or low <= value <= high, f"{name} must be {low:g} to {high:g}{unit}, got {value}")
-        _require(self.cache in CACHE_MODES, f"cache must be one of {', '.join(CACHE_MODES)}, got {self.cache}")
+            require(value is None or low <= value <= high, f"{name} must be {low:g} to {high:g}{unit}, got {value}")
+        require(self.cache in CACHE_MODES, f"cache must be one of {', '.join(CACHE_MODES)}, got {self.cache}")
         stated = not isinstance(self.latency, str) and 0 <= self.latency <= LONGEST
-        _require(
+        require(
             stated or self.latency in ("none", "measured"),
             f"latency must be none, measured or a time of 0 to {LONGEST:g} s, got {self.latency}",
         )
-        _require(self.cache_file.strip(), "cache_file must be the name of a file, got an empty text")
+        require(self.cache_file.strip(), "cache_file must be the name of a file, got an empty text")
         for name, unit in (("max_cost", " USD"), ("max_tokens_total", "")):
             limit = getattr(self, name)
-            _require(limit is None or limit > 0, f"{name} must be above 0{unit}, got {limit}")
+            require(limit is None or limit > 0, f"{name} must be above 0{unit}, got {limit}")
         for name, price in zip(("input_cost_per_token", "output_cost_per_token"), prices, strict=True):
-            _require(price is None or price >= 0, f"{name} must be 0 USD or more, got {price}")
-        _require(
+            require(price is None or price >= 0, f"{name} must be 0 USD or more, got {price}")
+        require(
             prices.count(None) != 1,
             "input_cost_per_token must be given together with output_cost_per_token, got one of them alone",
         )
 
+    @property
+    def where(self) -> str:
+        """Who answers, in messages."""
+        return self.api_base or f"the provider of {self.model}"
+
+    @property
+    def address(self) -> str | None:
+        """What an answer is kept by, beside the model's name."""
+        return self.api_base
+
+    def key(self) -> str | None:
+        """Read the key from the environment."""
+        return read_key(self.api_key_env, self.api_base, "model", "llm.api_base", "llm.api_key_env")
+
     def _check_request(self) -> None:
         prefix = self.model_prefix or ""
-        _require(
+        require(
             self.model.startswith(prefix),
             f"model must begin with {prefix} here, or another protocol would be spoken, got {self.model}; set "
             f"llm.model={prefix}{self.model.removeprefix(prefix.split('_')[0].rstrip('/') + '/')}, or llm=custom for a "
             "server that speaks OpenAI's protocol",
         )
-        _require(self.label is None or self.label.strip(), "label must be a name or null, got an empty text")
-        _require(
+        require(self.label is None or self.label.strip(), "label must be a name or null, got an empty text")
+        require(
             self.max_tokens_field is None or self.max_tokens_field.strip(),
             "max_tokens_field must be the name of a field (max_completion_tokens) or null, got an empty text",
         )
-        _require(
+        require(
             self.system_role in ("system", "developer", "user"),
             f"system_role must be system, developer or user, got {self.system_role}",
         )
         for field in self.extra:
-            _require(field not in _OURS, f"extra must not hold {field}; it is set by {_OURS.get(field)}")
+            require(field not in _OURS, f"extra must not hold {field}; it is set by {_OURS.get(field)}")
         try:
             json.dumps(self.extra, allow_nan=False)
         except ValueError:
@@ -132,15 +146,15 @@ class ModelSettings:
         for name, value in [*texts_of(self.extra, "extra"), *texts_of(self.headers, "headers"), *named_by.items()]:
             last = name.rpartition(".")[2]
             named = _KEY_HEADER.fullmatch(last) or (_KEY_NAME.fullmatch(last) and len(value) >= 8)
-            _require(
+            require(
                 not named and not _KEY_LOOK.search(value) and not _LONG_LOOK.fullmatch(value),
                 f"{_shown(name)} must hold no key, which would be in the run folder; the value is not "
                 "shown: name its variable in llm.api_key_env, and a header of its own in llm.api_key_header",
             )
         for name, value in [*self.headers.items(), *([(self.api_key_header, "x")] if self.api_key_header else [])]:
             where = "headers" if name in self.headers else "api_key_header"
-            _require(_HEADER.fullmatch(name), f"{where} must be names of headers, got {name!r}")
-            _require(value.isascii() and value.isprintable(), f"{where} must hold plain texts, got others under {name}")
+            require(_HEADER.fullmatch(name), f"{where} must be names of headers, got {name!r}")
+            require(value.isascii() and value.isprintable(), f"{where} must hold plain texts, got others under {name}")
 
 
 def _shown(name: str) -> str:
@@ -162,14 +176,14 @@ def check_address(name: str, address: str | None) -> None:
         return
     try:
         parts = urlsplit(address)
-        _require(parts.port != 0, f"{name} must be {_ADDRESS}, got {address}")
+        require(parts.port != 0, f"{name} must be {_ADDRESS}, got {address}")
     except ValueError as error:
         raise ConfigError(f"{name} must be {_ADDRESS}, got what is no address ({error})") from error
-    _require(
+    require(
         parts.username is None and parts.password is None and not parts.query,
         f"{name} must be {_ADDRESS} with no name, password or key in it; put the key into the environment",
     )
-    _require(parts.scheme in ("http", "https") and parts.hostname, f"{name} must be {_ADDRESS}, got {address}")
+    require(parts.scheme in ("http", "https") and parts.hostname, f"{name} must be {_ADDRESS}, got {address}")
 
 
 def read_key(variable: str | None, api_base: str | None, model: str, base_setting: str, key_setting: str) -> str | None:
@@ -192,6 +206,7 @@ def read_key(variable: str | None, api_base: str | None, model: str, base_settin
     return key
 
 
-def _require(condition: object, message: str) -> None:
+def require(condition: object, message: str) -> None:
+    """Refuse a setting unless a condition holds."""
     if not condition:
         raise ConfigError(message)

@@ -7,6 +7,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +41,7 @@ HOW_A_MODEL_IS_ASKED = (
     "fallbacks_at_first",
     "model_prefix",
     "stream",
+    "model_file",  # Its content tells it
 )
 
 # Settings of ``llm`` that came later, with the values that change nothing: runs of before are gone on with.
@@ -169,8 +171,16 @@ def files_of(paths: Mapping[str, Path]) -> tuple[NamedFile, ...]:
         OSError: If one cannot be read.
     """
     return tuple(
-        NamedFile(name, _shown(path), hashlib.sha256(path.read_bytes()).hexdigest()) for name, path in paths.items()
+        NamedFile(name, _shown(path), _digest(path, path.stat().st_size, path.stat().st_mtime_ns))
+        for name, path in paths.items()
     )
+
+
+@lru_cache(maxsize=256)
+def _digest(path: Path, size: int, changed: int) -> str:
+    """Read a file once, however many cells name it; a model may have gigabytes."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _shown(path: Path) -> str:

@@ -22,6 +22,7 @@ PACKAGES = (
     "pandas",
     "pettingzoo",
     "scipy",
+    "xllamacpp",
 )
 
 

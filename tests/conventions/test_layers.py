@@ -58,6 +58,7 @@ DOORS = {
     "gymnasium": "gym",
     "pettingzoo": "gym",
     "litellm": "llm",
+    "xllamacpp": "llm",
     "faiss": "memory",
     "safetensors": "methods",
     "torch": "training",

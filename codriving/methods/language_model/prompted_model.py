@@ -72,12 +72,13 @@ class ModelMethod(Method):
         self.remembers = memory.label if memory is not None else ""
 
     def files(self, road: Road) -> Mapping[str, Path]:
-        """Return the templates with which a model is asked; none where the built-in rules reason."""
+        """Return the files of a model and the templates that it is asked with; none where the built-in rules reason."""
         if self.llm.chat() is None:
             return {}
         from codriving.llm import template_files
 
-        return template_files(self.llm.prompts, (*self.asked, self.reflects) if self.corrects() else self.asked)
+        asked = (*self.asked, self.reflects) if self.corrects() else self.asked
+        return {**self.llm.files(), **template_files(self.llm.prompts, asked)}
 
     def corrects(self) -> bool:
         """Whether a model is asked about mistakes after an episode."""
