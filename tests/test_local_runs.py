@@ -20,7 +20,7 @@ def drive(folder: Path, *more: str) -> dict[str, str]:
     command = [sys.executable, "-m", "codriving", "run", "llm=local", *SHORT, *more]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    (row,) = csv.DictReader((folder / "outputs/run/local/episodes.csv").open(encoding="utf-8"))
+    (row,) = csv.DictReader((folder / "outputs/run/local/episodes.csv").read_text(encoding="utf-8").splitlines())
     return row
 
 
@@ -35,7 +35,7 @@ def calls(folder: Path) -> list[dict[str, Any]]:
 @pytest.mark.parametrize("scenario", ["intersection", "roundabout", "highway", "merge"])
 def test_a_real_model_drives_every_scenario(scenario: str, tmp_path: Path) -> None:
     row = drive(tmp_path, f"scenario={scenario}", "llm.extra={cache_prompt: true}")
-    assert row["reasoner"] == "local/SmolLM2-135M-Instruct"
+    assert row["reasoner"].startswith("local/SmolLM2-135M-Instruct")
     assert row["ending"] != "error"
     asked = calls(tmp_path)
     assert len(asked) > 0
