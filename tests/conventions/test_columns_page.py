@@ -20,7 +20,8 @@ from codriving.reports.regret import above_columns
 from codriving.reports.results import ASKED, WHOSE
 from codriving.reports.summary import ASKED_COLUMNS, BY_MODEL, BY_MODEL_TEXTS, FALLBACKS, REPEATABLE, summary_table
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "columns.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE, TABLES = (DOCS / "columns.md").read_text(encoding="utf-8"), DOCS / "tables"
 ROWS = [[cell.strip() for cell in line.split(" | ")] for line in PAGE.splitlines() if line.startswith("| `")]
 NAMES = {name for row in ROWS for name in re.findall(r"`(\w+)`", row[0])}
 HEADS = {head for row in ROWS for head in re.findall(r"\*([^*]+)\*", row[1])}
@@ -73,6 +74,13 @@ def test_head_of_a_printed_column_is_in_a_row(head: str) -> None:
 
 def test_what_metrics_and_methods_count_is_found() -> None:
     assert {"ttc_min", "throughput", "replaced", "reflexes", "worse_off", "messages_rejected"} <= {*COUNTED}
+
+
+def test_columns_of_tables_that_were_driven_have_rows() -> None:
+    heads = [file.read_text(encoding="utf-8").splitlines()[1] for file in TABLES.glob("*.csv")]
+    driven = {name for head in heads if "success_rate" in head for name in head.split(",")}
+    assert "plans_infeasible" in driven
+    assert driven - NAMES - {"suite"} == set()  # A swept key
 
 
 def test_no_column_has_two_rows() -> None:
