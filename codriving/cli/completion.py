@@ -44,6 +44,7 @@ PLURALS = {
     "drivers": "drivers",
     "flows": "flow",
     "channels": "v2x",
+    "judgements": "judgement",
     "suites": SUITE,
     "experiments": EXPERIMENTS,
     "trainings": TRAININGS,

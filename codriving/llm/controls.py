@@ -78,13 +78,6 @@ class FormSender(Sender):
         return Reply(text, "stop", prompt_tokens=tokens[0], completion_tokens=tokens[1], counted=False)
 
 
-class _ControlChat(ModelChat):
-    """The client of every model, without a key."""
-
-    def _key(self) -> None:
-        return None
-
-
 class StandIn(LanguageModel):
     """A control in the place of a model: asked with the same prompts, its answers read and counted alike."""
 
@@ -99,8 +92,11 @@ class StandIn(LanguageModel):
     def chooser(self, request: ChatRequest) -> Choose:
         """Return what chooses among the words that a request asks for."""
 
+    def key(self) -> None:
+        """Return none: no server is asked."""
+
     def client(self, cache: AnswerCache | None) -> ModelChat:
-        return _ControlChat(self, cache, sender=FormSender(self.chooser, self.says))
+        return ModelChat(self, cache, sender=FormSender(self.chooser, self.says))
 
 
 class ControlFirst(StandIn):

@@ -110,6 +110,7 @@ def test_list_without_a_group_shows_all_groups() -> None:
         "drivers",
         "flows",
         "channels",
+        "judgements",
         "suites",
         "experiments",
         "trainings",

@@ -115,9 +115,9 @@ def test_one_table_of_models_controls_and_rules(driven: tuple[Path, Result]) -> 
     folder, result = driven
     assert result.exit_code == 0, result.output
     rows = {row["reasoner"]: row for row in csv.DictReader((folder / "models.csv").read_text().splitlines())}
-    assert set(rows) == {"rules", "control first", "control random"}
+    assert set(rows) == {"rules", "control first (informed)", "control random (informed)"}
     assert next(iter(rows)) == "rules"
-    first, drawn, rules = rows["control first"], rows["control random"], rows["rules"]
+    first, drawn, rules = rows["control first (informed)"], rows["control random (informed)"], rows["rules"]
     assert float(first["same_decisions"]) == 1
     assert float(drawn["same_decisions"]) < 1
     assert rules["same_decisions"] == rules["decisions_by_model"] == rules["model_calls"] == ""

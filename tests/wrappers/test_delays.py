@@ -45,7 +45,7 @@ def test_orders_take_the_time_of_their_question_and_decisions_that_of_their_cav(
 
 
 def test_a_question_to_a_model_takes_its_time_in_the_place_of_what_is_stated(junction: Junction) -> None:
-    model = Scripted(ScriptedChat(sensible))
+    model = Scripted(ScriptedChat(sensible), prompts="planner")
     model.latency = 0.7
     made = Thinking(9.0, 9.0, LEVEL).around(CoDriving(LEVEL, model, None, 1.5), model)
     made.reset(junction.road_map, junction.model, 0)
