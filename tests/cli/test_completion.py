@@ -116,6 +116,7 @@ def test_tables_of_compare() -> None:
         "load",
         "orders",
         "filters",
+        "models",
     ]
     assert [name for name, _ in complete_table("b")] == ["baselines"]
 
@@ -162,7 +163,7 @@ def test_keys_are_those_of_the_suite(tmp_path: Path) -> None:
     assert in_line("suite=paper", incomplete="limits.") == []
     assert in_line("--config-dir", str(tmp_path), "suite=mine", incomplete="limits.") == []
     assert lateral in in_line("suite=paper", "limits=road", incomplete="limits.")
-    assert in_line(incomplete="suite=p") == ["suite=paper"]
+    assert in_line(incomplete="suite=p") == ["suite=paper", "suite=poor_radio"]
 
 
 def test_layouts_of_export_are_offered() -> None:
