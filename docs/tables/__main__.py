@@ -1,8 +1,8 @@
-"""Makes the tables of README.md and docs/results.md: `make tables`, `python docs/tables [--pages | --check] [RUN ...]`.
+"""Makes the tables of README.md and some pages: `make tables`, `python docs/tables [--pages | --check] [RUN ...]`.
 
 `tables.yaml` names for each table the commands that drive its episodes and what its columns show. The commands are run
-(what is driven already is not driven again), the `summary.csv` of each run folder, or `comparison.csv`, is kept beside
-this file, with the command and the versions that made it, and the pages are written from these files alone.
+(what is driven already is not driven again), the `summary.csv` of each run folder, `comparison.csv` or `stress.csv`, is
+kept beside this file, with the command and the versions that made it, and the pages are written from these files alone.
 """
 
 import argparse
@@ -27,11 +27,13 @@ from codriving.version import __version__
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-PAGES = ("README.md", "docs/results.md")
+PAGES = ("README.md", "docs/results.md", "docs/stress.md")
 BENCH = "bench "  # How a command begins that is a benchmark
 COMPARE = "compare "  # And one that compares, whose table has more columns
+STRESS = "stress "  # And one whose rows are the levels of curves
 KEYS = ("scenario", "method", "variant")  # What tells the rows of a run apart; rows of several runs are joined by them
-WORDS = (*KEYS, "suite", "status")  # Columns that hold names
+# Columns that hold names
+WORDS = (*KEYS, "suite", "status", "axis", "level", "value", "success_breaks_at", "clean_breaks_at")
 BEGIN, END = "<!-- table {}: made by make tables -->", "<!-- end of table {} -->"
 TABLE = re.compile(r"<!-- table (?P<name>[\w-]+): made by make tables -->\n.*?<!-- end of table (?P=name) -->", re.S)
 
@@ -168,6 +170,10 @@ def drive(run: str, command: str) -> None:
         raise TableError(f"expected one folder outputs/*/tables-{run}, found {len(folders)}")
     manifest = json.loads((folders[0] / "manifest.json").read_text(encoding="utf-8"))
     made = {"command": command, "version": manifest["versions"]["codriving"], "behaviour": manifest["behaviour"]}
+    if command.startswith(STRESS):
+        levels, curves = ((folders[0] / name).read_text(encoding="utf-8") for name in ("stress.csv", "breaking.csv"))
+        keep(HERE / f"{run}.csv", made, with_breaking(levels, curves))
+        return
     table = "comparison.csv" if command.startswith(COMPARE) else "summary.csv"
     keep(HERE / f"{run}.csv", made, (folders[0] / table).read_text(encoding="utf-8"))
 
@@ -182,6 +188,20 @@ def wide(rows: Iterable[Mapping[str, Value]]) -> str:
     writer = csv.DictWriter(text, list(next(iter(found.values()))), lineterminator="\n")
     writer.writeheader()
     writer.writerows(found.values())
+    return text.getvalue()
+
+
+def with_breaking(levels: str, curves: str) -> str:
+    """Write the rows of levels, each with the breaking points of its curve, as CSV."""
+    breaking = list(csv.DictReader(io.StringIO(curves)))
+    points = ["success_breaks_at", "clean_breaks_at"]
+    curve = [key for key in breaking[0] if not key.startswith(("success_", "clean_"))]
+    found = {tuple(row[key] for key in curve): {key: row[key] for key in points} for row in breaking}
+    rows = [row | found[tuple(row[key] for key in curve)] for row in csv.DictReader(io.StringIO(levels))]
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
     return text.getvalue()
 
 

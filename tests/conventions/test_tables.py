@@ -72,7 +72,16 @@ def test_rows_of_a_benchmark_are_one_a_scenario_below_the_command_as_it_is_typed
     assert lines[3:6] == ["| merge | 7.5 |", "", 'From `make bench ARGS="--only worlds"` (version 0.2.0, behaviour 3).']
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/results.md"])
+def test_each_level_is_kept_with_the_breaking_points_of_its_curve() -> None:
+    levels = "axis,method,level,success_rate\nage,fcfs,0,1\nage,fcfs,1,0.5\nloss,fcfs,0,1\n"
+    curves = "axis,method,success_breaks_at,success_area,clean_breaks_at\nloss,fcfs,never,1,30\nage,fcfs,0.5,0.7,\n"
+    assert PROGRAM["with_breaking"](levels, curves) == (
+        "axis,method,level,success_rate,success_breaks_at,clean_breaks_at\n"
+        "age,fcfs,0,1,0.5,\nage,fcfs,1,0.5,0.5,\nloss,fcfs,0,1,never,30\n"
+    )
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/results.md", "docs/stress.md"])
 def test_what_is_measured_stands_in_tables_that_are_made(page: str) -> None:
     by_hand = PROGRAM["TABLE"].sub("", (ROOT / page).read_text(encoding="utf-8"))
     heads = [line for line in by_hand.splitlines() if line.startswith("|---")]
