@@ -5,22 +5,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from driven_run import driven_run
 from imageio_ffmpeg import count_frames_and_secs
 from PIL import Image
 from typer.testing import CliRunner, Result
 
 from codriving.cli.app import app
-from codriving.commands.run import run_experiment
 from codriving.runs.episode_folder import DECISIONS
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run with two episodes of 2 s."""
-    output = tmp_path_factory.mktemp("outputs")
-    tokens = [f"output={output}", "run=first", "episodes=2", "launcher=serial", "scenario.time_limit=2"]
-    assert run_experiment(tokens) == 0
-    return output / "run" / "first"
+    return driven_run(tmp_path_factory.mktemp("outputs"), "episodes=2", "scenario.time_limit=2")
 
 
 def call(*args: object) -> Result:

@@ -8,10 +8,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from driven_run import driven_run
 from typer.testing import CliRunner, Result
 
 from codriving.cli.app import app
-from codriving.commands.run import run_experiment
 from codriving.recordings.read import read_recording
 from codriving.runs.episode_folder import read_record
 from codriving.runs.trajectory_file import read_trajectory
@@ -20,10 +20,7 @@ from codriving.runs.trajectory_file import read_trajectory
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run with two short episodes in which vehicles pass the junction."""
-    output = tmp_path_factory.mktemp("outputs")
-    tokens = [f"output={output}", "run=first", "episodes=2", "launcher=serial", "method=fcfs", "scenario.time_limit=14"]
-    assert run_experiment(tokens) == 0
-    return output / "run" / "first"
+    return driven_run(tmp_path_factory.mktemp("outputs"), "episodes=2", "method=fcfs", "scenario.time_limit=14")
 
 
 def call(*args: object) -> Result:

@@ -5,19 +5,16 @@ import shutil
 from pathlib import Path
 
 import pytest
+from driven_run import driven_run
 from typer.testing import CliRunner, Result
 
 from codriving.cli.app import app
-from codriving.commands.run import run_experiment
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of two rows, one short episode each."""
-    output = tmp_path_factory.mktemp("outputs")
-    tokens = [f"output={output}", "run=first", "episodes=1", "launcher=serial", "method=fcfs,mcts"]
-    assert run_experiment([*tokens, "scenario.time_limit=4"]) == 0
-    return output / "run" / "first"
+    return driven_run(tmp_path_factory.mktemp("outputs"), "episodes=1", "method=fcfs,mcts", "scenario.time_limit=4")
 
 
 def call(*args: object) -> Result:

@@ -5,10 +5,10 @@ import json
 from pathlib import Path
 
 import pytest
+from driven_run import driven_run
 from typer.testing import CliRunner, Result
 
 from codriving.cli.app import app
-from codriving.commands.run import run_experiment
 
 Row = dict[str, str]
 
@@ -18,10 +18,7 @@ WAITING = Path(__file__).parents[2] / "examples" / "waiting_time" / "conf"
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run with two episodes in which vehicles pass the junction."""
-    output = tmp_path_factory.mktemp("outputs")
-    tokens = [f"output={output}", "run=first", "episodes=2", "launcher=serial", "method=fcfs"]
-    assert run_experiment(tokens) == 0
-    return output / "run" / "first"
+    return driven_run(tmp_path_factory.mktemp("outputs"), "episodes=2", "method=fcfs")
 
 
 def call(*args: object) -> Result:

@@ -6,6 +6,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from driven_run import driven_run
 
 from codriving.commands.run import run_experiment
 from codriving.environment.scenarios.intersection import Intersection
@@ -19,19 +20,14 @@ from codriving.runs.trajectory_file import TRAJECTORY
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of two cells with two short episodes each."""
-    output = tmp_path_factory.mktemp("outputs")
-    tokens = [f"output={output}", "run=first", "episodes=2", "seed=3", "launcher=serial", "scenario.time_limit=1"]
-    assert run_experiment([*tokens, "scenario.cavs=2,3", "scenario.leg_length=100,120"]) == 0
-    return output / "run" / "first"
+    cells = "scenario.cavs=2,3", "scenario.leg_length=100,120"
+    return driven_run(tmp_path_factory.mktemp("outputs"), "episodes=2", "seed=3", "scenario.time_limit=1", *cells)
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of one cell."""
-    output = tmp_path_factory.mktemp("whole")
-    tokens = [f"output={output}", "run=one", "episodes=3", "launcher=serial", "scenario.time_limit=1"]
-    assert run_experiment(tokens) == 0
-    return output / "run" / "one"
+    return driven_run(tmp_path_factory.mktemp("whole"), "episodes=3", "scenario.time_limit=1")
 
 
 @pytest.fixture
