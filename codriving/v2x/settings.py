@@ -14,7 +14,7 @@ class OrderSettings:
     """How CAVs agree on who goes first.
 
     Raises:
-        ConfigError: If a value is out of its range, or an emergency vehicle is no CAV or nobody coordinates.
+        ConfigError: If a value is out of its range, or an emergency vehicle is no CAV or no party coordinates.
     """
 
     by: Literal["road_side_unit", "fleet", "cav", "distributed", "none"]  # Who coordinates

@@ -13,7 +13,7 @@ from codriving.datatypes.world import Action
 from codriving.geometry.box import PLANNING, TRUE, corners, overlap
 from codriving.geometry.zone import ConflictZone
 from codriving.reasoning.execution.planned import Executor
-from codriving.reasoning.execution.violations import SIZES, Meeting, first_true, meets, passes_too_early
+from codriving.reasoning.execution.violations import SIZES, Meeting, first_true, meets, minds_humans, passes_too_early
 
 PAIRS = (
     ("south-north", "west-east"),  # crossing
@@ -311,3 +311,15 @@ def test_the_one_behind_a_slow_driver_does_not_come_too_close(junction: Junction
     show = puppets(junction, ordered(junction), [me, ahead], 15.0)
     assert (show.places["HDV1"] - show.places["CAV1"]).min() > 5.5
     assert show.places["CAV1"][-1] > 65.0, "it keeps up"
+
+
+def test_what_is_on_no_route_holds_no_plan_up(junction: Junction) -> None:
+    """A place that a message gives can lie beside the road."""
+    ego = car("CAV1", "south-north", 80.0, 8.0)
+    drives = np.arange(N, dtype=np.float64)[None]
+    for offset, routes, first in ((0.0, 3, 10), (12.0, 0, N)):
+        human = replace(car("HDV1", "south-north", 96.0, 0.0), offset=offset)
+        moment = junction.thoughts(ego, human).moment()
+        known = moment.vehicles["CAV1"]
+        assert len(known["HDV1"].routes) == routes
+        assert minds_humans(moment, known["CAV1"], drives, 0, 0, 0.0).tolist() == [first]
