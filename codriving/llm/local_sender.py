@@ -103,7 +103,7 @@ class Llama:
         self._calls: list[threading.Thread] = []
 
     async def answer(self, body: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-        """Return the events of an answer; whoever waits no longer ends it."""
+        """Return the events of an answer; a caller that stops waiting ends it."""
         text = json.dumps({**body, "stream": True, "stream_options": {"include_usage": True}})
         running, given_up = asyncio.get_running_loop(), threading.Event()
         answered: asyncio.Future[list[str] | Exception] = running.create_future()

@@ -31,9 +31,10 @@ class _Promise(NamedTuple):
 class Negotiator(Party):
     """A CAV, or a unit that only coordinates.
 
-    Who has accepted to be second is second from then on, and who is to be first is so only when it has heard of the
-    agreement; so no loss of messages makes both of a pair go first by agreements. A promise ends with an
-    agreement of its proposer about the pair, or after twice the validity, when no agreement on it can hold any more.
+    A CAV that has accepted to be second is second from then on, and one that is to be first is so only when it has
+    heard of the agreement; so a lost agreement does not make both of a pair go first. A promise ends with an agreement
+    of its proposer about the pair, or after twice the validity: a CAV that no renewed agreement has reached for so
+    long decides by itself.
 
     Between two decisions it answers at once, by what it knew at the last one.
     """
