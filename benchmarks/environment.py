@@ -1,12 +1,12 @@
 """CPU time of a decision step: our environment against highway-env's own intersection, with as many vehicles."""
 
-import argparse
 import json
 from time import process_time
 
 import numpy as np
 from highway_env.envs.intersection_env import IntersectionEnv
 
+from benchmarks.options import options
 from codriving.config.build import build
 from codriving.config.compose import compose
 from codriving.datatypes.world import Action
@@ -115,9 +115,7 @@ def main(arguments: list[str]) -> None:
     Args:
         arguments: ``--json`` prints JSON instead of a table.
     """
-    parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    wanted = parser.parse_args(arguments)
+    wanted = options(arguments)
     found = measure()
     if wanted.json:
         print(json.dumps({"environment": found}))

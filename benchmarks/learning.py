@@ -1,12 +1,12 @@
 """CPU time of a decision step as an environment for learning, against the bare environment on the same episodes."""
 
-import argparse
 import json
 from time import process_time
 
 import numpy as np
 
 import codriving
+from benchmarks.options import options
 from codriving.config.choices import choices
 from codriving.gym.actions import ACTIONS
 
@@ -56,9 +56,7 @@ def main(arguments: list[str]) -> None:
     Args:
         arguments: ``--json`` prints JSON instead of a table.
     """
-    parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    wanted = parser.parse_args(arguments)
+    wanted = options(arguments)
     found = {name: measure(name) for name in choices("scenario")}
     if wanted.json:
         print(json.dumps({"learning": found}))

@@ -1,12 +1,12 @@
 """Wall-clock time of many episodes side by side that wait for a model, against the longest of them driven alone."""
 
-import argparse
 import json
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from time import perf_counter, process_time
 
+from benchmarks.options import options
 from benchmarks.served import served
 from codriving.commands import run_frames
 from codriving.runs.episode_folder import read_timing
@@ -79,9 +79,7 @@ def main(arguments: list[str]) -> None:
     Args:
         arguments: ``--json`` prints JSON instead of a table.
     """
-    parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    wanted = parser.parse_args(arguments)
+    wanted = options(arguments)
     found = measure()
     if wanted.json:
         print(json.dumps({"model_batch": found}))

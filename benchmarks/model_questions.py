@@ -1,6 +1,5 @@
 """What a decision step asks of a model, in tokens and calls, against the authors' code."""
 
-import argparse
 import json
 import os
 import tempfile
@@ -9,6 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from benchmarks.options import options
 from benchmarks.served import served
 from codriving.commands import run_frames
 from codriving.config.choices import choices
@@ -91,10 +91,7 @@ def main(arguments: list[str]) -> None:
     Args:
         arguments: ``--json`` prints JSON instead of a table.
     """
-    parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.add_argument("--episodes", type=int, default=EPISODES, help="episodes of each scenario")
-    wanted = parser.parse_args(arguments)
+    wanted = options(arguments, EPISODES)
     tokens = tokenizer()
     with served(0.0) as model:
         found = {

@@ -1,12 +1,12 @@
 """Wall-clock time of a decision step that asks a model for an order and for decisions, against two latencies."""
 
-import argparse
 import json
 from collections.abc import Iterator, Sequence
 from itertools import combinations_with_replacement, count, islice
 from statistics import median
 from time import perf_counter, process_time
 
+from benchmarks.options import options
 from benchmarks.served import served
 from codriving.config.compose import compose
 from codriving.environment.environment import Environment
@@ -95,9 +95,7 @@ def main(arguments: list[str]) -> None:
     Args:
         arguments: ``--json`` prints JSON instead of a table.
     """
-    parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    wanted = parser.parse_args(arguments)
+    wanted = options(arguments)
     rows = [measure(latency, number) for latency, number in STEPS.items()]
     if wanted.json:
         print(json.dumps({"model_steps": rows}))

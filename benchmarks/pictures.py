@@ -1,12 +1,12 @@
 """Frames a second of a replay: drawing alone (CPU) and the whole film (wall clock), for every scenario."""
 
-import argparse
 import json
 import tempfile
 from fractions import Fraction
 from pathlib import Path
 from time import perf_counter, process_time
 
+from benchmarks.options import options
 from codriving.commands import run_frames
 from codriving.config.choices import choices
 from codriving.experiment.stored import find_episode, read_film, road_of
@@ -50,9 +50,7 @@ def main(arguments: list[str]) -> None:
     Args:
         arguments: ``--json`` prints JSON instead of a table.
     """
-    parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    wanted = parser.parse_args(arguments)
+    wanted = options(arguments)
     with tempfile.TemporaryDirectory() as folder:
         found = {name: measure(name, Path(folder)) for name in choices("scenario")}
     if wanted.json:

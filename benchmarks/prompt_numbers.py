@@ -1,12 +1,12 @@
 """How often the number that is printed per action names the rules' action: what a prompt hands over of their answer."""
 
-import argparse
 import json
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from benchmarks.options import options
 from codriving.briefing.judging import nothing_to_judge
 from codriving.config.build import build
 from codriving.config.choices import choices
@@ -137,10 +137,7 @@ def main(arguments: list[str]) -> None:
     Args:
         arguments: ``--json`` prints JSON instead of a table.
     """
-    parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.add_argument("--episodes", type=int, default=EPISODES, help="episodes of each scenario")
-    wanted = parser.parse_args(arguments)
+    wanted = options(arguments, EPISODES)
     seeds = range(FIRST_SEED, FIRST_SEED + wanted.episodes)
     seen = {name: situations(name, seeds) for name in choices("scenario")}
     together = [s for each in seen.values() for s in each]

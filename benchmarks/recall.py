@@ -1,6 +1,5 @@
 """Memory at scale: time to recall for four CAVs, and to open the file, against the number of experiences (goal 9)."""
 
-import argparse
 import json
 import tempfile
 from collections.abc import Sequence
@@ -10,6 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
+from benchmarks.options import options
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Verdict
 from codriving.datatypes.world import Action
 from codriving.memory.embedders import FeatureEmbedder
@@ -116,9 +116,7 @@ def main(arguments: list[str]) -> None:
     Args:
         arguments: ``--json`` prints JSON instead of a table.
     """
-    parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    wanted = parser.parse_args(arguments)
+    wanted = options(arguments)
     with tempfile.TemporaryDirectory() as folder:
         found = {size: measure(size, Path(folder)) for size in SIZES}
     if wanted.json:

@@ -1,11 +1,11 @@
 """The world of 0.1 and the default one in one process: largest accelerations, and CPU time of a decision."""
 
-import argparse
 import json
 from time import thread_time
 
 import numpy as np
 
+from benchmarks.options import options
 from codriving.config.compose import compose
 from codriving.datatypes.record import Trajectory
 from codriving.experiment.objects import make_objects
@@ -29,15 +29,12 @@ def largest(trajectory: Trajectory) -> tuple[float, float, float]:
 
 def main(arguments: list[str]) -> None:
     """Drive the same seeds in both worlds by turns, and print a row a scenario."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks --only worlds")
-    parser.add_argument("--episodes", type=int, default=20, help="seeds of each scenario")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    options = parser.parse_args(arguments)
+    wanted = options(arguments, 20)
     for scenario in SCENARIOS:
         found: dict[str, list[tuple[float, float, float]]] = {world: [] for world in WORLDS}
         seconds: dict[str, list[float]] = {world: [] for world in WORLDS}
         made = {world: make_objects(compose([f"scenario={scenario}", suite])) for world, suite in WORLDS.items()}
-        for seed in range(FIRST_SEED, FIRST_SEED + options.episodes):
+        for seed in range(FIRST_SEED, FIRST_SEED + wanted.episodes):
             for world, objects in made.items():
                 environment, method = objects.environment, objects.method
                 state = environment.reset(seed)
@@ -58,7 +55,7 @@ def main(arguments: list[str]) -> None:
                 "lateral": round(float(lateral), 2),
                 "decision_ms": round(1000 * float(np.mean(seconds[world])), 2),
             }
-            print(json.dumps(row) if options.json else _line(row), flush=True)
+            print(json.dumps(row) if wanted.json else _line(row), flush=True)
 
 
 def _line(row: dict[str, str | float]) -> str:
