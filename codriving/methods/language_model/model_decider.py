@@ -101,8 +101,9 @@ class CheckedDecider(ModelDecider):
         self._past.begin_step()
         unclear = [s for s in situations if self.ask_plain or not self._is_plain(s)]
         found = {decision.ego: decision for decision in super().decide(unclear)}
-        if len(unclear) < len(situations):
-            self.model.ledger.count("plain_decisions", len(situations) - len(unclear))
+        for s in situations:
+            if s.scene.ego.id not in found:
+                self.model.ledger.count("single_decisions" if len(s.allowed) == 1 else "plain_decisions")
         return [found.get(s.scene.ego.id) or RuleDecider().decide([s])[0] for s in situations]
 
     def _is_plain(self, situation: Situation) -> bool:

@@ -95,6 +95,19 @@ def test_a_choice_of_one_is_nobodys_decision(told: tuple[Situation, ...]) -> Non
     assert counts["decisions_as_rules"] == sum(action == "SLOWER" for action in rules)
 
 
+def test_a_choice_of_one_that_is_not_asked_for_is_single_and_not_plain(
+    junction: Junction, told: tuple[Situation, ...]
+) -> None:
+    alone = reasoned(junction, sensible).method.act(junction.world(car("CAV9", "south-north", 20, 8))).situations
+    [one] = [s for s in told if len(s.allowed) == 1]
+    ledger = Ledger()
+    model = PromptedModel(ScriptedChat(lambda q: "must not be asked"), load_prompts("informed"), ledger)
+    CheckedDecider(model, False, True).decide((one, *alone))
+    counts = ledger.close_step(0.0)[0]
+    assert counts.get("model_calls", 0) == 0
+    assert (counts["single_decisions"], counts["plain_decisions"]) == (1, 1)
+
+
 def test_what_the_rules_would_have_chosen_is_as_the_rules(told: tuple[Situation, ...]) -> None:
     rules = {s.scene.ego.id: str(RuleDecider().decide([s])[0].action) for s in told}
     counts = decided(told, lambda q: json.dumps({"reason": "", "action": rules[q.subject]}))
