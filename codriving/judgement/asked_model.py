@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, cast
 
 from codriving.datatypes import Judgements
-from codriving.errors import require, require_range
 from codriving.geometry import RoadMap
 from codriving.judgement.contests import Contest
-from codriving.judgement.judge import Asked, Judge, said
+from codriving.judgement.judge import Asked, Judge, said, thresholds
 from codriving.llm import ContestView, JudgementReply, Names, Question, chances, judgement_reply
 
 if TYPE_CHECKING:
@@ -29,12 +28,7 @@ class AskedModel(Judge):
     name, asks_model = "llm", True
 
     def __init__(self, yields_above: float, goes_below: float) -> None:
-        require_range("yields_above", yields_above, 0, 1)
-        require_range("goes_below", goes_below, 0, 1)
-        require(
-            goes_below <= yields_above, f"goes_below must be at most yields_above, got {goes_below}, {yields_above}"
-        )
-        self.thresholds = yields_above, goes_below
+        self.thresholds = thresholds(yields_above, goes_below)
 
     def reset(self, road_map: RoadMap, model: Asked | None) -> None:
         self._model = model

@@ -21,6 +21,7 @@ from codriving.datatypes import (
     TrackedVehicle,
     WorldState,
 )
+from codriving.errors import require, require_range
 from codriving.geometry import RoadMap
 from codriving.judgement.contests import Contest, contests
 from codriving.reasoning import GivesWay, Moment, Perception
@@ -61,6 +62,14 @@ class Judge(HumanJudge, ABC):
 def said(yields: float, reason: str, above: float = 0.5, below: float = 0.5) -> Judgement:
     """Make a judgement of a probability: ``yields`` above one threshold, ``goes`` below another."""
     return Judgement(yields, YIELDS if yields > above else GOES if yields < below else UNCLEAR, reason)
+
+
+def thresholds(above: float, below: float) -> tuple[float, float]:
+    """Check the two thresholds of ``said`` that a user has set."""
+    require_range("yields_above", above, 0, 1)
+    require_range("goes_below", below, 0, 1)
+    require(below <= above, f"goes_below must be at most yields_above, got {below}, {above}")
+    return above, below
 
 
 @dataclass(slots=True)

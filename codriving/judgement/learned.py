@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from codriving.datatypes import Judgement, Judgements
-from codriving.errors import ConfigError, require, require_range
+from codriving.errors import ConfigError, require
 from codriving.geometry import Array
 from codriving.judgement.contests import FEATURES, Contest
-from codriving.judgement.judge import Judge, said
+from codriving.judgement.judge import Judge, said, thresholds
 
 OURS = Path(__file__).with_name("coefficients.json")
 
@@ -35,12 +35,8 @@ class FittedJudge(Judge):
     name = "learned"
 
     def __init__(self, file: Path | None, yields_above: float, goes_below: float) -> None:
-        require_range("yields_above", yields_above, 0, 1)
-        require_range("goes_below", goes_below, 0, 1)
-        require(
-            goes_below <= yields_above, f"goes_below must be at most yields_above, got {goes_below}, {yields_above}"
-        )
-        self.file, self.thresholds = OURS if file is None else file.expanduser(), (yields_above, goes_below)
+        self.thresholds = thresholds(yields_above, goes_below)
+        self.file = OURS if file is None else file.expanduser()
         self.weights, self.bias = load(self.file)
 
     def files(self) -> Mapping[str, Path]:

@@ -72,6 +72,8 @@ def test_what_is_low_or_no_answer_leaves_the_driver_first(chance: object, first:
         ({"p1": {"yields": 0.4}, "p3": 0.1}, {"p1": 0.4}),
         ({"p1": 1.5, "p2": "HDV1"}, {}),
         ({"p1": True}, {"p1": 0.9}),
+        ({"p1": 10**400, "p2": 0.5}, {"p2": 0.5}),
+        ({"p1": "nan", "p2": float("inf")}, {}),
         ([0.4], {}),
     ],
 )

@@ -61,6 +61,13 @@ def test_ours_was_fitted_on_seeds_of_trainings_and_weighs_every_number() -> None
     assert FittedJudge(None, 0.5, 0.5).files() == {"coefficients": OURS}
 
 
+def test_thresholds_do_not_cross_and_are_probabilities() -> None:
+    with pytest.raises(ConfigError, match=r"goes_below must be at most yields_above, got 0.6, 0.4"):
+        FittedJudge(None, 0.4, 0.6)
+    with pytest.raises(ConfigError, match=r"yields_above must be 0 to 1, got 1.1"):
+        FittedJudge(None, 1.1, 0.6)
+
+
 @pytest.mark.parametrize(
     ("changed", "why"),
     [

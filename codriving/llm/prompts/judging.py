@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from math import isfinite
 from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, BeforeValidator, WithJsonSchema, create_model, model_validator
@@ -62,7 +61,7 @@ def _probability(value: Any) -> float | None:  # noqa: ANN401 - anything that th
             value = float(text.rstrip("%")) / (100 if text.endswith("%") else 1)
         except ValueError:
             return None
-    return float(value) if isinstance(value, int | float) and isfinite(value) and 0 <= value <= 1 else None
+    return float(value) if isinstance(value, int | float) and 0 <= value <= 1 else None
 
 
 Chance = Annotated[
