@@ -20,7 +20,7 @@ from codriving.reasoning import LONGITUDINAL, SIDES, Moment, SafetyInput, forced
 
 AGO = 1.0  # How long ago the speed was with which that of now is compared [s]
 
-KEPT = 3.0  # How long speeds are remembered [s]
+KEPT = 1.5  # Older speeds are not told as those of that time [s]
 
 FOLLOWS = 40.0  # A vehicle follows another one within this free distance [m]
 

@@ -52,6 +52,17 @@ def test_speed_of_a_second_ago_is_that_and_no_older_one(junction: Junction) -> N
     assert found.speed_before == 8.5
 
 
+def test_speed_of_a_driver_that_was_long_unseen_is_not_told_as_that_of_a_second_ago(junction: Junction) -> None:
+    cars = car("CAV1", "south-north", 80, 8, 9), car("HDV1", "east-west", 76, 8)
+    for last, told in ((0.5, 9.0), (0.4, None)):
+        briefing = Briefing()
+        for time, speed in ((last, 9.0), (2.0, 8.0)):
+            briefing.note(junction.thoughts(cars[0], replace(cars[1], speed=speed)).moment(time))
+        given = junction.thoughts(*cars).safety_input("CAV1")
+        [found] = briefing.outlook(replace(given, moment=replace(given.moment, time=2.0))).humans
+        assert found.speed_before == told
+
+
 def test_actions_tell_when_the_zone_is_reached_at_their_speed(junction: Junction) -> None:
     thoughts = junction.thoughts(car("CAV1", "south-north", 60, 6, 6), car("CAV2", "east-west", 50, 6, 6))
     given = thoughts.safety_input("CAV1")
