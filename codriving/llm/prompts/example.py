@@ -79,6 +79,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
                 "CAV2",
                 (3.6, 0.3),
                 (True, False),
+                (5.1, 0.0),
             ),
             PairView(
                 "p2",
@@ -92,6 +93,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
                 "",
                 (0.3, 2.2),
                 (False, True),
+                (0.0, 3.9),
             ),
         ],
         "fixed": [FixedView("CAV3", "CAV1")],

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import inf, isfinite
 
 from codriving.datatypes import (
@@ -45,20 +45,9 @@ class MeetingView:
 
 
 @dataclass(frozen=True, slots=True)
-class HumanView:
-    """A human driver who may get in the way of the CAV."""
+class HumanView(HumanOutlook):
+    """The same with what was judged of the driver, and why; empty where only the rules of the road say."""
 
-    id: str
-    speed: float
-    speed_before: float | None
-    acceleration: float | None
-    standing: float
-    turns: tuple[str, ...]
-    first_by_rule: str
-    gives_way: str
-    braking: float
-    behind: str
-    gap: float
     judgement: str
 
 
@@ -158,15 +147,14 @@ def humans(situation: Situation, names: Names, mentioned: set[str]) -> list[Huma
     """Return the human drivers that are mentioned, with what was judged of them."""
     known: Sequence[HumanOutlook] = () if situation.outlook is None else situation.outlook.humans
     judged = {name: f"{j.answer}, since {j.reason}" for name, j in situation.judgements.items()}
-    return [
-        HumanView(
-            names(h.id), h.speed, h.speed_before, h.acceleration, h.standing, tuple(dict.fromkeys(h.turns)),
-            h.first_by_rule, h.gives_way, h.braking, names(h.behind) if h.behind else "", h.gap,
-            names.sentence(judged.get(h.id, "")),
-        )
-        for h in known
-        if h.id in mentioned
-    ]  # fmt: skip
+    found = []
+    for h in known:
+        if h.id in mentioned:
+            values = {field.name: getattr(h, field.name) for field in fields(h)}
+            values |= {"id": names(h.id), "behind": names(h.behind) if h.behind else ""}
+            values |= {"turns": tuple(dict.fromkeys(h.turns)), "judgement": names.sentence(judged.get(h.id, ""))}
+            found.append(HumanView(**values))
+    return found
 
 
 def choices(situation: Situation, groups: Sequence[Sequence[int]], names: Names) -> list[ChoiceView]:

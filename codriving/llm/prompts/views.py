@@ -110,7 +110,7 @@ class EntrantView:
 
 @dataclass(frozen=True, slots=True)
 class PairView:
-    """Two CAVs of which the order is open; ``name`` is ``p1``, ``p2``, ..., most urgent first."""
+    """Two CAVs of which the order is open; ``name`` is ``p1``, ``p2``, ..., most urgent first, or made of theirs."""
 
     name: str
     one: str
@@ -123,10 +123,7 @@ class PairView:
     agreed: str
     earliest: tuple[float, float]  # Earliest times at which they can be at the zone
     can_stop: tuple[bool, bool]  # Whether they can still stop before it
-    waits: tuple[float, float] = (
-        0.0,
-        0.0,
-    )  # How long the other one waits if the one goes first, and the other way round
+    waits: tuple[float, float]  # How long the other one waits if the one goes first, and the other way round
 
 
 @dataclass(frozen=True, slots=True)
