@@ -2,6 +2,7 @@
 
 import io
 import re
+import warnings
 from collections.abc import Sequence
 from itertools import cycle
 from typing import TYPE_CHECKING
@@ -44,7 +45,7 @@ def figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
     Returns:
         Title and SVG of each figure.
     """
-    rows = rows[:MOST]
+    rows = [(_text(name), cell) for name, cell in rows[:MOST]]
     found = [("How episodes ended", _endings(rows))]
     with_pets = [(name, [pet for e in cell.completed for pet in e.pets]) for name, cell in rows]
     if any(pets for _, pets in with_pets):
@@ -53,6 +54,11 @@ def figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
     if len(placed) > 1:
         found.append(("Velocity against severe PETs", _trade_off(placed)))
     return found
+
+
+def _text(name: str) -> str:
+    """Write a name so that none is read as a formula, and no legend leaves it out for how it begins."""
+    return f" {name}".replace("$", r"\$") if name.startswith("_") else name.replace("$", r"\$")
 
 
 def _endings(rows: Sequence[tuple[str, CellResults]]) -> str:
@@ -123,7 +129,12 @@ def _svg(figure: "Figure", axis: "Axes", name: str, entries: int) -> str:
     figure.set_figheight(figure.get_figheight() + 0.26 * -(-entries // columns))
     figure.legend(loc="outside lower left", ncols=columns, frameon=False, labelcolor=_INK, fontsize=9)
     out = io.StringIO()
-    with rc_context({"svg.fonttype": "none", "svg.hashsalt": name, "text.color": _INK, "hatch.linewidth": 0.6}):
+    with (
+        rc_context({"svg.fonttype": "none", "svg.hashsalt": name, "text.color": _INK, "hatch.linewidth": 0.6}),
+        warnings.catch_warnings(),
+    ):
+        # Its own font lacks most scripts of the world; a browser takes another one.
+        warnings.filterwarnings("ignore", r"Glyph \d+", UserWarning)
         figure.savefig(out, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     return _for_a_page(out.getvalue(), name)
 

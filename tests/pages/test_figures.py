@@ -59,3 +59,11 @@ def test_the_same_bytes_each_time(drawn: list[tuple[str, str]]) -> None:
 
 def test_one_row_has_no_trade_off() -> None:
     assert [name for name, _ in figures([("hit", cell(ending=Ending.COLLISION))])] == ["How episodes ended"]
+
+
+@pytest.mark.parametrize("name", ["$x^{$", r"a \$1$2$", "_first", "\u6d4b\u8bd5 \u0641\u0627\u0631"])
+def test_a_name_is_written_as_it_is(name: str) -> None:
+    found = figures([(name, cell(1.0, 4.0)), ("other", cell(2.0))])
+    assert len(found) == 3
+    for _, svg in found:
+        assert name in [text.strip() for text in ElementTree.fromstring(svg).itertext()]
