@@ -55,7 +55,7 @@ def run_report(runs: Sequence[Path], options: ReportOptions) -> str:
 
 
 def _target(out: Path | None, folders: Sequence[Path]) -> Path:
-    name = NAME if len(folders) == 1 else f"report-{'-'.join(folder.name for folder in folders)}.html"
+    name = NAME if len(folders) == 1 else f"report-{'-'.join(folder.resolve().name for folder in folders)}.html"
     path = out / name if out and out.is_dir() else out or folders[0] / name
     if path.suffix.lower() not in (".html", ".htm"):
         raise ConfigError(f"--out ends in {path.suffix or 'nothing'}, but a page is .html; name it so")
