@@ -93,7 +93,8 @@ def _json(value: object) -> str:
 
 
 def _packed(value: object) -> str:
-    text = json.dumps(value, ensure_ascii=False, separators=(",", ":"))
+    # In ASCII, for a text may hold half of a surrogate pair, which has no UTF-8.
+    text = json.dumps(value, separators=(",", ":"))
     return base64.b64encode(zlib.compress(text.encode(), 9)).decode()
 
 

@@ -49,9 +49,7 @@ def test_runs_of_one_name_are_told_apart(run: Path, tmp_path: Path) -> None:
     assert "every decision is the same while both are driven" in text
 
 
-def test_a_page_of_several_is_called_by_their_names(
-    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_page_of_several_is_called_by_their_names(run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     here, other = tmp_path / "here", tmp_path / "other"
     shutil.copytree(run, here)
     shutil.copytree(run, other)

@@ -16,6 +16,7 @@ from codriving.experiment.stored import find_episode, read_episode
 from codriving.runs.episode_folder import Timing, read_decisions, write_episode
 
 HOSTILE = '</script><script>alert(1)</script><img src="http://x.test/a" onerror=alert(2)>'
+HALF = HOSTILE + "\ud83d"  # As a file of JSON may have it, in ASCII
 
 
 class Elements(HTMLParser):
@@ -89,6 +90,15 @@ def test_twenty_episodes_stay_below_5_mb(page: Path) -> None:
     assert 3 * 20 * max(map(len, packed)) < 5_000_000
 
 
+def _halve(folder: Path) -> None:
+    """Put half of a surrogate pair into each reason."""
+    path, sums = folder / "decisions.jsonl", folder / "SHA256SUMS"
+    before = path.read_bytes()
+    path.write_bytes(before.replace(b'onerror=alert(2)>"', b'onerror=alert(2)>\\ud83d"'))
+    named = [hashlib.sha256(content).hexdigest() for content in (before, path.read_bytes())]
+    sums.write_text(sums.read_text(encoding="utf-8").replace(*named), encoding="utf-8")
+
+
 def test_what_a_run_says_stays_text(two_runs: tuple[Path, Path], tmp_path: Path) -> None:
     episode = find_episode(two_runs[0], None, 20000)
     record, trajectory = read_episode(episode)
@@ -102,6 +112,7 @@ def test_what_a_run_says_stays_text(two_runs: tuple[Path, Path], tmp_path: Path)
     manifest["versions"]["codriving"] = HOSTILE
     (run / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
     write_episode(folder, record, trajectory, lines, Timing(1.0, 1, None, None), transcript=[asked])
+    _halve(folder)
     run_report([run], ReportOptions(out=tmp_path / "evil.html"))
     text = (tmp_path / "evil.html").read_text(encoding="utf-8")
     assert "<img" not in text
@@ -112,7 +123,7 @@ def test_what_a_run_says_stays_text(two_runs: tuple[Path, Path], tmp_path: Path)
         None,
     ]
     first = episodes_in(text)["intersection-codriving-full/20000"]["steps"][0]["cavs"]["CAV1"]
-    assert first["r"] == HOSTILE
+    assert first["r"] == HALF
     assert ["answer", HOSTILE] in [text for part in first["s"] for text in part.get("t", ())]
 
 
