@@ -55,6 +55,8 @@ def model_points(base: Sequence[str], overrides: Sequence[str], config_dir: Path
     """
     epochs, overrides = _epochs(overrides)
     keys = [parse(token).key_or_group for token in overrides]
+    if epochs > 1 and f"{LLM}.{EPOCH}" in keys:
+        raise ConfigError(f"{LLM}.{EPOCH} is what {EPOCHS}={epochs} varies; leave one of them out")
     named = [token for token, key in zip(overrides, keys, strict=True) if key == LLM]
     given = [point.overrides[0].partition("=")[2] for token in named for point in expand([token], config_dir)]
     names = [name for name in dict.fromkeys(given) if name]

@@ -49,6 +49,10 @@ def test_settings_hold_for_the_models_that_have_them() -> None:
     ]
 
 
+def test_one_epoch_alone_may_be_named() -> None:
+    assert llms("llm=first", "llm.epoch=4", "epochs=1") == [["llm.epoch=4", "llm=first"]]
+
+
 def test_several_values_of_other_keys_are_settings() -> None:
     assert len(llms("llm=first,offline", "suite=standoff,blind")) == 4
 
@@ -62,6 +66,8 @@ def test_several_values_of_other_keys_are_settings() -> None:
         (["llm=first", "epochs=0"], "epochs must be a whole number of 1 to 100, got '0'"),
         (["llm=first", "epochs=1,2"], "epochs must be a whole number of 1 to 100, got '1,2'"),
         (["llm=first", "epochs=101"], "epochs must be a whole number of 1 to 100, got '101'"),
+        (["llm=first", "llm.epoch=2", "epochs=3"], "llm.epoch is what epochs=3 varies; leave one of them out"),
+        (["llm=first", "+llm.epoch=2", "epochs=3"], "llm.epoch is what epochs=3 varies; leave one of them out"),
         (["llm=first", "epochs="], "epochs must be a whole number of 1 to 100, got ''"),
     ],
 )
