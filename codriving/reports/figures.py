@@ -28,6 +28,8 @@ _SETTINGS = {
     "grid.color": "#d9dbdf",
     "grid.linewidth": 0.6,
     "axes.axisbelow": True,
+    # A label of a model may hold dollar signs, and is no formula.
+    "text.parse_math": False,
     # Without it the names inside an SVG are drawn by lot.
     "svg.hashsalt": "codriving",
 }

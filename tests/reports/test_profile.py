@@ -90,3 +90,8 @@ def test_nothing_lies_under_the_legend_and_nothing_is_cut(
     assert not any(legend.overlaps(box) for box in boxes)
     width, height = figure.bbox.size + 1
     assert all(b.x0 >= -1 and b.y0 >= -1 and b.x1 <= width and b.y1 <= height for b in (legend, *boxes))
+
+
+def test_a_name_with_dollar_signs_is_no_formula(make: Make) -> None:
+    files = profile_figure([("$x_{$", [row(make, "fcfs", 4, True)])], "standard")
+    assert "<!-- $x_{$ -->" in files["profile.svg"].decode()
