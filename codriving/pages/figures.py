@@ -45,7 +45,16 @@ def figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
     Returns:
         Title and SVG of each figure.
     """
-    rows = [(_text(name), cell) for name, cell in rows[:MOST]]
+    import matplotlib
+
+    with matplotlib.rc_context():
+        # As it is shipped, whatever its user has set; and a name with dollar signs is no formula.
+        matplotlib.rcdefaults()
+        matplotlib.rcParams["text.parse_math"] = False
+        return _figures([(_listed(name), cell) for name, cell in rows[:MOST]])
+
+
+def _figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
     found = [("How episodes ended", _endings(rows))]
     with_pets = [(name, [pet for e in cell.completed for pet in e.pets]) for name, cell in rows]
     if any(pets for _, pets in with_pets):
@@ -56,9 +65,9 @@ def figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
     return found
 
 
-def _text(name: str) -> str:
-    """Write a name so that none is read as a formula, and no legend leaves it out for how it begins."""
-    return f" {name}".replace("$", r"\$") if name.startswith("_") else name.replace("$", r"\$")
+def _listed(name: str) -> str:
+    """Write a name so that no legend leaves it out, as one that begins with an underscore."""
+    return f" {name}" if name.startswith("_") else name
 
 
 def _endings(rows: Sequence[tuple[str, CellResults]]) -> str:

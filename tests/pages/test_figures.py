@@ -3,6 +3,7 @@
 import re
 from xml.etree import ElementTree
 
+import matplotlib
 import pytest
 
 from codriving.datatypes.record import Ending, EpisodeRecord, Outcome, Pet, Score, TravelScore
@@ -67,3 +68,9 @@ def test_a_name_is_written_as_it_is(name: str) -> None:
     assert len(found) == 3
     for _, svg in found:
         assert name in [text.strip() for text in ElementTree.fromstring(svg).itertext()]
+
+
+def test_what_a_user_has_set_for_matplotlib_changes_nothing(drawn: list[tuple[str, str]]) -> None:
+    with matplotlib.rc_context({"font.size": 20, "axes.grid": True, "lines.linewidth": 5}):
+        again = figures([("one <b>", cell(1.0, 4.0)), ("other", cell(2.0)), ("hit", cell(ending=Ending.COLLISION))])
+    assert again == drawn
