@@ -1,6 +1,7 @@
 """The language model as a judge: asked before order and actions, once a step, and read with tolerance."""
 
 import json
+import re
 
 import pytest
 from asked import Scripted
@@ -54,6 +55,24 @@ def test_all_pairs_are_asked_about_at_once_and_before_all_else(junction: Junctio
     judged = deliberation.situations[0].judgements["HDV1"]
     assert (judged.yields, judged.answer, judged.reason) == (0.9, "yields", "judged by the model: it brakes")
     assert deliberation.counts["model_calls"] == len(chat.questions)
+
+
+def test_a_question_that_is_too_long_keeps_the_more_urgent_half(junction: Junction) -> None:
+    method, chat = asked(junction, 0.9)
+    method.act(
+        junction.world(
+            car("CAV1", "south-north", 80.0, 8.0, 9.0),
+            car("CAV2", "north-south", 84.0, 8.0, 9.0),
+            car("HDV1", "east-west", 76.0, 8.0),
+        )
+    )
+    shorter = chat.questions[0].shorter()
+    assert shorter is not None
+    for question, cavs in ((chat.questions[0], ["CAV2", "CAV1"]), (shorter, ["CAV2"])):
+        text = question.messages[-1].content
+        assert re.findall(r"would HDV1 let (\w+) pass first", text) == cavs
+        assert [name for name in question.schema.model_fields if name != "reason"] == ["p1", "p2"][: len(cavs)]
+    assert shorter.shorter() is None
 
 
 @pytest.mark.parametrize(("chance", "first"), [(0.1, "HDV1"), (None, "HDV1"), ("nobody knows", "HDV1")])

@@ -1,5 +1,6 @@
 """What was judged against what was driven, on tracks made by hand."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ from worlds import Junction
 
 from codriving.datatypes.record import Track, Trajectory
 from codriving.datatypes.world import Kind
-from codriving.judgement.hindsight import let_pass, look_back
+from codriving.judgement.hindsight import entries, let_pass, look_back
 
 
 def track(junction: Junction, name: str, route: str, start: float, speed: float) -> Track:
@@ -45,6 +46,23 @@ def test_one_judgement(start: float, said: tuple[float, str], expected: tuple[fl
     assert tuple(found.values()) == pytest.approx(expected)
     names = ["judged", "judged_decided", "judged_right", "judged_squares", "yields_but_went", "goes_but_yielded"]
     assert list(found) == [*names, "seconds_lost"]
+
+
+def test_a_cav_is_held_up_once_a_step_by_any_error(junction: Junction) -> None:
+    """All drivers came later, as was foretold of the last one alone."""
+    tracks = [track(junction, name, "east-west", 60.0, 8.0) for name in ("HDV1", "HDV2", "HDV3")]
+    driven = Trajectory(0.1, (track(junction, "CAV1", "south-north", 80.0, 8.0), *tracks))
+    said = {"HDV1": (0.2, "goes"), "HDV2": (0.2, "goes"), "HDV3": (0.9, "yields")}
+    assert look_back([line(0.0, **said), line(0.5)], driven, junction.road_map)["seconds_lost"] == 0.5
+
+
+def test_entries_are_when_the_zone_begins_also_on_a_track_that_begins_later(junction: Junction) -> None:
+    cav, human = track(junction, "CAV1", "south-north", 80.0, 8.0), track(junction, "HDV1", "east-west", 60.0, 8.0)
+    human = replace(human, first_step=50)
+    places = {t.id: start + 0.8 * np.arange(101) for t, start in ((cav, 80.0), (human, 60.0))}
+    [found] = entries(cav, human, places, junction.road_map, 0.1)
+    [zone] = junction.road_map.zones("south-north", "east-west")
+    assert found == pytest.approx(((zone.entry_i - 80) / 8 + 0.05, 5 + (zone.entry_j - 60) / 8 + 0.05), abs=0.05)
 
 
 def test_nothing_is_counted_where_nothing_was_judged(junction: Junction) -> None:

@@ -1,6 +1,7 @@
 """What is asked about human drivers, and that the answer is used within the safety check."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import nan
 
 import pytest
@@ -14,7 +15,7 @@ from codriving.datatypes.situation import ReasonedDeliberation, Situation
 from codriving.datatypes.world import Action, WorldState
 from codriving.geometry.road_map import RoadMap
 from codriving.judgement.contests import Contest
-from codriving.judgement.judge import Asked, Judge
+from codriving.judgement.judge import Asked, Judge, relying_on
 from codriving.methods.codriving import CoDriving
 from codriving.methods.ordered import Ordered
 
@@ -91,6 +92,14 @@ def test_what_is_unclear_missing_or_no_answer_is_left_to_the_rules(junction: Jun
             method = made("method=codriving")
             method.rely_on(Fixed(given))
             assert seen(method, junction, world).order == ruled
+
+
+def test_a_driver_in_the_zone_has_to_leave_it_whatever_was_said(junction: Junction) -> None:
+    thoughts = junction.thoughts(car("CAV1", "east-west", 80.0, 8.0, 9.0), car("HDV1", "south-north", 76.0, 8.0))
+    c, human = thoughts.conflicts["CAV1"][0], thoughts.scenes["CAV1"].vehicles()["HDV1"]
+    inside = replace(c, distances=(c.distances[0], 0.0))
+    says = relying_on({("CAV1", "HDV1"): YIELDS}, lambda c, human, road_map: "by rule")
+    assert [says(each, human, junction.road_map) for each in (c, inside)] == ["it brakes", "by rule"]
 
 
 def test_the_answer_changes_what_the_safety_check_allows(junction: Junction) -> None:
