@@ -87,8 +87,12 @@ class Negotiator(Party):
         self._problem = problem
         self._held = {sender: a for sender, a in self._held.items() if a.holds(moment.time)}
         self._promised = {key: promise for key, promise in self._promised.items() if moment.time < promise.until}
+        for (sender, pair), promise in self._promised.items():
+            self._withdraw(sender, promise.number, [pair], problem, moment.time)
         for agreement in self._held.values():
-            self._withdraw(agreement, problem, moment.time)
+            if not agreement.authority:
+                pairs = [(p.first, p.second) for p in agreement.pairs]
+                self._withdraw(agreement.sender, (agreement.number, agreement.round), pairs, problem, moment.time)
         if self._coordinates(moment, problem):
             self._heard[self.settings.party] = moment.time
             self._say(self._proposals.step(moment, problem))
@@ -160,14 +164,15 @@ class Negotiator(Party):
                 self._promised[proposal.sender, (p.first, p.second)] = _Promise(about, now, until, p.reason)
         return Response(me, now, proposal.number, proposal.round, tuple(pairs), proposal.sender, not pairs)
 
-    def _withdraw(self, agreement: OrderAgreement, problem: Problem, now: float) -> None:
+    def _withdraw(
+        self, sender: str, number: tuple[int, int], pairs: Sequence[Pair], problem: Problem, now: float
+    ) -> None:
         """Tell the one that coordinates what cannot be kept any more."""
         me = self.settings.party
-        turned = [(p.second, p.first) for p in agreement.pairs if me in (p.first, p.second)]
-        pairs = tuple(Precedence(*pair, why) for pair in turned if (why := fixed(problem.instance, *pair)))
-        if pairs and agreement.sender != me and not agreement.authority:
-            about = agreement.number, agreement.round, pairs
-            self._out.append(Response(me, now, *about, agreement.sender, False))
+        turned = [(second, first) for first, second in pairs if me in (first, second)]
+        instead = tuple(Precedence(*pair, why) for pair in turned if (why := fixed(problem.instance, *pair)))
+        if instead and sender != me:
+            self._out.append(Response(me, now, *number, instead, sender, False))
 
     def _coordinates(self, moment: Moment, problem: Problem) -> bool:
         """Whether this party is the one that coordinates.

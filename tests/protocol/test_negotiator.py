@@ -190,3 +190,13 @@ def test_one_without_a_conflict_ahead_coordinates_no_more(junction: Junction) ->
     made = Negotiator(coordination("CAV1", by="cav"), RuleCoordinator(False))
     look(junction, made, *there, time=0.5)
     assert len(made.speak()) == 1
+
+
+def test_a_promise_that_can_no_longer_be_kept_is_taken_back(junction: Junction) -> None:
+    made = party(junction, "CAV2", *EARLY)
+    assert answer(made, "CAV1 CAV2").accepted
+    look(junction, made, *LATE, time=0.5)
+    [said] = made.speak()
+    assert isinstance(said, Response)
+    assert (said.to, said.number, said.round, said.accepted) == ("RSU", 1, 1, False)
+    assert [(p.first, p.second) for p in said.pairs] == [("CAV2", "CAV1")]

@@ -50,8 +50,7 @@ class Tracking:
                 s, _ = self.road_map.project(*told)
                 self._shared[told] = ((intent.route, s), *self._covered(intent.route, s, seen.x, seen.y))
             return self._shared[told]
-        spot: Spot = (seen.x, seen.y, seen.heading, 0.0)
-        way = 0.0
+        spot, way = (seen.x, seen.y, seen.heading, 0.0), 0.0
         if seen.told is not None and seen.told.since is not None:
             # Which ways it may have taken since is told by where it was.
             spot, way = (*seen.told.since, seen.told.aside), seen.speed * seen.told.age
@@ -79,10 +78,13 @@ class Tracking:
     def _fitting(self, x: float, y: float, heading: float | None, aside: float) -> Places:
         """Return the routes near a place, without those that fit position and heading clearly worse than the best."""
         near = self.road_map.nearby.routes(x, y, heading, REACH + aside)
+        off = [aside * k / 10 for k in range(-10, 11)] if aside else [0.0]  # Along the route it may be off as well
         misfits = []
         for route, s in near:
-            px, py, along = self.road_map.paths[route].place(s)
-            turned = 0.0 if heading is None else acos(min(1.0, max(-1.0, cos(heading - along))))
+            path, turned = self.road_map.paths[route], 0.0
+            px, py, _ = path.place(s)
+            if heading is not None:
+                turned = acos(min(1.0, max(-1.0, *(cos(heading - path.place(s + far)[2]) for far in off))))
             misfits.append(max(hypot(px - x, py - y) - aside, 0.0) / SIDE + turned / TURN)
         return tuple(p for p, misfit in zip(near, misfits, strict=True) if misfit <= min(misfits) + CLEARLY)
 

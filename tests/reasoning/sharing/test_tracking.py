@@ -41,10 +41,10 @@ def test_possible_routes_narrow_as_a_driver_turns(route: str, junction: Junction
     assert before == {route}
 
 
-@pytest.mark.parametrize("route", ["south-west", "south-north"])
+@pytest.mark.parametrize("route", ["south-west", "south-north", "south-east"])
 @pytest.mark.parametrize("wrong", [(3.0, 3.0), (3.0, -3.0), (-3.0, 3.0), (-3.0, -3.0)])
 def test_noise_of_messages_rules_no_true_route_out(junction: Junction, route: str, wrong: tuple[float, float]) -> None:
-    """A place that is 4.2 m off may lie beside every route, or on another one."""
+    """A place that is 4.2 m off may lie beside every route, on another one, or where a turn has not begun."""
     tracking = Tracking(junction.road_map)
     for place in range(60, 123, 3):
         seen = perceived(junction, route, float(place))
