@@ -46,7 +46,7 @@ FIRST = {
     "cda": ("status_sharing", "intent_sharing", "full", "agreement_seeking", "prescriptive"),
     "llm": ("offline", "first", "random"),
     "limits": ("none", "road"),
-    "drivers": ("simulator", "attentive", "mixed", "rough"),
+    "drivers": ("simulator", "attentive", "mixed", "rough", "site"),
     "flow": ("none", "steady"),
     "v2x": ("perfect", "good", "urban", "poor"),
     "judgement": ("road_rules", "rules_noted", "earliest", "learned", "llm", "never", "always"),

@@ -92,6 +92,11 @@ class DriverMix(Drivers):
         self._profile(1.0, 1.0, 1.0)
 
     @property
+    def weights(self) -> Mapping[str, float]:
+        """Weight of each style among those who drive here."""
+        return self.shares
+
+    @property
     def acceleration(self) -> float:
         """Hardest acceleration of any driver that the mix can hold [m/s2]."""
         return max(self.styles[name].acceleration[1] for name, share in self.shares.items() if share > 0)
@@ -132,10 +137,11 @@ class DriverMix(Drivers):
         )
 
     def _kind(self, chance: float) -> str:
-        left = chance * sum(self.shares.values())
-        names = [name for name, share in self.shares.items() if share > 0]
+        shares = self.weights
+        left = chance * sum(shares.values())
+        names = [name for name, share in shares.items() if share > 0]
         for name in names:
-            left -= self.shares[name]
+            left -= shares[name]
             if left < 0:
                 return name
         return names[-1]
