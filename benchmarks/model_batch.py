@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from time import perf_counter, process_time
 
+import codriving
 from benchmarks.options import options
 from benchmarks.served import served
-from codriving.commands import run_frames
 from codriving.runs.episode_folder import read_timing
 
 EPISODES, LATENCY = 20, 1.0
@@ -33,7 +33,7 @@ def drive(tokens: Sequence[str], output: Path, name: str, first: int, episodes: 
     """
     before, cpu_before = perf_counter(), process_time()
     asked = [f"seed={first}", f"episodes={episodes}", f"workers={episodes}", f"output={output}", f"run={name}"]
-    results = run_frames(*tokens, *asked)
+    results = codriving.run(*tokens, *asked)
     return results.folder, perf_counter() - before, process_time() - cpu_before
 
 

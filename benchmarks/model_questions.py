@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+import codriving
 from benchmarks.options import options
 from benchmarks.served import served
-from codriving.commands import run_frames
 from codriving.config.choices import choices
 from codriving.llm.prompts.render import SETS
 
@@ -78,7 +78,7 @@ def measure(scenario: str, tokens: Callable[[str], int], model: Sequence[str], e
     """
     asked = [f"scenario={scenario}", f"scenario.cavs={CAVS}", f"seed={FIRST_SEED}", f"episodes={episodes}"]
     with tempfile.TemporaryDirectory() as output:
-        folder = run_frames(*asked, *model, f"output={output}", "run=asked").folder
+        folder = codriving.run(*asked, *model, f"output={output}", "run=asked").folder
         episodes = list(folder.glob("episodes/*/*"))
         decisions = sum(json.loads((path / "record.json").read_text())["decisions"] for path in episodes)
         texts = [file.read_text() for path in episodes if (file := path / "transcript.jsonl").exists()]

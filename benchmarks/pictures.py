@@ -6,8 +6,8 @@ from fractions import Fraction
 from pathlib import Path
 from time import perf_counter, process_time
 
+import codriving
 from benchmarks.options import options
-from codriving.commands import run_frames
 from codriving.config.choices import choices
 from codriving.experiment.stored import find_episode, read_film, road_of
 
@@ -26,7 +26,7 @@ def measure(scenario: str, folder: Path) -> dict[str, float]:
         Frames a second of drawing and of the whole, and the size of the film [MB], for each scale.
     """
     tokens = [f"scenario={scenario}", "episodes=1", f"scenario.time_limit={SECONDS}", "launcher=serial"]
-    results = run_frames(*tokens, f"output={folder}", f"run={scenario}")
+    results = codriving.run(*tokens, f"output={folder}", f"run={scenario}")
     found: dict[str, float] = {}
     episode = find_episode(results.folder, None, None)
     for scale in SCALES:

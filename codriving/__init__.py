@@ -1,58 +1,23 @@
 """Interactive and learnable cooperative driving, from a seed to the paper's tables."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from codriving.version import __version__
 
 if TYPE_CHECKING:
-    from codriving.commands import Comparison, Results
+    from codriving.api import ablate, compare, learn, load, run, score
     from codriving.gym import ParallelDriving
 
-__all__ = ["__version__", "compare", "parallel_env", "run"]
+__all__ = ["__version__", "ablate", "compare", "learn", "load", "parallel_env", "run", "score"]
 
 
-def run(*overrides: str, config_dir: str | Path | None = None) -> "Results":
-    """Drive a seeded batch, as ``codriving run`` does, and return its tables as data frames.
+def __getattr__(name: str) -> object:
+    """Import a call with the first use of its name: what is behind them takes a second to import."""
+    if name in __all__:
+        from codriving import api
 
-    Args:
-        *overrides: ``key=value`` tokens, for instance ``"scenario=intersection", "episodes=5"``.
-
-    Returns:
-        ``episodes`` and ``summary`` as pandas data frames, and the run ``folder``.
-
-    Raises:
-        UserError: If the config or the run folder cannot be used.
-
-    Example:
-        >>> results = codriving.run("scenario=intersection", "episodes=5")  # doctest: +SKIP
-        >>> results.summary[["success_rate", "velocity_mean"]]  # doctest: +SKIP
-    """
-    from codriving.commands import run_frames
-
-    return run_frames(*overrides, config_dir=config_dir)
-
-
-def compare(table: str, *overrides: str, config_dir: str | Path | None = None) -> "Comparison":
-    """Drive every method of the paper on the same seeds, as ``codriving compare`` does, and return the tables.
-
-    Args:
-        table: ``"baselines"``, ``"single-vehicle"``, ``"all"`` or ``"load"``.
-        *overrides: ``key=value`` tokens; ``"method=mine"`` adds a method of your own.
-
-    Returns:
-        ``table``, ``episodes`` and ``summary`` as pandas data frames, and the run ``folder``.
-
-    Raises:
-        UserError: If the table, the config or the run folder cannot be used.
-
-    Example:
-        >>> results = codriving.compare("baselines", "episodes=20")  # doctest: +SKIP
-        >>> results.table[["method", "success_rate", "mcnemar_p"]]  # doctest: +SKIP
-    """
-    from codriving.commands import compare_frames
-
-    return compare_frames(table, *overrides, config_dir=config_dir)
+        return getattr(api, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDriving":  # noqa: ANN401 - any setting

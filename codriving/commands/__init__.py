@@ -7,39 +7,39 @@ if TYPE_CHECKING:
     from codriving.commands.ablation import ABLATE
     from codriving.commands.bounds import BoundOptions, run_bound
     from codriving.commands.check import run_check
-    from codriving.commands.compare import Comparison, compare_frames, comparison_command
+    from codriving.commands.compare import comparison_command
     from codriving.commands.export import ExportOptions, run_export
     from codriving.commands.join import JoinOptions, run_join
-    from codriving.commands.learn import run_learn
+    from codriving.commands.learn import Lessons, run_learn
     from codriving.commands.memory_build import BUILD
     from codriving.commands.memory_pages import merge_page, search_page, show_page
     from codriving.commands.replay import ReplayOptions, run_replay
     from codriving.commands.report import ReportOptions, run_report
-    from codriving.commands.run import RUN, Results, run_command, run_frames
-    from codriving.commands.score import ScoreOptions, run_score
+    from codriving.commands.run import RUN, Command, run_command
+    from codriving.commands.score import Scored, ScoreOptions, run_score, score_files
     from codriving.commands.stress import stress_command
 
 __all__ = [
-    "ABLATE", "BUILD", "RUN", "BoundOptions", "Comparison", "ExportOptions", "JoinOptions", "ReplayOptions",
-    "ReportOptions", "Results", "ScoreOptions", "compare_frames", "comparison_command", "merge_page", "run_bound",
-    "run_check", "run_command", "run_export", "run_frames", "run_join", "run_learn", "run_replay", "run_report",
-    "run_score", "search_page", "show_page", "stress_command",
+    "ABLATE", "BUILD", "RUN", "BoundOptions", "Command", "ExportOptions", "JoinOptions", "Lessons", "ReplayOptions",
+    "ReportOptions", "ScoreOptions", "Scored", "comparison_command", "merge_page", "run_bound", "run_check",
+    "run_command", "run_export", "run_join", "run_learn", "run_replay", "run_report", "run_score", "score_files",
+    "search_page", "show_page", "stress_command",
 ]  # fmt: skip
 
 _FILES = {
     "ablation": ("ABLATE",),
     "bounds": ("BoundOptions", "run_bound"),
     "check": ("run_check",),
-    "compare": ("Comparison", "compare_frames", "comparison_command"),
+    "compare": ("comparison_command",),
     "export": ("ExportOptions", "run_export"),
     "join": ("JoinOptions", "run_join"),
-    "learn": ("run_learn",),
+    "learn": ("Lessons", "run_learn"),
     "memory_build": ("BUILD",),
     "memory_pages": ("merge_page", "search_page", "show_page"),
     "replay": ("ReplayOptions", "run_replay"),
     "report": ("ReportOptions", "run_report"),
-    "run": ("RUN", "Results", "run_command", "run_frames"),
-    "score": ("ScoreOptions", "run_score"),
+    "run": ("RUN", "Command", "run_command"),
+    "score": ("ScoreOptions", "Scored", "run_score", "score_files"),
     "stress": ("stress_command",),
 }
 

@@ -1,11 +1,10 @@
-"""`codriving compare`: methods on the same seeds, as cells, as tables and figures, and as data frames for Python."""
+"""`codriving compare`: methods on the same seeds, as cells, and as tables and figures."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from codriving.commands.compare_filters import NO_FLOWS, filter_points, make_filters
 from codriving.commands.compare_models import check_models, make_models, model_points
@@ -19,7 +18,6 @@ from codriving.config import (
     Point,
     check_choice,
     choices,
-    config_folder,
     describe,
     expand,
     experiments_dir,
@@ -30,7 +28,7 @@ from codriving.config import (
     written,
 )
 from codriving.errors import ConfigError
-from codriving.experiment import Cell, Driven, Outputs, drive, make_plan, refuse_flows, results_of
+from codriving.experiment import Cell, Driven, Outputs, refuse_flows, results_of
 from codriving.reports import (
     METHOD_CHOICE,
     METHODS,
@@ -58,9 +56,6 @@ from codriving.reports import (
     with_corrected,
 )
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
 BASELINES, SINGLE_VEHICLE, ALL = "baselines", "single-vehicle", "all"
 LOAD, ORDERS, FILTERS, MODELS = "load", "orders", "filters", "models"
 
@@ -81,16 +76,6 @@ UNLOADED = (
 )
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """What a comparison gives to Python."""
-
-    table: "DataFrame"  # The comparison itself, as in ``comparison.csv`` or ``load.csv``
-    episodes: "DataFrame"
-    summary: "DataFrame"
-    folder: Path
-
-
 def comparison_command(table: str | None, bounded: bool = False) -> Command:
     """Return the command of a table of ``codriving compare``; bounded with columns of what is above the bound."""
     if not isinstance(table, str) or table not in TABLES:
@@ -109,27 +94,6 @@ def comparison_command(table: str | None, bounded: bool = False) -> Command:
         made = partial(make_comparison, table, bounded=True)
         return Command(f"{name} --bound", points, partial(refuse_flows, UNBOUNDED), made)
     return Command(name, points, make_outputs=partial(make_comparison, table))
-
-
-def compare_frames(
-    table: str, *overrides: str, config_dir: str | Path | None = None, bound: bool = False
-) -> Comparison:
-    """Drive all methods on the same seeds and give the tables as data frames; prints no table.
-
-    Args:
-        table: ``baselines``, ``single-vehicle``, ``all``, ``load``, ``orders``, ``filters`` or ``models``.
-        *overrides: ``key=value`` tokens that hold for every cell; ``method=`` adds methods.
-        bound: Whether it is said how far each row is above the bound of its scenes.
-
-    Raises:
-        UserError: If the table, the config or the run folder cannot be used.
-        KeyboardInterrupt: If the user stops it; finished episodes are kept.
-    """
-    folder = config_folder(config_dir)
-    command = comparison_command(table, bound)
-    finished = drive(make_plan(command.points(overrides, folder), folder), command.make_outputs)
-    (own,) = finished.outputs.tables
-    return Comparison(own.frame(), finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
 
 
 def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:

@@ -2,9 +2,8 @@
 
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import datetime
-from functools import partial
 from pathlib import Path
 
 from codriving.commands.controls import split_controls
@@ -14,10 +13,12 @@ from codriving.config import Point, expand, experiments_dir, parse, sets_scenari
 from codriving.errors import ConfigError
 from codriving.experiment import (
     Driven,
+    Finished,
     HaltedError,
     Interrupted,
     Joining,
     Outputs,
+    Plan,
     drive,
     make_plan,
     memory_file,
@@ -48,6 +49,63 @@ ALTERED = ("verdicts", "situations", "rule")  # The controls, each of the most i
 LEVELS = "cda=full,intent_sharing,status_sharing"
 
 
+@dataclass(frozen=True)
+class Lessons:
+    """What is learnt in which settings, and after how many interactions it is tested."""
+
+    others: Sequence[str]  # What is asked for besides, as ``key=value`` tokens
+    points: Sequence[Point]  # The settings
+    sizes: Sequence[int]
+    controls: Sequence[str]
+    run: str  # One name for both runs, so that the same command goes on with both
+    named: bool  # Whether that is the user's
+    config_dir: Path | None = None
+
+    @classmethod
+    def of(cls, overrides: Sequence[str], config_dir: Path | None = None) -> "Lessons":
+        """Read ``key=value`` tokens, among them ``interactions=0,2,5``."""
+        controlled, others = split_controls(written(overrides), usual=True)
+        sizes, others = _sizes(others)
+        # Of no interactions there is nothing to mix up.
+        controls = ALTERED if controlled and max(sizes) > 0 else ()
+        names = [t.partition("=")[2] for t in others if t.partition("=")[0] == "run"]
+        run = names[-1] if names else datetime.now().strftime("%Y-%m-%d_%H%M%S")
+        return cls(others, settings_of(others, config_dir), sizes, controls, run, bool(names), config_dir)
+
+    @property
+    def shares(self) -> bool:
+        """Whether a shard of the tests is driven."""
+        return without_shard(self.others) != self.others
+
+    def learn(self, joins: Joining | None = None) -> tuple[Finished, list[Path]]:
+        """Drive what is learnt from; gives the memories, too, one a setting."""
+        if self.shares:
+            refuse_nameless(self.run if self.named else None)
+        builds = make_plan(build_points(self.points, max(self.sizes), self.run), self.config_dir, drives=joins is None)
+        refuse_forgetful(builds)
+        if self.shares:
+            refuse_part(builds.cells, self.others)
+        builds = joins.learnt(builds) if joins else replace(builds, waits=self.shares)
+        if joins is None:
+            told = "; one shard learns, the others wait for it" if self.shares else ""
+            settings = f"{builds.episodes} interactions in each of {len(builds.cells)} settings"
+            print(f"Learning: {settings}{told}.", file=sys.stderr)
+        learnt = drive(builds)
+        return learnt, [memory_file(learnt.folder, cell.folder) for cell in builds.cells]
+
+    def tests(self, files: Sequence[Path], drives: bool = True) -> Plan:
+        """Plan the tests with memories."""
+        points = frozen_points(self.points, files, self.sizes, self.run, self.controls)
+        plan = make_plan(points, self.config_dir, drives=drives)
+        if drives:
+            print(f"Testing: {plan.episodes} episodes in each of {len(plan.cells)} cells.", file=sys.stderr)
+        return plan
+
+    def outputs(self, driven: Driven) -> Outputs:
+        """Make the learning table and figure of the tests."""
+        return learned(driven, len(self.points))
+
+
 def run_learn(
     overrides: Sequence[str],
     config_dir: Path | None = None,
@@ -69,43 +127,20 @@ def run_learn(
     Raises:
         UserError: If the config or a run folder cannot be used.
     """
-    controlled, others = split_controls(written(overrides), usual=True)
-    sizes, others = _sizes(others)
-    # Of no interactions there is nothing to mix up.
-    controls = ALTERED if controlled and max(sizes) > 0 else ()
-    points = settings_of(others, config_dir)
+    lessons = Lessons.of(overrides, config_dir)
     if show_only:
-        print_configs(build_points(points, max(SIZES), "learn"), config_dir)
+        print_configs(build_points(lessons.points, max(SIZES), "learn"), config_dir)
         return 0
-    # One name for both runs, so that the same command goes on with both.
-    named = [t.partition("=")[2] for t in others if t.partition("=")[0] == "run"]
-    run = named[-1] if named else datetime.now().strftime("%Y-%m-%d_%H%M%S")
-    shares = without_shard(others) != others
-    if shares:
-        refuse_nameless(run if named else None)
-    again = resume_command("learn", overrides, config_dir, run)
+    again = resume_command("learn", overrides, config_dir, lessons.run)
     try:
-        builds = make_plan(build_points(points, max(sizes), run), config_dir, drives=joins is None)
-        refuse_forgetful(builds)
-        if shares:
-            refuse_part(builds.cells, others)
-        builds = joins.learnt(builds) if joins else replace(builds, waits=shares)
-        told = "; one shard learns, the others wait for it" if shares else ""
-        settings = f"{builds.episodes} interactions in each of {len(builds.cells)} settings"
-        if joins is None:
-            print(f"Learning: {settings}{told}.", file=sys.stderr)
-        learnt = drive(builds)
-        if learnt.failed:
-            return report(learnt, again)
-        files = [memory_file(learnt.folder, cell.folder) for cell in builds.cells]
+        learnt, files = lessons.learn(joins)
     except (Interrupted, HaltedError) as stop:
         return stopped(stop, again)
-    tests = make_plan(frozen_points(points, files, sizes, run, controls), config_dir, drives=joins is None)
+    if learnt.failed:
+        return report(learnt, again)
+    tests = lessons.tests(files, drives=joins is None)
     tests = joins.joined(tests) if joins else as_part(tests, "learn", overrides, config_dir)
-    if joins is None:
-        print(f"Testing: {tests.episodes} episodes in each of {len(tests.cells)} cells.", file=sys.stderr)
-    command = Command("learn", make_outputs=partial(learned, settings=len(points)))
-    return run_command(command, overrides, config_dir, plan=tests)
+    return run_command(Command("learn", make_outputs=lessons.outputs), overrides, config_dir, plan=tests)
 
 
 def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:

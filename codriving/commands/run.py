@@ -1,4 +1,4 @@
-"""The commands that drive cells: for the command line, which prints, and for Python, which gets data frames."""
+"""The commands that drive cells and print their tables."""
 
 import shlex
 import sys
@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from codriving.config import Point, config_folder, expand, show
+from codriving.config import Point, expand, show
 from codriving.errors import ModelError
 from codriving.experiment import (
     SHARD,
@@ -21,7 +20,6 @@ from codriving.experiment import (
     Plan,
     cell_name,
     composed,
-    drive,
     driving,
     make_plan,
     refuse_part,
@@ -30,9 +28,6 @@ from codriving.experiment import (
 )
 from codriving.reports import print_table
 from codriving.runs import Part, Shard
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 STOPPED = 128  # Exit code of a process that a signal stopped, less the number of the signal
 
@@ -47,15 +42,6 @@ class Command:
     check: Callable[[Plan], None] = lambda _: None  # Refuses a plan with a ``ConfigError``
     # What it makes of its episodes beyond the tables of every run.
     make_outputs: Callable[[Driven], Outputs] = lambda _: Outputs()
-
-
-@dataclass(frozen=True)
-class Results:
-    """What a run gives to Python."""
-
-    episodes: "DataFrame"
-    summary: "DataFrame"
-    folder: Path
 
 
 def run_command(
@@ -105,21 +91,6 @@ def how_to_go_on(plan: Plan, name: str, overrides: Sequence[str], folder: Path) 
 def run_experiment(overrides: Sequence[str], config_dir: Path | None = None) -> int:
     """Do what ``codriving run`` does."""
     return run_command(RUN, overrides, config_dir)
-
-
-def run_frames(*overrides: str, config_dir: str | Path | None = None) -> Results:
-    """Run one cell, or those of a sweep, and give the tables as data frames; prints no table.
-
-    Args:
-        *overrides: ``key=value`` tokens.
-
-    Raises:
-        UserError: If the config or the run folder cannot be used.
-        KeyboardInterrupt: If the user stops it; finished episodes are kept.
-    """
-    folder = config_folder(config_dir)
-    finished = drive(make_plan(expand(overrides, folder), folder))
-    return Results(finished.tables.episodes.frame(), finished.tables.summary.frame(), finished.folder)
 
 
 RUN = Command("run")

@@ -38,6 +38,15 @@ class ScoreOptions:
     config_dir: Path | None = None
 
 
+@dataclass(frozen=True)
+class Scored:
+    """Files and episodes with their scores."""
+
+    metric: str
+    files: Sequence[ScoredFiles]
+    notes: Sequence[str]  # What has to be said of them
+
+
 def run_score(words: Sequence[str], options: ScoreOptions) -> None:
     """Score files and runs, print the table and write the CSV that is asked for.
 
@@ -47,6 +56,18 @@ def run_score(words: Sequence[str], options: ScoreOptions) -> None:
     Raises:
         UserError: If a file cannot be read, or a metric cannot score it.
     """
+    for path in (options.csv, options.pets):
+        if path is not None and not path.absolute().parent.is_dir():
+            raise ConfigError(f"the folder of {path} does not exist; make it or choose another")
+    scored = score_files(words, options.config_dir)
+    print_table(print_scores(scored.files, scored.metric, scored.notes))
+    for path, made in ((options.csv, score_table), (options.pets, pet_table)):
+        if path is not None:
+            _write(path, made(scored.files).csv())
+
+
+def score_files(words: Sequence[str], config_dir: Path | None = None) -> Scored:
+    """Score files and runs; nothing is printed."""
     sources = [Path(word) for word in words if not _is_override(word)]
     overrides = [word for word in words if _is_override(word)]
     if not sources:
@@ -56,18 +77,14 @@ def run_score(words: Sequence[str], options: ScoreOptions) -> None:
     for word in overrides:
         if word.partition("=")[0].lstrip("+").partition(".")[0] not in ("metrics", "plugins"):
             raise ConfigError(f"score takes no setting but those of metrics, got {word}; what was driven is as it is")
-    for path in (options.csv, options.pets):
-        if path is not None and not path.absolute().parent.is_dir():
-            raise ConfigError(f"the folder of {path} does not exist; make it or choose another")
-    config = compose(overrides, options.config_dir)
-    (scorer,) = scorers_of(config).values()
+    (scorer,) = scorers_of(compose(overrides, config_dir)).values()
     files: list[ScoredFiles] = []
     notes: list[str] = []
     unmarked = []
     judged = False
     for source in sources:
         if _is_run(source):
-            episodes, of_them = _run(source, scorer, options.config_dir)
+            episodes, of_them = _run(source, scorer, config_dir)
             files += episodes
             notes += of_them
             continue
@@ -81,10 +98,7 @@ def run_score(words: Sequence[str], options: ScoreOptions) -> None:
     notes += [UNJUDGED] if judged else []
     notes += [UNMARKED.format(names=", ".join(unmarked))] if unmarked else []
     notes += [POOLED] if len(files) > 1 else []
-    print_table(print_scores(files, scorer.metric.name, notes))
-    for path, made in ((options.csv, score_table), (options.pets, pet_table)):
-        if path is not None:
-            _write(path, made(files).csv())
+    return Scored(scorer.metric.name, files, notes)
 
 
 def _is_override(word: str) -> bool:

@@ -1,10 +1,12 @@
-"""How far a batch is: a bar on a terminal, a few plain lines in a pipe."""
+"""How far a batch is: a bar on a terminal and in a notebook, a few plain lines in a pipe."""
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from typing import TextIO, TypeAlias
+
+from codriving.experiment.notebook import notebook, show_bar
 
 Update: TypeAlias = Callable[[str, bool], None]  # Takes note that an episode has ended: its cell, and whether it failed
 
@@ -34,8 +36,17 @@ def show_progress(
     units: Mapping[str, int], note: Callable[[], str] | None = None, stream: TextIO | None = None
 ) -> Iterator[Update]:
     """Show how far a batch is while the block lasts."""
-    stream = stream or sys.stderr
     count = _Count(units)
+    if stream is None and count.total and (display := notebook()) is not None:
+        with show_bar(display, count.total, partial(_said, count, note)) as move:
+
+            def move_on(cell: str, failed: bool) -> None:
+                count.add(cell, failed)
+                move(count.done)
+
+            yield move_on
+        return
+    stream = stream or sys.stderr
     if not stream.isatty() or not count.total:
         yield partial(_print_line, count, stream, note)
         return
@@ -75,7 +86,10 @@ def _print_line(count: _Count, stream: TextIO, note: Callable[[], str] | None, c
     """Print about ten lines a batch, for logs."""
     count.add(cell, failed)
     if count.done % max(1, count.total // 10) == 0 or count.done == count.total:
-        cells = f", {count.cells} complete" if count.cells else ""
-        said = f"; {note()}" if note else ""
-        text = f"{count.done} of {count.total} episodes done, {count.failed} failed{cells}{said}"
-        print(text, file=stream, flush=True)
+        print(_said(count, note), file=stream, flush=True)
+
+
+def _said(count: _Count, note: Callable[[], str] | None) -> str:
+    cells = f", {count.cells} complete" if count.cells else ""
+    said = f"; {note()}" if note else ""
+    return f"{count.done} of {count.total} episodes done, {count.failed} failed{cells}{said}"

@@ -58,15 +58,6 @@ def test_failed_episodes_are_told_with_the_way_to_repeat_them(
     assert "Repeat them with: codriving run episodes=10 run=mine" in out
 
 
-def test_python_gets_frames(toy: Callable[..., None], capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    toy()
-    results = run.run_frames("episodes=10")
-    assert list(results.episodes["seed"]) == list(range(10))
-    assert results.summary["episodes"][0] == 10
-    assert results.folder == tmp_path / "run" / "mine"
-    assert capsys.readouterr().out == ""
-
-
 def test_the_command_to_go_on_replaces_the_name_and_is_quoted(tmp_path: Path) -> None:
     command = run.resume_command("ablate", ["run=null", "a='x y'"], tmp_path, "2026-01-02_030405")
     assert command == f"""codriving ablate 'a='"'"'x y'"'"'' run=2026-01-02_030405 --config-dir {tmp_path}"""

@@ -1,0 +1,107 @@
+"""A run as data frames: its tables, and of its episodes PETs, decisions and trajectories."""
+
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from codriving.api.frames import decision_frame, pet_frame, trajectory_frame
+from codriving.api.page import page_of
+from codriving.errors import ConfigError, RunFolderError
+from codriving.experiment import StoredEpisode, all_episodes, find_run
+from codriving.runs import Manifest
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+EPISODES, SUMMARY = "episodes.csv", "summary.csv"
+
+# What a command makes beyond the tables of every run; the first one that is there is its table.
+OWN = ("comparison.csv", "load.csv", "filters.csv", "models.csv", "ablation.csv", "learn.csv", "stress.csv")
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A run that is complete."""
+
+    folder: Path
+    episodes: "DataFrame"  # One row an episode
+    summary: "DataFrame"  # One row a cell, with intervals
+    table: "DataFrame"  # What the command makes: the comparison, the ablation, the learning curve; else the summary
+
+    @cached_property
+    def manifest(self) -> Manifest:
+        """What was driven, and with what."""
+        return find_run(self.folder)[1]
+
+    def pets(self, cell: str | None = None, episode: int | None = None, metrics: str | None = None) -> "DataFrame":
+        """Give every PET [s], a row each.
+
+        Args:
+            cell: Name of a row of the table, or a part of it; None takes all.
+            episode: Seed; None takes all.
+            metrics: By which metric; None takes the usual one, or the first that there is.
+        """
+        return pet_frame(self._found(cell, episode), metrics)
+
+    def decisions(self, cell: str | None = None, episode: int | None = None) -> "DataFrame":
+        """Give what each CAV decided at each step, a row each; ``entry`` is all that is known of it."""
+        return decision_frame(self._found(cell, episode))
+
+    def trajectories(self, cell: str | None = None, episode: int | None = None) -> "DataFrame":
+        """Give every vehicle at every simulation step, a row each, in metres, seconds and radians."""
+        return trajectory_frame(self._found(cell, episode))
+
+    def _found(self, cell: str | None, episode: int | None) -> list[StoredEpisode]:
+        if episode is not None and (isinstance(episode, bool) or not isinstance(episode, int)):
+            raise ConfigError(f"episode must be a seed, a whole number, or None, got {episode!r:.100}")
+        if cell is not None and not isinstance(cell, str):
+            raise ConfigError(f"cell must be the name of a row, or None, got {cell!r:.100}")
+        return all_episodes(self.folder, cell, episode)
+
+    def __repr__(self) -> str:
+        return f"<{_heading(self)}; .table, .summary, .episodes, .pets(), .decisions(), .trajectories()>"
+
+    def _repr_html_(self) -> str:
+        return page_of(_heading(self), self.table)
+
+
+def _heading(result: Result) -> str:
+    rows, episodes = len(result.summary), len(result.episodes)
+    return f"{episodes} episode{'s' * (episodes != 1)} in {rows} row{'s' * (rows != 1)}, {result.folder}"
+
+
+def read_result(run: object) -> Result:
+    """Read the tables of a run folder.
+
+    Raises:
+        RunFolderError: If it is none, or has no tables.
+    """
+    if not isinstance(run, str | Path):
+        raise ConfigError(f"a run is a folder, or the name of one below outputs/, got {run!r:.100}")
+    folder, _ = find_run(Path(run))
+    names = {path.name for path in folder.glob("*.csv")}
+    if missing := {EPISODES, SUMMARY} - names:
+        raise RunFolderError(
+            f"{folder} has no {min(missing)} yet; the command of the run with the same run=<name> goes on with it"
+        )
+    episodes, summary = _read(folder / EPISODES), _read(folder / SUMMARY)
+    own = next((name for name in OWN if name in names), None)
+    return Result(folder, episodes, summary, _read(folder / own) if own else summary)
+
+
+def _read(path: Path) -> "DataFrame":
+    """Read a table; empty is not defined, but for a variant, which may be empty."""
+    from pandas import read_csv, to_numeric
+
+    try:
+        frame: Any = read_csv(path, dtype=str, keep_default_na=False, na_values=[""])
+    except (OSError, ValueError) as error:
+        raise RunFolderError(f"{path} cannot be read ({error}); the command of the run writes it again") from error
+    for key in frame.columns:
+        with suppress(ValueError):
+            frame[key] = to_numeric(frame[key])
+    if "variant" in frame:
+        frame["variant"] = frame["variant"].fillna("")
+    return frame  # type: ignore[no-any-return]
