@@ -25,8 +25,6 @@ FIRST_SEED, EPISODES = 10_000, 10
 FULL = CdaLevel(True, True, True, True, False, "own_view")
 
 _LINE = re.compile(r"^- ((?:SLOWER|IDLE|HOLD|FASTER|LANE_LEFT|LANE_RIGHT)(?:, [A-Z_]+)*)(?!.* removed:)(.*)$", re.M)
-_NUMBERS = re.compile(r"([A-Za-z][\w' .-]*?),? (-?\d+(?:\.\d+)?) (m/s2|m/s|s|m)(?![\w/])")
-_WHOSE = re.compile(r"(?:at )?([\w.-]+)'s(?: zone)?(?: in)?$|^(?:; )?([\w.-]+) behind has to brake with$")
 
 
 class Recording(Decider):
@@ -70,19 +68,17 @@ def numbers(text: str) -> dict[str, dict[Action, float]]:
 
 def _named(rest: str) -> Iterator[tuple[str, str, str]]:
     """Give the words before each number of a line, without the ids in them but of whose zone it is."""
-    at = 0
-    for part in re.split(r"[;:]|(?<=s), (?=\S+'s )", rest):
+    for part in re.split(r"[;:]|, (?=with )", rest):
         for words, value, unit in re.findall(r"^(.*?)\s*(-?\d+(?:\.\d+)?) (m/s2|m/s|s|m)(?![\w/])", part.strip(" ,")):
-            whose = re.search(r"([\w.-]+)'s", words)
+            whose = re.match(r"(?:at the zone )?with (.+) in$", words)
             if whose:
-                yield f"zone of {whose.group(1)}", value, unit
+                yield from ((f"zone of {name}", value, unit) for name in whose.group(1).split(" and "))
             elif unit == "m/s2":
                 yield "braking behind", value, unit
             elif words.startswith("delays"):
                 yield "delay", value, unit
             else:
                 yield words.strip() or "arrives", value, unit
-            at += 1
 
 
 @dataclass

@@ -5,6 +5,7 @@ from dataclasses import replace
 from math import hypot, inf
 
 import numpy as np
+from numpy.typing import NDArray
 
 from codriving.datatypes import (
     Action,
@@ -104,14 +105,21 @@ def _follower(given: SafetyInput, action: Action) -> TrackedVehicle | None:
 def _passage(given: SafetyInput, c: Conflict) -> ExpectedPassage:
     zone = given.road_map.zones(*c.routes)[c.zone]
     out = zone.exit_j if zone.merge_j is None else zone.merge_j + LENGTH
+    human = not given.vehicles[c.other].is_cav
     for motion in given.expected.get(c.other, ()):
         if motion.route == c.routes[1]:
-            found = [
-                float(given.forecast.times[int(np.argmax(there))]) if there.any() else inf
-                for there in (motion.places >= zone.entry_j, motion.places > out)
-            ]
-            return ExpectedPassage(*found)
+            return ExpectedPassage(*(_time_at(given, motion.places, s, human) for s in (zone.entry_j, out)))
     return ExpectedPassage(inf, inf)
+
+
+def _time_at(given: SafetyInput, places: NDArray[np.float64], s: float, human: bool) -> float:
+    """Return when a vehicle is at an arc length [s]; past the horizon only of human drivers, who keep their speed."""
+    times = given.forecast.times
+    there = places >= s
+    if there.any():
+        return float(times[int(np.argmax(there))])
+    speed = float(places[-1] - places[-2]) / float(times[-1] - times[-2])
+    return float(times[-1]) + (s - float(places[-1])) / speed if human and speed >= STANDS else inf
 
 
 def _leader(given: SafetyInput, n: TrackedVehicle) -> tuple[str, float]:

@@ -9,9 +9,9 @@ from codriving.datatypes.situation import Situation
 from codriving.datatypes.world import Action
 
 TEXT = """4. Decision.
-- SLOWER to 6.0 m/s: at CAV3's zone in 5.8 s, HDV1's in 6.4 s, can stop; \
+- SLOWER to 6.0 m/s: at the zone with CAV3 and CAV2 in 5.8 s, with HDV1 in 6.4 s, can stop; \
 B behind has to brake with 1.2 m/s2; delays X by up to 1.9 s
-- IDLE, FASTER to 9.0 m/s: at CAV3's zone in 4.1 s, HDV1's never, too late to stop before HDV1
+- IDLE, FASTER to 9.0 m/s: at the zone with CAV3 in 4.1 s, with HDV1 never, cannot stop for HDV1
 - LANE_LEFT removed: same lane: LANE_LEFT leaves 5.0 m
 Allowed actions: SLOWER, IDLE, FASTER"""
 
@@ -20,10 +20,11 @@ def test_each_number_is_read_by_what_is_said_before_it() -> None:
     found = numbers(TEXT)
     assert found["to [m/s]"] == {Action.SLOWER: 6.0, Action.IDLE: 9.0, Action.FASTER: 9.0}
     assert found["zone of CAV3 [s]"] == {Action.SLOWER: 5.8, Action.IDLE: 4.1, Action.FASTER: 4.1}
+    assert found["zone of CAV2 [s]"] == {Action.SLOWER: 5.8}
     assert found["zone of HDV1 [s]"] == {Action.SLOWER: 6.4}
     assert found["braking behind [m/s2]"] == {Action.SLOWER: 1.2}
     assert found["delay [s]"] == {Action.SLOWER: 1.9}
-    assert len(found) == 5
+    assert len(found) == 6
     assert numbers("- SLOWER to 6.0 m/s: gets 49 m, arrives 4.2 s")["gets [m]"] == {Action.SLOWER: 49.0}
 
 

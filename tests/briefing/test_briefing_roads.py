@@ -1,5 +1,6 @@
 """What is told where lanes end, run side by side or are full, and from when to when others are in a zone."""
 
+import math
 from collections.abc import Callable
 
 import pytest
@@ -52,13 +53,21 @@ def test_the_one_behind_on_the_lane_that_an_action_leads_to(highway: Junction) -
     assert behind[Action.LANE_RIGHT] == ""
 
 
-def test_a_driver_who_merges_has_left_a_length_down_the_common_stretch(junction: Junction) -> None:
-    """It may turn onto the CAV's road, and keeps its 8 m/s."""
-    cars = car("CAV1", "east-west", 80, 8, 9), car("HDV1", "south-north", 76, 8)
+@pytest.mark.parametrize(("place", "speed"), [(76, 8), (76, 3), (80, 3)])
+def test_a_driver_who_merges_has_left_a_length_down_the_common_stretch(
+    place: float, speed: float, junction: Junction
+) -> None:
+    """It may turn onto the CAV's road, and keeps its speed, beyond the 10 s of the forecast, too."""
+    cars = car("CAV1", "east-west", 80, 8, 9), car("HDV1", "south-north", place, speed)
     given = junction.thoughts(*cars).safety_input("CAV1")
     c, passage = given.conflicts[0], Briefing().outlook(given).passages[0]
     zone = junction.road_map.zones(*c.routes)[c.zone]
-    assert (c.routes[1], c.places[1]) == ("south-west", 76.0)
+    assert (c.routes[1], c.places[1]) == ("south-west", place)
     assert zone.merge_j is not None
-    assert passage.enters == pytest.approx((zone.entry_j - 76) / 8, abs=0.2)
-    assert passage.leaves == pytest.approx((zone.merge_j + 5 - 76) / 8, abs=0.2)
+    assert passage.enters == pytest.approx((zone.entry_j - place) / speed, abs=0.2)
+    assert passage.leaves == pytest.approx((zone.merge_j + 5 - place) / speed, abs=0.2)
+
+
+def test_who_stands_is_nowhere_after_the_forecast(junction: Junction) -> None:
+    found = told(junction, car("CAV1", "east-west", 80, 8, 9), car("HDV1", "south-north", 76, 0.4)).passages
+    assert {(passage.enters, passage.leaves) for passage in found} == {(math.inf, math.inf)}
