@@ -1,7 +1,7 @@
 """`codriving learn`: memories of so many interactions, then the same tests with each (paper, learning figure)."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
@@ -44,6 +44,8 @@ KEY = "memory.interactions"  # The key that is swept
 CONTROL = "memory.control"  # The key by which a memory becomes a control
 
 ALTERED = ("verdicts", "situations", "rule")  # The controls, each of the most interactions
+
+SITE, ELSEWHERE = "drivers.site", "elsewhere"  # Where several sites are named: the memory of the next one
 
 # CDA levels, unless the user names some: everything, nothing negotiated, and only states shared.
 LEVELS = "cda=full,intent_sharing,status_sharing"
@@ -175,11 +177,25 @@ def frozen_points(
         named = any(t.lstrip("+").startswith("experiment=") for t in point.overrides)
         base = ("memory=frozen", *(() if named else ("experiment=learn",)))
         kept = tuple(t for t in point.overrides if t.lstrip("+").partition("=")[0] != "run")
-        for size, control in [*((size, "none") for size in sizes), *((max(sizes), control) for control in controls)]:
-            own = (f"run={run}", f"{KEY}={size}", f"memory.file='{file}'", f"{CONTROL}={control}")
+        other = _elsewhere(point, points, files) if controls else None
+        altered = (*controls, *((ELSEWHERE,) if other is not None else ()))
+        for size, control in [*((size, "none") for size in sizes), *((max(sizes), control) for control in altered)]:
+            used = other if control == ELSEWHERE else file
+            own = (f"run={run}", f"{KEY}={size}", f"memory.file='{used}'", f"{CONTROL}={control}")
             swept = {**point.swept, KEY: str(size), CONTROL: control}
             cells.append(Point((*base, *kept, *own), swept, point.removed))
     return cells
+
+
+def _elsewhere(point: Point, points: Sequence[Point], files: Sequence[Path]) -> Path | None:
+    """Return the memory of the next site in the same setting; None where no other site is named."""
+
+    def setting(swept: Mapping[str, str]) -> dict[str, str]:
+        return {key: value for key, value in swept.items() if key != SITE}
+
+    same = [(p, file) for p, file in zip(points, files, strict=True) if setting(p.swept) == setting(point.swept)]
+    names = [p.swept.get(SITE) for p, _ in same]
+    return same[(names.index(point.swept[SITE]) + 1) % len(same)][1] if len(set(names)) > 1 else None
 
 
 def learned(driven: Driven, settings: int) -> Outputs:

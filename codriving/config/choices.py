@@ -49,7 +49,7 @@ FIRST = {
     "drivers": ("simulator", "attentive", "mixed", "rough", "site"),
     "flow": ("none", "steady"),
     "v2x": ("perfect", "good", "urban", "poor"),
-    "judgement": ("road_rules", "rules_noted", "earliest", "learned", "llm", "never", "always"),
+    "judgement": ("road_rules", "rules_noted", "earliest", "learned", "remembered", "llm", "never", "always"),
     SUITE: ("default", "paper", "honest", "standoff", "crowd", "blind", "blocked_exit", "busy_merge"),
     "memory": ("off", "frozen", "online"),
     "metrics": ("standard",),

@@ -23,3 +23,15 @@ class Judgement:
 
 
 Judgements = Mapping[Pair, Judgement]  # By CAV and human driver
+
+
+@dataclass(frozen=True, slots=True)
+class Encounter:
+    """A CAV and a human driver of whom it was open who goes first, and who then did."""
+
+    cav: str
+    human: str
+    step: int  # Which time at which pairs were judged in the episode this was
+    numbers: Mapping[str, float]  # What was known of both, by name
+    relied: bool  # Whether the rules of the road let the CAV rely on the driver
+    yielded: bool  # Whether the driver let the CAV pass

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from codriving.datatypes.cooperation import Coordination, Party
 from codriving.datatypes.experience import Experience, Interaction, Memory
+from codriving.datatypes.judgement import Encounter
 from codriving.datatypes.record import Outcome, Score, Trajectory
 from codriving.datatypes.road import Road, Route
 from codriving.datatypes.situation import Deliberation, Situation
@@ -168,8 +169,12 @@ class CaseMemory(ABC):
     def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
         """Find experiences similar to each situation, most similar first."""
 
-    def learn(self, experiences: Sequence[Experience]) -> int:
-        """Keep what was learnt in the episode that has begun.
+    def encounters(self) -> Sequence[Encounter]:
+        """Return what human drivers did who were met before."""
+        return ()
+
+    def learn(self, experiences: Sequence[Experience], encounters: Sequence[Encounter] = ()) -> int:
+        """Keep what was learnt in the episode that has begun, and what human drivers did in it.
 
         Returns:
             How many of the experiences are new.

@@ -207,7 +207,8 @@ def without_effect(cells: Sequence[Cell]) -> tuple[str, ...]:
             said.append("filter={filter} has no effect on {}: what has this check or gives no actions is not filtered.")
         if cell.resolved.get("judgement") is not None and "judgement=" not in cell.labels.variant:
             said.append(
-                "judgement={judgement} has no effect on {}: it asks no judge of human drivers, or has no model to ask."
+                "judgement={judgement} has no effect on {}: it asks no judge of human drivers, or has no model "
+                "or memory to ask."
             )
         for text in said:
             notes.setdefault(text.format("{}", **cell.choices), {})[cell.labels.method] = None

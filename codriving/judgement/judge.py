@@ -11,7 +11,9 @@ from codriving.datatypes import (
     GOES,
     UNCLEAR,
     YIELDS,
+    CaseMemory,
     Conflict,
+    Encounter,
     HumanJudge,
     Judgement,
     Judgements,
@@ -36,6 +38,7 @@ class Judge(HumanJudge, ABC):
     name: str  # In tables
     knows_drivers = False  # Whether it is told what no vehicle can know
     asks_model = False  # Whether it asks the language model of the method
+    recalls = False  # Whether it goes by what the memory of the method holds of human drivers
     drives = True  # Whether its answers are relied on; if not, they are noted and the rules of the road drive
 
     def reset(self, road_map: RoadMap, model: Asked | None) -> None:
@@ -49,6 +52,18 @@ class Judge(HumanJudge, ABC):
     def be_told(self, manners: Mapping[str, Manner]) -> None:
         """Hear how human drivers treat the right of way; only if ``knows_drivers``."""
         return None
+
+    def remember(self, memory: CaseMemory) -> None:
+        """Take the memory of the method; only if it has one."""
+        return None
+
+    def watch(self, moment: Moment) -> None:
+        """See what the CAVs know at a step, before anything is judged in it."""
+        return None
+
+    def encounters(self) -> Sequence[Encounter]:
+        """Return what drivers did in the episode, to be remembered."""
+        return ()
 
     def files(self) -> Mapping[str, Path]:
         """Return the files whose content decides what it says, by what they are."""
@@ -81,8 +96,11 @@ class JudgedPerception(Perception):
     def perceive(self, world: WorldState) -> Moment:
         """Return what every CAV knows, with what is expected of human drivers."""
         moment = Perception.perceive(self, world)
-        asked = contests(moment) if self.judge is not None else []
-        if self.judge is None or not asked:
+        if self.judge is None:
+            return moment
+        self.judge.watch(moment)
+        asked = contests(moment)
+        if not asked:
             return moment
         answers = self.judge.judge(asked)
         pairs = [(contest.cav, contest.human) for contest in asked]
@@ -116,10 +134,12 @@ class Judging(Method):
 
     judge: Judge | None = None
 
-    def rely_on(self, judge: HumanJudge | None, asks_model: bool = False) -> None:
-        """Take a judge, but none that asks a language model where the method asks none; it shows in the variant."""
-        if not isinstance(judge, Judge) or (judge.asks_model and not asks_model):
+    def rely_on(self, judge: HumanJudge | None, asks_model: bool = False, memory: CaseMemory | None = None) -> None:
+        """Take a judge, but none that asks a model or recalls where the method does not; it shows in the variant."""
+        if not isinstance(judge, Judge) or (judge.asks_model and not asks_model) or (judge.recalls and memory is None):
             return
+        if memory is not None:
+            judge.remember(memory)
         self.judge, self.knows_drivers = judge, self.knows_drivers or judge.knows_drivers
         words = ["" if self.variant == "full" else self.variant, f"judgement={judge.name}"]
         self.variant = "/".join(word for word in words if word)

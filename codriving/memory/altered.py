@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -12,13 +13,14 @@ from codriving.memory.embedders import Vectors
 from codriving.memory.snapshot import Snapshot, StoredExperience
 from codriving.memory.store_file import COLUMNS, vectors_of
 
-Alteration = Literal["none", "verdicts", "situations", "rule"]
+Alteration = Literal["none", "verdicts", "situations", "rule", "elsewhere"]
 
 # What becomes of a snapshot, in words for tables.
 WORDS: dict[Alteration, str] = {
     "verdicts": "shuffled verdicts",
     "situations": "shuffled situations",
     "rule": "one rule in their place",
+    "elsewhere": "of another site",
 }
 
 _OF_SITUATION = ("vector", "scene", "conflict", "passing", "numbers", "kinds")
@@ -30,20 +32,24 @@ def altered(snapshot: Snapshot, how: Alteration) -> Snapshot:
 
     What is dealt out follows from the contents, so that it is the same in each process.
     """
-    if how == "none" or not len(snapshot):
+    if how in ("none", "elsewhere") or not (len(snapshot) or snapshot.encounters):
         return snapshot
     if how == "rule":
         return OneRule(snapshot)
     moved = [COLUMNS.index(name) for name in (_OF_VERDICT if how == "verdicts" else _OF_SITUATION)]
     entries = snapshot.experiences
-    order = np.random.default_rng(int(snapshot.digest[:16], 16)).permutation(len(entries)).tolist()
+    rng = np.random.default_rng(int(snapshot.digest[:16], 16))
+    order = rng.permutation(len(entries)).tolist()
     rows = [list(entry.row) for entry in entries]
     for row, other in zip(rows, order, strict=True):
         for k in moved:
             row[k] = entries[other].row[k]
     dealt = [StoredExperience(e.id, tuple(row), e.count, e.step, e.ego) for e, row in zip(entries, rows, strict=True)]
     vectors = vectors_of([row[0] for row in rows], snapshot.dimension)
-    return Snapshot(dealt, vectors, snapshot.digest, snapshot.interactions)
+    met = snapshot.encounters
+    yielded = [met[k].yielded for k in rng.permutation(len(met)).tolist()]
+    shuffled = [replace(one, yielded=did) for one, did in zip(met, yielded, strict=True)]
+    return Snapshot(dealt, vectors, snapshot.digest, snapshot.interactions, shuffled)
 
 
 class OneRule(Snapshot):

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from codriving.datatypes import Experience, Interaction
+from codriving.datatypes import Encounter, Experience, Interaction
 from codriving.errors import ConfigError
 from codriving.memory.embedders import EmbeddingServer
 from codriving.memory.recall import RetrievalMemory
@@ -60,10 +60,10 @@ class OnlineMemory(RetrievalMemory):
         with self._store() as store:
             self._snapshot = store.snapshot(before=interaction.seed)
 
-    def learn(self, experiences: Sequence[Experience]) -> int:
+    def learn(self, experiences: Sequence[Experience], encounters: Sequence[Encounter] = ()) -> int:
         """Keep what was learnt in the episode that has begun."""
         with self._store() as store:
-            return store.add(self._interaction, experiences)
+            return store.add(self._interaction, experiences, encounters=encounters)
 
     def _store(self) -> MemoryStore:
         if self.file is None:

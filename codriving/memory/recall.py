@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from codriving.datatypes import CaseMemory, Memory, Situation
+from codriving.datatypes import CaseMemory, Encounter, Memory, Situation
 from codriving.errors import ConfigError
 from codriving.memory.describe import describe
 from codriving.memory.embedders import EmbeddingServer, make_embedder
@@ -20,6 +20,10 @@ class RetrievalMemory(CaseMemory):
         self._shots, self._least_similarity = shots, least_similarity
         self._embedder = make_embedder(embedder, server)
         self._snapshot: Snapshot | None = None
+
+    def encounters(self) -> Sequence[Encounter]:
+        """Return what human drivers did who were met in the interactions that are recalled from."""
+        return () if self._snapshot is None else self._snapshot.encounters
 
     def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
         """Find what is similar to each situation."""

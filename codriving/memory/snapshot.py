@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from codriving.datatypes import Action, Effect, Experience, Memory, Verdict
+from codriving.datatypes import Action, Effect, Encounter, Experience, Memory, Verdict
 from codriving.errors import MemoryFileError
 from codriving.memory.describe import brief
 from codriving.memory.embedders import Embedder, FeatureEmbedder, Vectors
 from codriving.memory.index import Index
+from codriving.memory.met import met_in
 from codriving.memory.store_file import COLUMNS, about, check_embedder, damaged, from_row, open_file, vectors_of
 
 SAMPLE = 300  # Experiences, the oldest, by which similarities of embedders are compared
@@ -55,9 +56,14 @@ class Snapshot:
     """Experiences that can be searched; a file that grows meanwhile does not change it."""
 
     def __init__(
-        self, experiences: Sequence[StoredExperience], vectors: Vectors, digest: str, interactions: int
+        self,
+        experiences: Sequence[StoredExperience],
+        vectors: Vectors,
+        digest: str,
+        interactions: int,
+        encounters: Sequence[Encounter] = (),
     ) -> None:
-        self.experiences = tuple(experiences)
+        self.experiences, self.encounters = tuple(experiences), tuple(encounters)
         self.digest, self.interactions = digest, interactions
         self._by_id = {entry.id: entry for entry in self.experiences}
         self.dimension = vectors.shape[1]
@@ -135,7 +141,10 @@ def load(connection: sqlite3.Connection, dimension: int, embedder: str, chosen: 
         digest.update(vector)
         found.append(StoredExperience(number, (vector, *rest), *seen[number]))
         blobs.append(vector)
-    return Snapshot(found, vectors_of(blobs, dimension), digest.hexdigest(), len(chosen))
+    encounters = met_in(connection, chosen)
+    for met in encounters:
+        digest.update(repr(met).encode())
+    return Snapshot(found, vectors_of(blobs, dimension), digest.hexdigest(), len(chosen), encounters)
 
 
 def _sightings(connection: sqlite3.Connection, chosen: Sequence[int]) -> dict[int, tuple[int, int, str]]:

@@ -10,10 +10,11 @@ from typing import Self
 
 import numpy as np
 
-from codriving.datatypes import Description, Experience, Interaction
+from codriving.datatypes import Description, Encounter, Experience, Interaction
 from codriving.errors import MemoryFileError
 from codriving.memory.embedders import Embedder, FeatureEmbedder, Vectors
 from codriving.memory.index import Index
+from codriving.memory.met import forget, keep, met_in
 from codriving.memory.snapshot import Snapshot, load
 from codriving.memory.store_file import (
     COLUMNS,
@@ -50,7 +51,13 @@ class MemoryStore:
         if path.exists():
             self._open()
 
-    def add(self, interaction: Interaction, experiences: Sequence[Experience], vectors: Vectors | None = None) -> int:
+    def add(
+        self,
+        interaction: Interaction,
+        experiences: Sequence[Experience],
+        vectors: Vectors | None = None,
+        encounters: Sequence[Encounter] = (),
+    ) -> int:
         """Add what was learnt in one episode, all of it or nothing; the same episode driven again replaces itself."""
         made = self.embedder.embed([e.description for e in experiences]) if vectors is None else vectors
         if self._connection is None:
@@ -64,6 +71,7 @@ class MemoryStore:
             self._catch_up(connection)
             insert = "INSERT INTO interactions (scenario, seed, method, variant, reasoner) VALUES (?, ?, ?, ?, ?)"
             number = int(connection.execute(insert, astuple(interaction)).lastrowid or 0)
+            keep(connection, number, encounters)
             alike = made if self.embedder.calibrated else _ALIKE.embed([e.description for e in experiences])
             return sum(self._keep(connection, number, *each) for each in zip(experiences, made, alike, strict=True))
 
@@ -142,6 +150,7 @@ class MemoryStore:
         query = "SELECT id FROM interactions WHERE (scenario, seed, method, variant, reasoner) = (?, ?, ?, ?, ?)"
         for (number,) in connection.execute(query, astuple(interaction)).fetchall():
             connection.execute("DELETE FROM sightings WHERE interaction = ?", (number,))
+            forget(connection, number)
             connection.execute("DELETE FROM interactions WHERE id = ?", (number,))
             connection.execute("DELETE FROM experiences WHERE id NOT IN (SELECT experience FROM sightings)")
             self._index = None
@@ -197,12 +206,14 @@ def merge(sources: list[Path], target: Path, embedder: Embedder, duplicates: flo
     # All are read before anything is written: a damaged one leaves no half of a memory behind.
     everything = [entry for source in sources for entry in read(source, embedder)]
     with MemoryStore(target, embedder, duplicates) as store:
-        for interaction, experiences, vectors in everything:
-            store.add(interaction, experiences, vectors)
+        for interaction, experiences, vectors, met in everything:
+            store.add(interaction, experiences, vectors, met)
         return store.snapshot().interactions
 
 
-def read(path: Path, embedder: Embedder) -> Iterator[tuple[Interaction, list[Experience], Vectors]]:
+def read(
+    path: Path, embedder: Embedder
+) -> Iterator[tuple[Interaction, list[Experience], Vectors, tuple[Encounter, ...]]]:
     """Read a memory interaction by interaction, with every sighting."""
     with closing(open_file(path, write=False)) as connection:
         dimension = check_embedder(path, about(connection), embedder)
@@ -214,6 +225,7 @@ def read(path: Path, embedder: Embedder) -> Iterator[tuple[Interaction, list[Exp
             for number, *row in connection.execute("SELECT * FROM interactions ORDER BY id").fetchall():
                 seen = connection.execute(query, (number,)).fetchall()
                 experiences = [from_row(tuple(values), step, ego) for step, ego, *values in seen]
-                yield Interaction(*row), experiences, vectors_of([values[2] for values in seen], dimension)
+                vectors = vectors_of([values[2] for values in seen], dimension)
+                yield Interaction(*row), experiences, vectors, met_in(connection, [number])
         except ValueError as error:
             raise damaged(path, error) from error

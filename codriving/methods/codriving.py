@@ -81,7 +81,7 @@ class CoDriving(Judging, ModelMethod):
         self.order, self.most_cavs = order, order.most_cavs if order is not None else None
         self.is_checked, self.by_zone = cda.safety_check, by_zone and not cda.binding
         self.asked = ("negotiate", "decide") if order is None else ("decide",)
-        self.rely_on(judgement, asks_model=llm.chat() is not None)
+        self.rely_on(judgement, asks_model=llm.chat() is not None, memory=memory)
         self.asked = (*self.asked, *(("judge",) if self.judge is not None and self.judge.asks_model else ()))
 
     def cooperate(self, coordination: Coordination) -> None:
@@ -132,7 +132,7 @@ class CoDriving(Judging, ModelMethod):
 
             experiences = reflect(self._model, experiences, self.memory.reflections)
             account = self.unfinished_step(world.time)
-        learnt = learn(self.memory, experiences)
+        learnt = learn(self.memory, experiences, self.judge.encounters() if self.judge is not None else ())
         return {**account[0], **learnt}, account[1]
 
 

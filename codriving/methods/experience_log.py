@@ -10,6 +10,7 @@ from codriving.datatypes import (
     Collision,
     Decision,
     DrivingModel,
+    Encounter,
     Experience,
     Outcome,
     Role,
@@ -120,6 +121,10 @@ def recall(memory: CaseMemory | None, situations: Sequence[Situation], most: int
     return [replace(situation, memories=memories[:most]) if memories else situation for situation, memories in found]
 
 
-def learn(memory: CaseMemory, experiences: Sequence[Experience]) -> dict[str, float]:
-    """Put the experiences of an episode into a memory."""
-    return {"experiences": len(experiences), "experiences_new": memory.learn(experiences)}
+def learn(
+    memory: CaseMemory, experiences: Sequence[Experience], encounters: Sequence[Encounter] = ()
+) -> dict[str, float]:
+    """Put what was experienced in an episode into a memory, and what human drivers did in it."""
+    new = memory.learn(experiences, encounters) if encounters else memory.learn(experiences)
+    learnt: dict[str, float] = {"experiences": len(experiences), "experiences_new": new}
+    return {**learnt, "encounters": len(encounters)} if encounters else learnt

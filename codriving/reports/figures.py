@@ -3,7 +3,7 @@
 import io
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from itertools import cycle, pairwise
+from itertools import cycle, pairwise, product
 from typing import TYPE_CHECKING, TypeAlias
 
 from codriving.reports.columns import mean
@@ -45,7 +45,7 @@ SUITE_KEY = "suite"  # Of what was swept, what has panels of its own
 ENTRY = 2.2  # Width of an entry of a legend [inches]
 
 # For the controls of learning, beside the most interactions.
-CONTROL_MARKS = {"verdicts": "x", "situations": "+", "rule": "d"}
+CONTROL_MARKS = {"verdicts": "x", "situations": "+", "rule": "d", "elsewhere": "v"}
 
 # For the settings that are learnt in.
 LEVELS: Sequence[Style] = (
@@ -120,7 +120,7 @@ def load_figure(
 def learning_figure(
     rows: Sequence[LearningRow], paper: Sequence[LearningStatement], metrics: str
 ) -> Mapping[str, bytes]:
-    """Draw success against the number of past interactions, a panel a scenario and suite (paper, learning figure).
+    """Draw success, and clean success, against the number of past interactions, a panel a scenario and suite.
 
     Controls stand beside the most interactions, each with its own mark and in the colour of its setting.
 
@@ -135,14 +135,18 @@ def learning_figure(
     labels = line_labels([(_level(row), row.cell, "") for row in rows])
     levels = list(dict.fromkeys(labels))
     sizes = sorted({row.interactions for row in rows})
-    figure = Figure(figsize=(max(5.0, 3.4 * len(panels)), 4.4), layout="constrained")
-    axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
-    for axis, panel in zip(axes, panels, strict=True):
+    # Clean success has panels of its own, where it is known.
+    kinds = [("success", "success")] + [("clean", "clean success")] * any(row.cell.judged for row in rows)
+    height = 4.4 if len(kinds) == 1 else 7.2
+    figure = Figure(figsize=(max(5.0, 3.4 * len(panels)), height), layout="constrained")
+    grid = figure.subplots(len(kinds), len(panels), sharex=True, sharey=True, squeeze=False)
+    axes = list(grid.flat)
+    for axis, ((kind, _), panel) in zip(axes, product(kinds, panels), strict=True):
         for index, level in enumerate(levels):
             shift = 0.08 * (index - (len(levels) - 1) / 2)
             members = [row for row, label in zip(rows, labels, strict=True) if label == level]
             cells = [
-                (sizes.index(row.interactions) + shift, row.cell.success)
+                (sizes.index(row.interactions) + shift, getattr(row.cell, kind))
                 for row in members
                 if _panel(row) == panel and not row.is_control
             ]
@@ -151,16 +155,20 @@ def learning_figure(
             for k, row in enumerate(controls, 1):
                 style = (LEVELS[index % len(LEVELS)][0], CONTROL_MARKS[row.control], "none")
                 place = sizes.index(row.interactions) + shift + 0.25 * k
-                draw_rates(axis, [(place, row.cell.success)], style, f"control, {row.words}")
+                draw_rates(axis, [(place, getattr(row.cell, kind))], style, f"control, {row.words}")
         claims = {row.claim for row in rows if _panel(row) == panel}
-        for s in paper:
+        for s in paper if kind == "success" else ():
             # Not in a panel of another setting than the paper's.
             if s.scenario == panel[0] and s.success is not None and s.interactions in sizes and s.statement in claims:
                 place, label = sizes.index(s.interactions), "the paper (GPT-4o mini)"
                 axis.plot([place], [100 * s.success], "x", color="#7a7a7a", markersize=9, label=label)
         axis.set_xticks(range(len(sizes)), [str(size) for size in sizes])
-        axis.set(title="\n".join(filter(None, panel)), xlabel="past interactions", ylim=(-3, 105))
-    axes[0].set_ylabel("success [%], 95 % interval")
+        axis.set(ylim=(-3, 105))
+    for row, (_, words) in zip(grid, kinds, strict=True):
+        row[0].set_ylabel(f"{words} [%], 95 % interval")
+    for axis, below, panel in zip(grid[0], grid[-1], panels, strict=True):
+        axis.set_title("\n".join(filter(None, panel)))
+        below.set_xlabel("past interactions")
     handles = {str(h.get_label()): h for axis in axes for h in axis.get_legend_handles_labels()[0]}
     if len(levels) > 1:
         # A mark in the colour of one setting stands for those of all.

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any
 
 from codriving.reports.columns import Column, Table, swept_columns, table
-from codriving.reports.pairs import SIGNIFICANT, PairedCells, points
+from codriving.reports.pairs import SIGNIFICANT, PairedCells, PairedRate, points
 from codriving.reports.paper import LearningStatement
 from codriving.reports.printed import PrintedTable, printed
 from codriving.reports.results import CellResults
@@ -25,12 +25,15 @@ CONTROLS = {
     "verdicts": "shuffled verdicts",
     "situations": "shuffled situations",
     "rule": "one rule",
+    "elsewhere": "another site's",
 }
 
 CONTROL_NOTE = (
     "Controls are of the same memory. Shuffled: verdicts, or situations, are dealt out anew among its experiences. One "
     "rule: the action that was a mistake most often (both lane changes count as one) is never done if another is safe."
 )
+
+ELSEWHERE_NOTE = "Another site's: the memory that was built at the next of the sites is recalled from here."
 
 
 @dataclass(frozen=True)
@@ -44,7 +47,7 @@ class LearningRow:
     # The cell of the same setting with the fewest interactions; None for that one itself.
     fewest: CellResults | None = None
     claim: str | None = None  # What the paper says of its scenario after so many interactions
-    control: str = "none"  # What was done to the memory: ``verdicts``, ``situations`` or ``rule``
+    control: str = "none"  # What was done to the memory: ``verdicts``, ``situations``, ``rule`` or ``elsewhere``
 
     @property
     def is_control(self) -> bool:
@@ -64,11 +67,16 @@ class LearningRow:
     @property
     def gain(self) -> str:
         """The gain in success, with its p-value."""
-        return (
-            f"{points(self.pairs.success.difference)} ({fixed(self.pairs.success.p, 3)})"
-            if self.pairs and self.pairs.driven
-            else ""
-        )
+        return _gain(self.pairs.success) if self.pairs and self.pairs.driven else ""
+
+    @property
+    def clean_gain(self) -> str:
+        """The gain in clean success, with its p-value; empty where that is not known."""
+        return _gain(self.pairs.clean) if self.pairs and self.cell.judged and self.pairs.driven else ""
+
+
+def _gain(rate: PairedRate) -> str:
+    return f"{points(rate.difference)} ({fixed(rate.p, 3)})"
 
 
 def learning_rows(cells: Sequence[LearningRow], paper: Sequence[LearningStatement]) -> list[LearningRow]:
@@ -118,7 +126,11 @@ def learning_table(rows: Sequence[LearningRow], swept: Sequence[str] = ()) -> Ta
         *(replace(column, head="") for column in cell("memory")),
         *cell("episodes", "completed", "count", "success_rate", "success_low", "success_high", "interval"),
         Column("gain", lambda row: row.gain, "gain [points] (p)", csv=False, rank=1, brief=("gain [points]", " (")),
+        *cell("clean"),
+        Column("clean_gain", lambda row: row.clean_gain, "clean gain (p)", csv=False, sparse=True, rank=2),
+        *cell("clean_rate", "clean_low", "clean_high"),
         *cell("collision_rate", "timeout_rate"),
+        Column("time_all", lambda row: row.cell.numbers.get("time_all"), "time of all [s]", fixed, sparse=True, rank=5),
         replace(*cell("pet_mean"), head="PET mean [s]", text=fixed, rank=5),
         *cell("pet_below_1_5"),
         replace(*cell("velocity_mean"), head="velocity [m/s]", text=two_digits, rank=4),
@@ -131,6 +143,8 @@ def learning_table(rows: Sequence[LearningRow], swept: Sequence[str] = ()) -> Ta
         gain("velocity_gain", lambda pairs: pairs.velocity.mean),
         gain("velocity_gain_low", lambda pairs: pairs.velocity.low),
         gain("velocity_gain_high", lambda pairs: pairs.velocity.high),
+        gain("clean_difference", lambda pairs: pairs.clean.difference),
+        gain("clean_mcnemar_p", lambda pairs: pairs.clean.p),
         Column("paper", lambda row: row.claim, CLAIM, words=True, rank=3),
     ]
     return table(columns, rows)
@@ -141,6 +155,7 @@ def print_learning(rows: Sequence[LearningRow], metrics: str, swept: Sequence[st
     firsts = [row.cell.first for row in rows]
     heading = title("learning", [first.scenario for first in firsts], [first.reasoner for first in firsts], metrics)
     noted = [CONTROL_NOTE] if any(row.is_control for row in rows) else []
+    noted += [ELSEWHERE_NOTE] if any(row.control == "elsewhere" for row in rows) else []
     notes = (NOTE, *NOTES, *noted, _shown([row for row in rows if not row.is_control], swept))
     return printed(heading, learning_table(rows, swept), [_setting(row, swept) for row in rows], notes)
 

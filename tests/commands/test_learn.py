@@ -35,6 +35,23 @@ def test_what_is_learnt_on_is_never_what_is_tested_on() -> None:
     assert built["memory"]["shots"] == test["memory"]["shots"] == 3
 
 
+def test_of_several_sites_the_memory_of_the_next_one_is_a_control() -> None:
+    files = [Path(f"{name}.sqlite") for name in "abcd"]
+    named = ["scenario=intersection", "cda=full,status_sharing", "drivers=site", "drivers.site=3,6"]
+    points = settings_of(named, None)
+    cells = frozen_points(points, files, [0, 2], "r", ("verdicts",))
+    assert [p.swept["memory.control"] for p in cells[:4]] == ["none", "none", "verdicts", "elsewhere"]
+    used = [t for p in cells[3::4] for t in p.overrides if t.startswith("memory.file=")]
+    own = [t for p in cells[1::4] for t in p.overrides if t.startswith("memory.file=")]
+    levels = [(p.swept["cda"], p.swept["drivers.site"]) for p in points]
+    partner = [levels.index((cda, "6" if site == "3" else "3")) for cda, site in levels]
+    assert used == [own[k] for k in partner]
+    assert {compose(p.overrides)["memory"]["interactions"] for p in cells[3::4]} == {2}
+    alone = frozen_points(settings_of([named[0], "cda=full"], None), files[:1], [2], "r", ("verdicts",))
+    assert [p.swept["memory.control"] for p in alone] == ["none", "verdicts"]
+    assert all(p.swept["memory.control"] == "none" for p in frozen_points(points, files, [0, 2], "r"))
+
+
 @pytest.mark.parametrize("text", ["many", "-1", "5,x", ""])
 def test_numbers_of_interactions_that_are_none_are_refused(text: str) -> None:
     with pytest.raises(ConfigError, match="interactions must be whole numbers from 0"):

@@ -83,6 +83,35 @@ def test_the_figure_repeats_and_marks_the_papers_numbers(rows: list[LearningRow]
     assert learning_figure(learning_rows(elsewhere, paper), paper, "standard")["learn.svg"] == without
 
 
+def test_clean_success_and_time_stand_beside_where_they_are_known(
+    make: Make, rows: list[LearningRow], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    axes: list[list[str]] = []
+
+    def kept(figure: Figure, *_: object) -> Mapping[str, bytes]:
+        axes.append([axis.get_ylabel() for axis in figure.axes])
+        return {}
+
+    monkeypatch.setattr("codriving.reports.figures.saved", kept)
+    cells = [
+        LearningRow(CellResults([make(k, clean=k < few, time=12.0 + few) for k in range(SEEDS)]), size, 0, 5)
+        for size, few in ((0, 5), (10, 15))
+    ]
+    known = learning_rows(cells, ())
+    table = print_learning(known, "standard")
+    assert column_of(table, "clean") == ["25 %", "75 %"]
+    assert column_of(table, "clean gain (p)") == ["", "+50.0 (0.002)"]
+    assert column_of(table, "time of all [s]") == ["17.0", "27.0"]
+    assert [row["clean_difference"] for row in learning_table(known).rows] == [None, 0.5]
+    assert "clean gain (p)" not in print_learning(rows, "standard").columns
+    learning_figure(known, (), "standard")
+    learning_figure(rows, (), "standard")
+    assert axes == [
+        ["success [%], 95 % interval", "clean success [%], 95 % interval"],
+        ["success [%], 95 % interval", ""],
+    ]
+
+
 def test_without_the_papers_file_there_is_nothing_beside(tmp_path: Path) -> None:
     assert read_learning(tmp_path) == ()
     assert {s.scenario for s in read_learning(experiments_dir())} == {"highway", "merge", "intersection", "roundabout"}
