@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, cast
 from codriving.datatypes import Judgements
 from codriving.geometry import RoadMap
 from codriving.judgement.contests import Contest
-from codriving.judgement.judge import Asked, Judge, said, thresholds
+from codriving.judgement.judge import Asked, said, thresholds
+from codriving.judgement.remembered import Remembering
 from codriving.llm import ContestView, JudgementReply, Names, Question, chances, judgement_reply
 
 if TYPE_CHECKING:
@@ -17,20 +18,26 @@ TOKENS_A_PAIR = 10  # What a pair takes in the answer [tokens]
 LONGEST_RULE = 160  # Characters of a reason
 
 
-class AskedModel(Judge):
+FEWEST = 5  # Drivers who have to have been met in like cases for the model to be told what they did
+
+
+class AskedModel(Remembering):
     """Takes probabilities from a language model; what it leaves out is left to the rules of the road.
+
+    With a memory the model is told what drivers did in like cases.
 
     Args:
         yields_above: Probability above which the answer is ``yields``.
         goes_below: Probability below which it is ``goes``; between both it is ``unclear``.
     """
 
-    name, asks_model = "llm", True
+    name, asks_model, fewest = "llm", True, FEWEST
 
     def __init__(self, yields_above: float, goes_below: float) -> None:
         self.thresholds = thresholds(yields_above, goes_below)
 
     def reset(self, road_map: RoadMap, model: Asked | None) -> None:
+        super().reset(road_map, model)
         self._model = model
 
     def judge(self, asked: Sequence[Contest]) -> Judgements:
@@ -39,6 +46,7 @@ class AskedModel(Judge):
         # The most urgent first: of a question that is too long the second half is left out.
         ordered = sorted(asked, key=lambda c: (c.numbers["cav_time"], c.cav, c.human))
         pairs = {f"p{k + 1}": contest for k, contest in enumerate(ordered)}
+        self._seen = {f"p{k + 1}": count.words for k, count in enumerate(self.met(ordered)) if count is not None}
         [answer] = self._model.ask([self._question(pairs)])
         if answer.value is None:
             return {}
@@ -60,6 +68,7 @@ class AskedModel(Judge):
                 c.numbers,
                 names.sentence(c.rule, LONGEST_RULE),
                 names(c.follows) if c.follows else "",
+                self._seen.get(name, ""),
             )
             for name, c in pairs.items()
         ]

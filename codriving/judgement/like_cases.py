@@ -27,6 +27,11 @@ class Count:
         """The share of those who did, by Laplace's rule: with one more who did, and one more who did not."""
         return (self.yielded + 1) / (self.all + 2)
 
+    @property
+    def words(self) -> str:
+        """The same in words."""
+        return f"{self.yielded} of {self.all} drivers met in like cases let the CAV pass"
+
 
 class LikeCases:
     """Counts of drivers in like cases; where few are known, of all whom the rules of the road hold back, or do not."""

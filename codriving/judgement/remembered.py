@@ -1,4 +1,4 @@
-"""A judge that goes by what drivers did who were met here before, in like cases."""
+"""Judges that know what drivers did who were met here before, in like cases, and one that goes by nothing else."""
 
 from collections.abc import Sequence
 
@@ -7,11 +7,38 @@ from codriving.errors import require
 from codriving.geometry import RoadMap
 from codriving.judgement.contests import Contest
 from codriving.judgement.judge import Asked, Judge, said, thresholds
-from codriving.judgement.like_cases import LikeCases, Observer
+from codriving.judgement.like_cases import Count, LikeCases, Observer
 from codriving.reasoning import Moment
 
 
-class Remembered(Judge):
+class Remembering(Judge):
+    """A judge that may be given a memory, which keeps what drivers do in the episodes in which it learns."""
+
+    fewest: int  # Drivers who have to have been met in like cases
+    memory: CaseMemory | None = None
+
+    def remember(self, memory: CaseMemory) -> None:
+        self.memory = memory
+
+    def reset(self, road_map: RoadMap, model: Asked | None) -> None:
+        self._observer = Observer(road_map) if self.memory is not None and self.memory.learns else None
+        self._cases = LikeCases(() if self.memory is None else self.memory.encounters(), self.fewest)
+
+    def watch(self, moment: Moment) -> None:
+        if self._observer is not None:
+            self._observer.watch(moment)
+
+    def encounters(self) -> Sequence[Encounter]:
+        return () if self._observer is None else self._observer.found
+
+    def met(self, asked: Sequence[Contest]) -> list[Count | None]:
+        """Return what is remembered of like cases, of each pair that is judged, and see what the drivers do."""
+        if self._observer is not None:
+            self._observer.note(asked)
+        return [self._cases.of(contest) for contest in asked]
+
+
+class Remembered(Remembering):
     """Relies on drivers as far as those did who were met before; where few were, the rules of the road hold.
 
     While the memory learns the rules of the road drive, so that what is learnt does not make itself true: of a CAV that
@@ -30,24 +57,14 @@ class Remembered(Judge):
         self.fewest, self.thresholds = fewest, thresholds(yields_above, goes_below)
 
     def remember(self, memory: CaseMemory) -> None:
-        self._memory, self.drives = memory, not memory.learns
-
-    def reset(self, road_map: RoadMap, model: Asked | None) -> None:
-        self._cases, self._observer = LikeCases(self._memory.encounters(), self.fewest), Observer(road_map)
-
-    def watch(self, moment: Moment) -> None:
-        self._observer.watch(moment)
-
-    def encounters(self) -> Sequence[Encounter]:
-        return self._observer.found
+        super().remember(memory)
+        self.drives = not memory.learns
 
     def judge(self, asked: Sequence[Contest]) -> Judgements:
-        self._observer.note(asked)
-        return {(contest.cav, contest.human): self._judged(contest) for contest in asked}
+        counts = zip(asked, self.met(asked), strict=True)
+        return {(contest.cav, contest.human): self._judged(count) for contest, count in counts}
 
-    def _judged(self, contest: Contest) -> Judgement:
-        count = self._cases.of(contest)
+    def _judged(self, count: Count | None) -> Judgement:
         if count is None:
             return Judgement(0.5, UNCLEAR, "few drivers were met in a like case")
-        told = f"{count.yielded} of {count.all} drivers met in like cases let the CAV pass"
-        return said(round(count.share, 6), told, *self.thresholds)
+        return said(round(count.share, 6), count.words, *self.thresholds)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from codriving.llm.embeddings import EmbeddingModel
     from codriving.llm.ledger import Ledger
-    from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for, one_line, seen_names
+    from codriving.llm.prompts.free_text import Names, names_for, one_line, seen_names
     from codriving.llm.prompts.judging import ContestView, JudgementReply, chances, judgement_reply
     from codriving.llm.prompts.render import Prompts, load_prompts, prompts_name, template_files
     from codriving.llm.prompts.replies import (
@@ -20,31 +20,31 @@ if TYPE_CHECKING:
         order_reply,
         pair_names,
     )
-    from codriving.llm.prompts.variables import decision_view, lane_views, negotiation_view, reflection_view
+    from codriving.llm.prompts.variables import decision_view, lane_views, memory_lines, negotiation_view
     from codriving.llm.prompts.views import MeaningView, SeenView, WayView
     from codriving.llm.question import Answer, Chat, Question
     from codriving.llm.sqlite_file import connect_sqlite, create_sqlite
 
 __all__ = [
-    "LONGEST_MEMORY", "Answer", "Chat", "ContestView", "CorrectionReply", "DecisionReply", "EmbeddingModel",
+    "Answer", "Chat", "ContestView", "CorrectionReply", "DecisionReply", "EmbeddingModel",
     "JudgementReply", "Ledger", "LessonReply", "MeaningView", "Names", "OrderReply", "Prompts", "Question", "SeenView",
     "WayView", "chances", "connect_sqlite", "correction_reply", "create_sqlite", "decision_reply", "decision_view",
-    "first_of_pairs", "judgement_reply", "lane_views", "load_prompts", "names_for", "negotiation_view", "one_line",
-    "order_reply", "pair_names", "prompts_name", "reflection_view", "seen_names", "template_files",
+    "first_of_pairs", "judgement_reply", "lane_views", "load_prompts", "memory_lines", "names_for", "negotiation_view",
+    "one_line", "order_reply", "pair_names", "prompts_name", "seen_names", "template_files",
 ]  # fmt: skip
 
 
 _FILES = {
     "embeddings": ("EmbeddingModel",),
     "ledger": ("Ledger",),
-    "prompts.free_text": ("LONGEST_MEMORY", "Names", "names_for", "one_line", "seen_names"),
+    "prompts.free_text": ("Names", "names_for", "one_line", "seen_names"),
     "prompts.judging": ("ContestView", "JudgementReply", "chances", "judgement_reply"),
     "prompts.render": ("Prompts", "load_prompts", "prompts_name", "template_files"),
     "prompts.replies": (
         "CorrectionReply", "DecisionReply", "LessonReply", "OrderReply", "correction_reply", "decision_reply",
         "first_of_pairs", "order_reply", "pair_names",
     ),
-    "prompts.variables": ("decision_view", "lane_views", "negotiation_view", "reflection_view"),
+    "prompts.variables": ("decision_view", "lane_views", "memory_lines", "negotiation_view"),
     "prompts.views": ("MeaningView", "SeenView", "WayView"),
     "question": ("Answer", "Chat", "Question"),
     "sqlite_file": ("connect_sqlite", "create_sqlite"),

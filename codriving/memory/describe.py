@@ -105,12 +105,17 @@ def _order(situation: Situation, numbers: dict[str, float], kinds: dict[str, str
 
 def brief(description: Description, action: Action) -> str:
     """Say in one line what a situation was and what was done, short enough for a prompt."""
+    return f"{met(description)}: {action}."
+
+
+def met(description: Description) -> str:
+    """Say in one line what a situation was, in words that need no explanation."""
     n, k = description.numbers, description.kinds
     if k["relation"] == "none":
         lead = f", {n['lead_gap']:.0f} m behind {n['lead_speed']:.1f} m/s" if "lead_gap" in n else ""
-        return f"At {n['speed']:.1f} m/s, no conflict{lead}: {action}."
+        return f"At {n['speed']:.1f} m/s, no conflict{lead}"
     order = {"first": "first", "second": "second", "none": "not ordered"}[k["order"]]
     return (
-        f"At {n['speed']:.1f} m/s, {k['relation']} with {k['driver']}, {n['mine']:.0f} m and {n['its']:.0f} m, "
-        f"TTCP {n['my_ttcp']:.1f} s and {n['its_ttcp']:.1f} s, dTTCP {n['dttcp']:.1f} s, {order}: {action}."
+        f"At {n['speed']:.1f} m/s, {k['relation']} with {k['driver']}, {n['mine']:.0f} m and {n['my_ttcp']:.1f} s "
+        f"before the zone, it {n['its']:.0f} m and {n['its_ttcp']:.1f} s, {order}"
     )

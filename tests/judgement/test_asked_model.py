@@ -2,14 +2,19 @@
 
 import json
 import re
+from pathlib import Path
 
 import pytest
 from asked import Scripted
+from remembered import interaction, online
 from worlds import FULL, Junction, car
 
+from codriving.datatypes.judgement import Encounter
+from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
 from codriving.judgement.asked_model import AskedModel
+from codriving.judgement.contests import contests
 from codriving.llm.prompts.judging import chances, judgement_reply
 from codriving.llm.question import Question
 from codriving.llm.scripted import ScriptedChat
@@ -26,7 +31,7 @@ def world(junction: Junction) -> WorldState:
     )
 
 
-def asked(junction: Junction, chance: object) -> tuple[CoDriving, ScriptedChat]:
+def asked(junction: Junction, chance: object, memory: CaseMemory | None = None) -> tuple[CoDriving, ScriptedChat]:
     """The method with a model that says the same of all drivers, and what it was asked in one step."""
 
     def script(question: Question) -> str:
@@ -35,7 +40,7 @@ def asked(junction: Junction, chance: object) -> tuple[CoDriving, ScriptedChat]:
         return json.dumps({"reason": "", "action": "SLOWER", "p1": "CAV1"})
 
     chat = ScriptedChat(script)
-    method = CoDriving(CdaLevel(**FULL), Scripted(chat), None, 1.5, judgement=AskedModel(0.5, 0.5))
+    method = CoDriving(CdaLevel(**FULL), Scripted(chat), memory, 1.5, judgement=AskedModel(0.5, 0.5))
     method.reset(junction.road_map, junction.model, 0)
     return method, chat
 
@@ -55,6 +60,24 @@ def test_all_pairs_are_asked_about_at_once_and_before_all_else(junction: Junctio
     judged = deliberation.situations[0].judgements["HDV1"]
     assert (judged.yields, judged.answer, judged.reason) == (0.9, "yields", "judged by the model: it brakes")
     assert deliberation.counts["model_calls"] == len(chat.questions)
+
+
+def test_with_a_memory_it_is_told_what_drivers_did_in_like_cases(junction: Junction, tmp_path: Path) -> None:
+    memory = online(tmp_path / "m.sqlite")
+    memory.begin(interaction())
+    [contest, _] = contests(junction.think(world(junction)).moment())
+    met = [Encounter("CAV1", f"HDV{k}", k, contest.numbers, bool(contest.rule), k < 2) for k in range(6)]
+    memory.learn([], met)
+    memory.begin(interaction(20_001))
+    method, chat = asked(junction, 0.9, memory)
+    method.act(world(junction))
+    told = [line for line in chat.questions[0].messages[-1].content.splitlines() if "right of way" in line]
+    assert [line.partition("; seen before: ")[2] for line in told] == [
+        "2 of 6 drivers met in like cases let the CAV pass"
+    ] * 2
+    plain, chat = asked(junction, 0.9)
+    plain.act(world(junction))
+    assert "seen before" not in chat.questions[0].messages[-1].content
 
 
 def test_a_question_that_is_too_long_keeps_the_more_urgent_half(junction: Junction) -> None:

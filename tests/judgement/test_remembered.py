@@ -93,8 +93,8 @@ def test_while_it_learns_the_rules_drive(learns: bool, contest: Contest, junctio
     """Else what it has learnt would make itself true."""
     judge = judge_of(met(contest, 0, 9), tmp_path, learns)
     node = compose(["suite=paper"])["method"]
-    method = build(node, CoDriving, "method", given={Model: RuleModel(), CaseMemory: judge._memory})
-    method.rely_on(judge, memory=judge._memory)
+    method = build(node, CoDriving, "method", given={Model: RuleModel(), CaseMemory: judge.memory})
+    method.rely_on(judge, memory=judge.memory)
     method.reset(junction.road_map, junction.model, 3)
     assert method.variant == "judgement=remembered"
     first = method.act(junction.world(CAV, HUMAN)).situations[0].order.first_of("CAV1", "HDV1")

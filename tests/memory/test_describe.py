@@ -81,4 +81,6 @@ def test_what_is_told_of_it_fits_into_a_prompt(junction: Junction) -> None:
     line = brief(describe(situation(junction, *MET, order=order_of("CAV2 CAV1"))), Action.IDLE)
     assert line.startswith("At 8.0 m/s, crossing with CAV, ")
     assert line.endswith(", second: IDLE.")
+    # No word that a prompt would have to explain.
+    assert "TTCP" not in line
     assert len(line) < 200

@@ -261,7 +261,10 @@ def test_recall_gives_the_text_and_the_numbers_of_what_was_kept(tmp_path: Path) 
     ((memory, *others),) = kept.search(FeatureEmbedder().embed([FAR[0]]), 2, -1.0)
     assert (memory.id, memory.action, memory.verdict, memory.count) == (1, Action.FASTER, Verdict.INTENSIFIED, 2)
     assert memory.similarity == pytest.approx(1.0, abs=1e-5)
-    assert "dTTCP 0.5 s, second: FASTER. Your action has intensified the conflict" in memory.text
+    assert (
+        "20 m and 2.5 s before the zone, it 24 m and 3.0 s, second: FASTER. Your action has intensified the conflict"
+        in memory.text
+    )
     assert len(memory.text) <= 400
     assert others[0].similarity < memory.similarity
     assert kept.search(FeatureEmbedder().embed([FAR[0]]), 5, 0.999) == [(memory,)]

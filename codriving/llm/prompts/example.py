@@ -158,6 +158,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
         "scene": "Driving 8.0 m/s, target 9.0 m/s; no vehicle ahead on the lane.",
         "conflict": "Crossing conflict with a human vehicle: dTTCP 3.0 s, general danger.",
         "order": "The CAV goes second; 1 go before it.",
+        "met": "At 8.0 m/s, crossing with human, 20 m and 2.5 s before the zone, it 24 m and 5.5 s, second.",
         "action": "FASTER",
         "verdict": "intensified",
         "comment": "Your action has intensified the conflict; similar actions should be avoided.",
@@ -171,7 +172,9 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     },
     "judge": {
         "pairs": [
-            ContestView("p1", "CAV1", "HDV1", {**_MOVING, "human_acceleration": -1.2, "priority": 1.0}, "it waits", ""),
+            ContestView(
+                "p1", "CAV1", "HDV1", {**_MOVING, "human_acceleration": -1.2, "priority": 1.0}, "it waits", "", "3 of 8"
+            ),
             ContestView("p2", "CAV1", "HDV2", {**_MOVING, "human_acceleration": 1.0, "priority": -1.0}, "", "HDV3"),
             ContestView("p3", "CAV2", "HDV3", {**_MOVING, "human_speed": 0.0, "ways": 1.0, "converging": 1.0}, "", ""),
         ]

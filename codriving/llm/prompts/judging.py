@@ -24,6 +24,7 @@ class ContestView:
     numbers: Mapping[str, float]
     rule: str  # Why the driver has to let the CAV pass by the rules of the road; empty if it need not
     follows: str  # The vehicle next ahead of the driver; empty if there is none near
+    seen: str = ""  # What drivers did in like cases who were met before; empty where that is not known
 
 
 class JudgementReply(BaseModel):

@@ -18,6 +18,8 @@ ROLES = ("system", "user")
 PURPOSES = tuple(EXAMPLES)
 FILES = tuple(f"{purpose}.{role}.md.j2" for purpose in PURPOSES for role in ROLES)  # The templates that there are
 
+PIECES = "pieces.md.j2"  # What several of ours say, to be imported
+
 SETS = ("informed", "planner")  # Sets that ship, each a folder here; the first one is taken where none is named
 OF_A_SET = ("negotiate", "decide")  # What a set has templates of; those of all else belong to all sets
 
@@ -79,7 +81,7 @@ class Prompts:
 
 def _sandbox() -> "Environment":
     """Return where templates are filled in: passed on from one person to the next, they may write text and no more."""
-    from jinja2 import StrictUndefined
+    from jinja2 import FunctionLoader, StrictUndefined, TemplateNotFound
     from jinja2.exceptions import SecurityError
     from jinja2.sandbox import ImmutableSandboxedEnvironment
 
@@ -97,7 +99,14 @@ def _sandbox() -> "Environment":
                 raise SecurityError(f"{operator} would make something too large")
             return super().call_binop(context, operator, left, right)
 
-    return Sandbox(undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, autoescape=False)
+    def piece(name: str) -> str:
+        if name != PIECES:
+            raise TemplateNotFound(name, f"there is nothing to include or import but {PIECES}")
+        return (OURS / PIECES).read_text(encoding="utf-8")
+
+    return Sandbox(
+        loader=FunctionLoader(piece), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, autoescape=False
+    )
 
 
 @lru_cache(maxsize=8)
@@ -117,7 +126,10 @@ def template_files(chosen: str | None, purposes: Collection[str]) -> dict[str, P
     Args:
         chosen: Name of a set, folder of the user's templates, or None.
     """
-    return {f"template {name}": path for name, path in _paths(chosen).items() if name.split(".")[0] in purposes}
+    paths = {name: path for name, path in _paths(chosen).items() if name.split(".")[0] in purposes}
+    if any(PIECES in path.read_text(encoding="utf-8", errors="replace") for path in paths.values()):
+        paths[PIECES] = OURS / PIECES
+    return {f"template {name}": path for name, path in paths.items()}
 
 
 def _paths(folder: str | None) -> dict[str, Path]:

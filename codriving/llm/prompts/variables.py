@@ -1,7 +1,6 @@
-"""The variables of the prompts of CoDrivingLLM: to decide, to negotiate and to reflect."""
+"""The variables of the prompts of CoDrivingLLM: to decide and to negotiate."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict
 from math import inf
 from typing import Any
 
@@ -9,7 +8,6 @@ from codriving.datatypes import (
     Action,
     ActionAssessment,
     Conflict,
-    Experience,
     Instance,
     LaneId,
     Memory,
@@ -20,6 +18,7 @@ from codriving.datatypes import (
     SceneDescription,
     Situation,
     TrackedVehicle,
+    Verdict,
 )
 from codriving.llm.prompts.free_text import LONGEST_MEMORY, Names, names_for
 from codriving.llm.prompts.told import blocks, choices, humans, meetings, near, past_view, timeless, waits
@@ -99,7 +98,7 @@ def decision_view(
         "past": past_view(past, names),
         "thoughts": thoughts,
         "may_hold": any(a.action is Action.HOLD for a in situation.assessments),
-        "memories": [_remembered(m, names) for m in situation.memories] if with_memories else [],
+        "memories": memory_lines(situation.memories, names) if with_memories else [],
         "allowed": [str(action) for action in situation.allowed],
     }
 
@@ -110,9 +109,16 @@ def _ordered(p: Precedence, other: str, names: Names, held: str) -> OrderView:
     return OrderView(names(other), names.sentence(p.reason), names.sentence(told))
 
 
-def _remembered(memory: Memory, names: Names) -> str:
+def memory_lines(memories: Sequence[Memory], names: Names) -> list[str]:
+    """Return what is told of memories: how alike each is, how often it was, and how often its action went well."""
+    return [_remembered(m, [other for other in memories if other.action is m.action], names) for m in memories]
+
+
+def _remembered(memory: Memory, same: Sequence[Memory], names: Names) -> str:
     times = "once" if memory.count == 1 else f"{memory.count} times"
-    return f"{names.sentence(memory.text, LONGEST_MEMORY)} ({memory.similarity:.0%} alike, {times})"
+    every, well = sum(m.count for m in same), sum(m.count for m in same if m.verdict is Verdict.EASED)
+    went = f"; {memory.action} went well in {well} of {every} like cases" if every > 1 else ""
+    return f"{names.sentence(memory.text, LONGEST_MEMORY)} ({memory.similarity:.0%} alike, {times}{went})"
 
 
 def lane_name(lane: LaneId) -> str:
@@ -254,16 +260,3 @@ def _pair(name: str, c: Conflict, instance: Instance, previous: PassingOrder | N
     earliest, can_stop = (max(one.earliest, 0.0), max(two.earliest, 0.0)), (one.can_stop, two.can_stop)
     distances, lost = (one.distance, two.distance), waits(instance, c.ego, c.other)
     return PairView(name, ego, other, relation, distances, c.ttcp, c.dttcp, severity, first, earliest, can_stop, lost)
-
-
-def reflection_view(experience: Experience) -> dict[str, Any]:
-    """Return the variables of the reflection prompt."""
-    return {
-        "scene": experience.description.scene,
-        "conflict": experience.description.conflict,
-        "order": experience.description.order,
-        "action": str(experience.action),
-        "verdict": str(experience.verdict),
-        "comment": experience.lesson,
-        **asdict(experience.effect),
-    }

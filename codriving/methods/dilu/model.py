@@ -7,7 +7,6 @@ from typing import Any, cast
 from codriving.datatypes import Action, Conflict, DrivingModel, SceneDescription, Situation, TrackedVehicle
 from codriving.geometry import RoadMap
 from codriving.llm import (
-    LONGEST_MEMORY,
     Answer,
     CorrectionReply,
     MeaningView,
@@ -17,9 +16,11 @@ from codriving.llm import (
     WayView,
     correction_reply,
     lane_views,
+    memory_lines,
     one_line,
     seen_names,
 )
+from codriving.memory import is_placeholder
 from codriving.methods.dilu.collision_log import Correction, Mistake
 from codriving.methods.dilu.rule import correct_one
 from codriving.methods.language_model.model_decider import ModelDecider
@@ -39,11 +40,11 @@ class SightDecider(ModelDecider):
         self.road_map, self.driving = road_map, driving
 
     def variables(self, situation: Situation, nearest: int | None, with_memories: bool) -> dict[str, Any]:
-        memories = situation.memories if with_memories else ()
+        names = seen_names(situation.scene)
         return {
             **seen_view(situation, self.road_map, self.driving, nearest),
             "interval": self.driving.decision_interval,
-            "memories": [one_line(memory.text, LONGEST_MEMORY) for memory in memories],
+            "memories": memory_lines(situation.memories, names) if with_memories else [],
         }
 
     def objection(self, situation: Situation, action: str) -> str:
@@ -59,7 +60,7 @@ def correct_by_model(
 ) -> list[Correction]:
     """Ask about every mistake of an episode, all in one go; by rule where the model gives no usable answer."""
     answers = model.ask([_question(model, road_map, driving, mistake) for mistake in mistakes])
-    return [_correction(mistake, answer) for mistake, answer in zip(mistakes, answers, strict=True)]
+    return [_correction(model, mistake, answer) for mistake, answer in zip(mistakes, answers, strict=True)]
 
 
 def _question(model: PromptedModel, road_map: RoadMap, driving: DrivingModel, mistake: Mistake) -> Question:
@@ -85,11 +86,16 @@ def _question(model: PromptedModel, road_map: RoadMap, driving: DrivingModel, mi
     return Question("reflect", situation.scene.ego.id, messages, correction_reply(tuple(right)), check)
 
 
-def _correction(mistake: Mistake, answer: Answer) -> Correction:
+def _correction(model: PromptedModel, mistake: Mistake, answer: Answer) -> Correction:
+    """Take what the model says; where it says nothing, or only what it was told, what the rule says."""
     by_rule, reply = correct_one(mistake), cast(CorrectionReply | None, answer.value)
     if reply is None:
         return by_rule
-    return Correction(Action(reply.action), reply.mistake or by_rule.mistake, reply.lesson)
+    empty = is_placeholder(reply.lesson, mistake.decision.reason)
+    if empty:
+        model.ledger.count("lessons_dropped")
+    wrong = by_rule.mistake if is_placeholder(reply.mistake, mistake.decision.reason) else reply.mistake
+    return Correction(Action(reply.action), wrong, by_rule.lesson if empty else reply.lesson)
 
 
 MOST = 6  # Vehicles at most of which it is told where they are and which ways they may take

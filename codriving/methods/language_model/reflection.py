@@ -5,7 +5,8 @@ from dataclasses import replace
 from typing import cast
 
 from codriving.datatypes import Experience, Verdict
-from codriving.llm import LessonReply, Question, reflection_view
+from codriving.llm import LessonReply, Question
+from codriving.memory import is_placeholder, reflection_view
 from codriving.methods.language_model.prompted_model import PromptedModel
 
 MISTAKES = (Verdict.INTENSIFIED, Verdict.TOO_CAUTIOUS)  # What is reflected on; what went well speaks for itself
@@ -20,6 +21,9 @@ def reflect(model: PromptedModel, experiences: Sequence[Experience], most: int) 
     for k, answer in zip(chosen, answers, strict=True):
         if answer.value is not None:
             lesson = cast(LessonReply, answer.value).lesson
+            if is_placeholder(lesson, experiences[k].lesson):
+                model.ledger.count("lessons_dropped")
+                continue
             found[k] = replace(experiences[k], lesson=f"{experiences[k].lesson} {lesson}".strip())
     return found
 

@@ -17,7 +17,7 @@ from worlds import Car, Junction, car
 from codriving.errors import ConfigError
 from codriving.llm.prompts.example import EXAMPLES
 from codriving.llm.prompts.free_text import Names, one_line
-from codriving.llm.prompts.render import FILES, OURS, SETS, Prompts
+from codriving.llm.prompts.render import FILES, OURS, PIECES, SETS, Prompts, template_files
 from codriving.llm.prompts.variables import decision_view
 from codriving.llm.question import Question
 
@@ -167,7 +167,7 @@ def test_template_can_be_replaced_alone(name: str, tmp_path: Path) -> None:
         ("{{ '{0.__class__}'.format(ego) }}", "unsafe"),
         ("{% for a in [1] %}{{ loop.__init__.__globals__ }}{% endfor %}", "unsafe"),
         ("{% if actions.clear() %}{% endif %}", "unsafe"),
-        ("{% include '/etc/passwd' %}", "loader"),
+        ("{% include '/etc/passwd' %}", "there is nothing to include or import but pieces.md.j2"),
         ("{{ " + "(" * 3000 + "1" + ")" * 3000 + " }}", "recursion"),
         ("{% for i in range(999 * 999 * 999) %}{% endfor %}", "Range too big"),
         ("{{ 'a' * 20000000000 }}", "* would make something too large"),
@@ -202,10 +202,21 @@ def test_set_is_named_and_a_folder_is_called_by_its_name(tmp_path: Path) -> None
         Prompts("planer")
 
 
+def test_pieces_are_files_of_who_imports_them(tmp_path: Path) -> None:
+    assert "template pieces.md.j2" in template_files("informed", ("decide",))
+    assert "template pieces.md.j2" in template_files("planner", ("dilu",))
+    assert "template pieces.md.j2" not in template_files("planner", ("decide",))
+    (tmp_path / "decide.user.md.j2").write_text(
+        "{% import 'pieces.md.j2' as pieces %}\nA\n{{ pieces.memories(memories, 'Then') -}}\nB\n"
+    )
+    text = Prompts(str(tmp_path)).messages("decide", {**EXAMPLES["decide"], "memories": ["one", "two"]})[1].content
+    assert text == "A\nThen:\n- one\n- two\nB"
+
+
 def test_templates_that_are_shipped_are_all_there() -> None:
     shared = sorted(path.name for path in OURS.glob("*.j2"))
     for name in SETS:
-        assert sorted([*shared, *(path.name for path in (OURS / name).glob("*.j2"))]) == sorted(FILES)
+        assert sorted([*shared, *(path.name for path in (OURS / name).glob("*.j2"))]) == sorted([*FILES, PIECES])
 
 
 @given(st.text(max_size=500))

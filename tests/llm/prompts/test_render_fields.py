@@ -140,7 +140,7 @@ def situations(junction: Junction, highway: Junction, merge: Junction) -> list[S
         replace(found[0], assessments=(*found[0].assessments, hold)),
     ]
     judged = {"HDV1": Judgement(0.2, "goes", "it does not brake")}
-    return [replace(s, memories=(memory(),), judgements=judged) for s in found]
+    return [replace(s, memories=(memory(count=2),), judgements=judged) for s in found]
 
 
 @pytest.fixture(scope="module")

@@ -115,6 +115,16 @@ def test_model_reflects_once_on_a_mistake(junction: Junction) -> None:
     assert kept.lesson == "Mistake: another vehicle was overlooked. Lesson: Let them pass. Right: SLOWER."
 
 
+def test_a_lesson_of_the_form_is_that_of_the_rule_and_counted(junction: Junction) -> None:
+    book = Notebook()
+    said = json.dumps({"mistake": "one short sentence", "lesson": "One short sentence.", "action": "SLOWER"})
+    made, _ = modelled(junction, lambda q: said if q.purpose == "reflect" else always("FASTER")(q), book, NEVER_HELD)
+    counts, _ = crashing(junction, made)
+    assert (counts["lessons_dropped"], counts["fallbacks"]) == (1, 0)
+    assert "hort sentence" not in book.learnt[0].lesson
+    assert "FASTER, and 3.2 s later you ran into another vehicle. Lesson: Slow down in time" in book.learnt[0].lesson
+
+
 @pytest.mark.parametrize("said", ["no idea", {"lesson": "x", "action": "FASTER"}, {"lesson": "", "action": "SLOWER"}])
 def test_reflection_that_cannot_be_used_is_written_by_rule_and_counted(junction: Junction, said: object) -> None:
     book = Notebook()

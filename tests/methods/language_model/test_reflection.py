@@ -1,5 +1,6 @@
 """Lessons by a language model: what it is asked, what is kept, and that the rules' comment stays."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -58,6 +59,8 @@ def test_the_model_is_told_what_came_of_it_and_no_names() -> None:
     assert "The CAV chose FASTER." in text
     assert LESSONS[Verdict.INTENSIFIED] in text
     assert "CAV1" not in text
+    assert "20 m and 2.5 s before the zone, it 28 m and 3.5 s, second." in text
+    assert "TTCP" not in text
 
 
 @pytest.mark.parametrize("said", ["{}", '{"lesson": " "}', "nothing of the kind"])
@@ -65,6 +68,17 @@ def test_without_a_usable_answer_the_comment_of_the_rules_stays(said: str) -> No
     ledger = Ledger()
     assert reflect(PromptedModel(ScriptedChat(lambda _: said), Prompts(), ledger), LEARNT, 9) == LEARNT
     assert ledger.close_step(0.0)[0]["fallbacks"] == 4
+
+
+@pytest.mark.parametrize("said", ["one or two short sentences", "...", "Lesson", LESSONS[Verdict.INTENSIFIED]])
+def test_a_lesson_that_says_nothing_is_dropped_and_counted(said: str) -> None:
+    ledger = Ledger()
+    script = ScriptedChat(lambda _: json.dumps({"lesson": said}))
+    assert reflect(PromptedModel(script, Prompts(), ledger), LEARNT, 2) == LEARNT
+    counts = ledger.close_step(0.0)[0]
+    assert (counts["lessons_dropped"], counts["fallbacks"]) == (2, 0)
+    reflect(PromptedModel(ScriptedChat(teacher), Prompts(), ledger), LEARNT, 2)
+    assert "lessons_dropped" not in ledger.close_step(0.0)[0]
 
 
 def test_a_server_that_does_not_answer_ends_the_episode() -> None:
