@@ -42,7 +42,7 @@ OTHERS: Sequence[Style] = (("#7a7a7a", "X", "-"), ("#7a1f5c", "<", "--"), ("#5c4
 
 SUITE_KEY = "suite"  # Of what was swept, what has panels of its own
 
-ENTRY = 2.2  # Width of an entry of a legend [inches]
+ENTRY, LETTER = 2.2, 0.075  # Width of an entry of a legend, and of a letter of a long one [inches]
 
 # For the controls of learning, beside the most interactions.
 CONTROL_MARKS = {"verdicts": "x", "situations": "+", "rule": "d", "elsewhere": "v"}
@@ -181,7 +181,8 @@ def learning_figure(
 def saved(figure: "Figure", handles: Mapping[str, "Artist"], heading: str, name: str) -> Mapping[str, bytes]:
     """Give a figure with its legend and heading as PNG and SVG, by file name."""
     # A narrow figure has no room for four names in a row.
-    columns = min(4, max(int(figure.get_figwidth() // ENTRY), 1), len(handles) or 1)
+    entry = max(ENTRY, *(LETTER * len(name) for name in handles)) if handles else ENTRY
+    columns = min(4, max(int(figure.get_figwidth() // entry), 1), len(handles) or 1)
     figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=columns)
     figure.suptitle(heading, fontsize=11)
     kinds: dict[str, dict[str, str | None]] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
