@@ -52,6 +52,25 @@ def closed() -> Loopback:
     return server
 
 
+def test_a_model_judges_human_drivers_before_it_decides(tmp_path: Path) -> None:
+    with Loopback() as server:
+        asked = ["suite=standoff", "judgement=llm", "episodes=1", "scenario.time_limit=4"]
+        result = run(server, tmp_path, *asked)
+    assert result.exit_code == 0, result.output
+    (folder,) = (tmp_path / "run" / "mine").glob("episodes/*/*")
+    lines = [json.loads(line) for line in (folder / "transcript.jsonl").read_text().splitlines()]
+    judged = [line for line in lines if line["purpose"] == "judge"]
+    assert judged
+    assert not [line["problem"] for line in judged if line["problem"]]
+    chances = [chance for line in judged for name, chance in line["value"].items() if name != "reason"]
+    assert set(chances) == {0.1, 0.9}
+    decided = [json.loads(line) for line in (folder / "decisions.jsonl").read_text().splitlines()]
+    said = [j for line in decided for cav in line["cavs"] for j in cav.get("judgements", {}).values()]
+    assert len(said) == len(chances)
+    assert {j["answer"] for j in said} == {"yields", "goes"}
+    assert all(j["reason"] == "judged by the model: That is what the situation asks for." for j in said)
+
+
 @pytest.mark.parametrize("scenario", ["intersection", "roundabout", "highway", "merge"])
 def test_a_model_drives_every_scenario(scenario: str, tmp_path: Path) -> None:
     with Loopback() as server:

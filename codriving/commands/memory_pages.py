@@ -28,6 +28,7 @@ def show_page(file: Path | None, most: int) -> str:
         f"snapshot      {reading.snapshot.digest}",
         f"embedder      {reading.embedder}, {reading.dimension} numbers",
         f"experiences   {len(kept)}, made {sum(entry.count for entry in kept)} times",
+        *_drivers(reading),
         *(f"interactions  {text}" for text in _episodes(reading.interactions)),
         "",
         *_verdicts(reading),
@@ -35,6 +36,14 @@ def show_page(file: Path | None, most: int) -> str:
     if kept:
         lines += ["", "Made most often:", *(text for entry in kept[:most] for text in _entry(entry))]
     return "\n".join(lines)
+
+
+def _drivers(reading: Reading) -> list[str]:
+    """Say what human drivers did who were met, where that was kept."""
+    met = reading.snapshot.encounters
+    held_back, free = ([one.yielded for one in met if one.relied is relied] for relied in (True, False))
+    told = f"{sum(held_back)} of {len(held_back)} whom the rules hold back, {sum(free)} of {len(free)} others"
+    return [f"let pass      {told}"] if met else []
 
 
 def search_page(text: str, file: Path | None, most: int) -> str:

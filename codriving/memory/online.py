@@ -57,13 +57,20 @@ class OnlineMemory(RetrievalMemory):
     def begin(self, interaction: Interaction) -> None:
         """Begin an episode: what was learnt with smaller seeds is what can be recalled."""
         self._interaction = interaction
+        self._learnt: list[Experience] = []
+        self._met: list[Encounter] = []
+        self._new = 0
         with self._store() as store:
             self._snapshot = store.snapshot(before=interaction.seed)
 
     def learn(self, experiences: Sequence[Experience], encounters: Sequence[Encounter] = ()) -> int:
-        """Keep what was learnt in the episode that has begun."""
+        """Keep what was learnt in the episode that has begun: with a channel each CAV learns by itself, one by one."""
+        self._learnt += experiences
+        self._met += encounters
+        before = self._new
         with self._store() as store:
-            return store.add(self._interaction, experiences, encounters=encounters)
+            self._new = store.add(self._interaction, self._learnt, encounters=self._met)
+        return self._new - before
 
     def _store(self) -> MemoryStore:
         if self.file is None:

@@ -2,8 +2,8 @@
 
 import json
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 ACTIONS = ("SLOWER", "IDLE", "HOLD", "FASTER", "LANE_LEFT", "LANE_RIGHT")
@@ -18,6 +18,8 @@ _TARGETS = re.compile(r"^[ \t]*- ([A-Z_, ]+) to (\d+(?:\.\d+)?) m/s(.*)$", re.MU
 _LEAVES = re.compile(r"^[ \t]*- ([\w.-]+).*\bzone (?:from [\d.]+ s to|until) (\d+(?:\.\d+)?) s", re.MULTILINE)
 _BEFORE = re.compile(r"^[ \t]*- ([\w.-]+) before you\b", re.MULTILINE)
 _ZONE = re.compile(r"([\w.-]+)'s(?: zone)? in (\d+(?:\.\d+)?) s")
+_JUDGED = re.compile(r"^(\S+): would \S+ let \S+ pass first\?[^\n]*\n- ([^\n]*)\n- ([^\n]*)$", re.MULTILINE)
+_THERE = re.compile(r"there in (\d+(?:\.\d+)?) s\b")
 _GETS = re.compile(r"^[ \t]*- ([A-Z_, ]+):.*\bgets (-?\d+(?:\.\d+)?) m\b", re.MULTILINE)
 
 
@@ -48,12 +50,14 @@ class Reading:
         action: The decision; empty if none is asked for.
         allowed: The actions that the prompt allows.
         pairs: The order of each pair that the prompt lists.
+        chances: How likely it is that a driver lets a CAV pass, by the pair that the prompt lists.
         reason: One sentence.
     """
 
     action: str = ""
     allowed: tuple[str, ...] = ()
     pairs: tuple[Pair, ...] = ()
+    chances: Mapping[str, float] = field(default_factory=dict)
     reason: str = "That is what the situation asks for."
 
 
@@ -70,6 +74,8 @@ def read(messages: Sequence[dict[str, Any]]) -> Reading:
         text = str(message.get("content") or "")
         if message.get("role") != "user":
             continue
+        if judged := _JUDGED.findall(text):
+            return Reading(chances={name: _chance(mine, its) for name, mine, its in judged})
         if found := _PAIRS.search(text):
             earliest = {name: float(time) for name, time in _EARLIEST.findall(text)}
             return Reading(pairs=tuple(_pairs(found.group(1), earliest)))
@@ -77,6 +83,13 @@ def read(messages: Sequence[dict[str, Any]]) -> Reading:
             allowed = tuple(word for word in re.findall(r"[A-Z_]+", found.group(1)) if word in ACTIONS)
             return Reading(action=_chosen(text, allowed), allowed=allowed)
     return Reading()
+
+
+def _chance(mine: str, its: str) -> float:
+    """Likely where the driver stands, or would be there more than a second later than the CAV at its earliest."""
+    cav, human = _THERE.search(mine), _THERE.search(its)
+    later = cav is None or human is None or float(human.group(1)) > float(cav.group(1)) + 1.0
+    return 0.9 if later else 0.1
 
 
 def _chosen(text: str, allowed: Sequence[str]) -> str:
@@ -178,6 +191,8 @@ def _word(name: str, values: Sequence[Any], reading: Reading, pair: Pair | None)
     """One word of an answer."""
     if name == "action":
         return reading.action
+    if name in reading.chances:
+        return reading.chances[name]
     if pair is not None:
         if name in ("pair", "id", "pair_id"):
             return pair.id

@@ -4,8 +4,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from remembered import experience, filled, frozen, interaction, online
+from remembered import description, experience, filled, frozen, interaction, online
 
+from codriving.datatypes.judgement import Encounter
 from codriving.errors import ConfigError, MemoryFileError
 
 
@@ -60,6 +61,21 @@ def test_a_snapshot_that_has_changed_is_not_taken_for_the_one_that_was_noted(pat
     assert frozen(path).digest != noted
     with pytest.raises(MemoryFileError, match=r"does not hold the snapshot .* it has changed since"):
         frozen(path, snapshot=noted)
+
+
+def test_what_several_learn_in_one_episode_is_kept_of_all(tmp_path: Path) -> None:
+    """With a channel each CAV has a copy of the method, and all have one memory."""
+    memory = online(tmp_path / "m.sqlite")
+    memory.begin(interaction())
+    met = Encounter("CAV1", "HDV1", 3, {"priority": 1.0}, True, True)
+    assert memory.learn([experience(step=1)], [met]) == 1
+    assert memory.learn([experience(step=2, ego="CAV2"), experience(description(dttcp=7.5), ego="CAV2")]) == 1
+    memory.begin(interaction(20_001))
+    assert memory.learn([]) == 0
+    kept = frozen(tmp_path / "m.sqlite")
+    assert kept.label.endswith(", 2 interactions")
+    assert list(kept.encounters()) == [met]
+    assert [(e.count, e.ego) for e in kept._snapshot.experiences] == [(2, "CAV1"), (1, "CAV2")]  # type: ignore[union-attr]
 
 
 def test_a_memory_that_learns_needs_a_place_to_grow_in() -> None:
