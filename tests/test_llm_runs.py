@@ -63,11 +63,11 @@ def test_a_model_judges_human_drivers_before_it_decides(tmp_path: Path) -> None:
     assert judged
     assert not [line["problem"] for line in judged if line["problem"]]
     chances = [chance for line in judged for name, chance in line["value"].items() if name != "reason"]
-    assert set(chances) == {0.1, 0.9}
+    assert set(chances) <= {0.1, 0.9}
     decided = [json.loads(line) for line in (folder / "decisions.jsonl").read_text().splitlines()]
     said = [j for line in decided for cav in line["cavs"] for j in cav.get("judgements", {}).values()]
     assert len(said) == len(chances)
-    assert {j["answer"] for j in said} == {"yields", "goes"}
+    assert all((j["answer"] == "yields") == (j["yields"] == 0.9) for j in said)
     assert all(j["reason"] == "judged by the model: That is what the situation asks for." for j in said)
 
 

@@ -13,7 +13,7 @@ from codriving.datatypes.cooperation import (
 )
 from codriving.datatypes.experience import Description, Effect, Experience, Interaction, Memory, Verdict
 from codriving.datatypes.flow import Flow
-from codriving.datatypes.judgement import GOES, UNCLEAR, YIELDS, Encounter, Judgement, Judgements
+from codriving.datatypes.judgement import GOES, UNCLEAR, YIELDS, Judgement, Judgements, MetDriver
 from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.order import (
     Approach,
@@ -110,10 +110,10 @@ __all__ = [
     "BLOCKER", "EACH", "GOES", "NEAREST", "UNCLEAR", "UNITS", "YIELDS", "Account", "Action", "ActionAssessment",
     "ActionFilter", "ActionOutlook", "Approach", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat",
     "Collision", "Communication", "Conflict", "Cooperation", "Coordination", "Decision", "Deliberation", "Description",
-    "Drivers", "DrivingModel", "Effect", "Encounter", "Ending", "EpisodeLauncher", "EpisodeRecord", "ExpectedPassage",
-    "Experience", "Flow", "FlowArrival", "FlowLog", "HumanJudge", "HumanOutlook", "Instance", "Intent", "Interaction",
-    "Judgement", "Judgements", "Kind", "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner",
-    "Memory", "Method", "Metric", "Model", "NamedNumber", "OrderAgreement", "OrderExecutor", "OrderMessage",
+    "Drivers", "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "ExpectedPassage", "Experience",
+    "Flow", "FlowArrival", "FlowLog", "HumanJudge", "HumanOutlook", "Instance", "Intent", "Interaction", "Judgement",
+    "Judgements", "Kind", "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory",
+    "MetDriver", "Method", "Metric", "Model", "NamedNumber", "OrderAgreement", "OrderExecutor", "OrderMessage",
     "OrderOfCavs", "Outcome", "Outlook", "Pair", "Participant", "Party", "PassingOrder", "PastDecision", "Pet",
     "Point", "Precedence", "Proposal", "ReasonedDeliberation", "Relation", "Response", "Road", "Role", "Route",
     "RuleModel", "Scenario", "Scene", "SceneDescription", "Score", "Severity", "Shares", "Simulator", "Sine",

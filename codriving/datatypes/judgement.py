@@ -26,7 +26,7 @@ Judgements = Mapping[Pair, Judgement]  # By CAV and human driver
 
 
 @dataclass(frozen=True, slots=True)
-class Encounter:
+class MetDriver:
     """A CAV and a human driver of whom it was open who goes first, and who then did."""
 
     cav: str

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from codriving.datatypes.cooperation import Coordination, Party
 from codriving.datatypes.experience import Experience, Interaction, Memory
-from codriving.datatypes.judgement import Encounter
+from codriving.datatypes.judgement import MetDriver
 from codriving.datatypes.record import Outcome, Score, Trajectory
 from codriving.datatypes.road import Road, Route
 from codriving.datatypes.situation import Deliberation, Situation
@@ -154,11 +154,7 @@ class CaseMemory(ABC):
     reflections: int = 0  # Mistakes of an episode whose lessons a language model writes at most
 
     def prepare(self) -> None:
-        """Refuse before the first episode what would fail in each of them.
-
-        Raises:
-            UserError: With what is wrong and its cure.
-        """
+        """Refuse, before the first episode and with a ``UserError``, what would fail in each of them."""
         return None
 
     def begin(self, interaction: Interaction) -> None:
@@ -169,16 +165,12 @@ class CaseMemory(ABC):
     def recall(self, situations: Sequence[Situation]) -> list[tuple[Memory, ...]]:
         """Find experiences similar to each situation, most similar first."""
 
-    def encounters(self) -> Sequence[Encounter]:
+    def encounters(self) -> Sequence[MetDriver]:
         """Return what human drivers did who were met before."""
         return ()
 
-    def learn(self, experiences: Sequence[Experience], encounters: Sequence[Encounter] = ()) -> int:
-        """Keep what was learnt in the episode that has begun, and what human drivers did in it.
-
-        Returns:
-            How many of the experiences are new.
-        """
+    def learn(self, experiences: Sequence[Experience], encounters: Sequence[MetDriver] = ()) -> int:
+        """Keep what was learnt in the episode that has begun; gives how many of the experiences are new."""
         return 0
 
 

@@ -13,11 +13,11 @@ from codriving.datatypes import (
     YIELDS,
     CaseMemory,
     Conflict,
-    Encounter,
     HumanJudge,
     Judgement,
     Judgements,
     Manner,
+    MetDriver,
     Method,
     Road,
     TrackedVehicle,
@@ -61,7 +61,7 @@ class Judge(HumanJudge, ABC):
         """See what the CAVs know at a step, before anything is judged in it."""
         return None
 
-    def encounters(self) -> Sequence[Encounter]:
+    def encounters(self) -> Sequence[MetDriver]:
         """Return what drivers did in the episode, to be remembered."""
         return ()
 

@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from codriving.datatypes import Encounter
+from codriving.datatypes import MetDriver
 from codriving.geometry import RoadMap
 from codriving.judgement.contests import Contest
 from codriving.reasoning import Moment
@@ -36,7 +36,7 @@ class Count:
 class LikeCases:
     """Counts of drivers in like cases; where few are known, of all whom the rules of the road hold back, or do not."""
 
-    def __init__(self, encounters: Iterable[Encounter], fewest: int) -> None:
+    def __init__(self, encounters: Iterable[MetDriver], fewest: int) -> None:
         self.fewest, self._counts = fewest, defaultdict[Case, Count](Count)
         for met in encounters:
             for case in _cases(met.numbers, met.relied):
@@ -56,7 +56,7 @@ def _cases(numbers: Mapping[str, float], relied: bool) -> Iterator[Case]:
     yield (relied,)
 
 
-class Observer:
+class CaseObserver:
     """Sees of pairs that were judged who was first in their zone, as the CAV itself can see it.
 
     Of a pair one case of a kind is kept, so that a driver who was judged at many steps counts once in each.
@@ -65,7 +65,7 @@ class Observer:
     def __init__(self, road_map: RoadMap) -> None:
         self._road_map, self._step = road_map, 0
         self._open: dict[tuple[str, str, str, int], dict[Case, tuple[Contest, int]]] = {}
-        self.found: list[Encounter] = []
+        self.found: list[MetDriver] = []
 
     def note(self, asked: Iterable[Contest]) -> None:
         """Keep what is judged now."""
@@ -89,6 +89,6 @@ class Observer:
                 kinds = self._open.pop(key).values()
                 if mine != its:
                     self.found += [
-                        Encounter(cav, human, step, contest.numbers, bool(contest.rule), mine)
+                        MetDriver(cav, human, step, contest.numbers, bool(contest.rule), mine)
                         for contest, step in kinds
                     ]

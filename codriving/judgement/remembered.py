@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 
-from codriving.datatypes import UNCLEAR, CaseMemory, Encounter, Judgement, Judgements
+from codriving.datatypes import UNCLEAR, CaseMemory, Judgement, Judgements, MetDriver
 from codriving.errors import require
 from codriving.geometry import RoadMap
 from codriving.judgement.contests import Contest
 from codriving.judgement.judge import Asked, Judge, said, thresholds
-from codriving.judgement.like_cases import Count, LikeCases, Observer
+from codriving.judgement.like_cases import CaseObserver, Count, LikeCases
 from codriving.reasoning import Moment
 
 
@@ -21,14 +21,14 @@ class Remembering(Judge):
         self.memory = memory
 
     def reset(self, road_map: RoadMap, model: Asked | None) -> None:
-        self._observer = Observer(road_map) if self.memory is not None and self.memory.learns else None
+        self._observer = CaseObserver(road_map) if self.memory is not None and self.memory.learns else None
         self._cases = LikeCases(() if self.memory is None else self.memory.encounters(), self.fewest)
 
     def watch(self, moment: Moment) -> None:
         if self._observer is not None:
             self._observer.watch(moment)
 
-    def encounters(self) -> Sequence[Encounter]:
+    def encounters(self) -> Sequence[MetDriver]:
         return () if self._observer is None else self._observer.found
 
     def met(self, asked: Sequence[Contest]) -> list[Count | None]:

@@ -5,7 +5,7 @@ import sqlite3
 from collections.abc import Sequence
 from math import isfinite
 
-from codriving.datatypes import Encounter
+from codriving.datatypes import MetDriver
 
 _TABLE = """
 CREATE TABLE IF NOT EXISTS encounters (
@@ -15,7 +15,7 @@ CREATE TABLE IF NOT EXISTS encounters (
 """
 
 
-def keep(connection: sqlite3.Connection, interaction: int, encounters: Sequence[Encounter]) -> None:
+def keep(connection: sqlite3.Connection, interaction: int, encounters: Sequence[MetDriver]) -> None:
     """Write what was met in one interaction."""
     if encounters:
         connection.execute(_TABLE)
@@ -31,7 +31,7 @@ def forget(connection: sqlite3.Connection, interaction: int) -> None:
         connection.execute("DELETE FROM encounters WHERE interaction = ?", (interaction,))
 
 
-def met_in(connection: sqlite3.Connection, interactions: Sequence[int]) -> tuple[Encounter, ...]:
+def met_in(connection: sqlite3.Connection, interactions: Sequence[int]) -> tuple[MetDriver, ...]:
     """Read what was met in some interactions, in their order; files of before hold nothing of it.
 
     Raises:
@@ -48,7 +48,7 @@ def met_in(connection: sqlite3.Connection, interactions: Sequence[int]) -> tuple
                 isinstance(x, int | float) and isfinite(x) for x in numbers.values()
             ):
                 raise ValueError(f"what is known of {human} is {text[:80]}")
-            found.append(Encounter(str(cav), str(human), int(step), numbers, bool(relied), bool(yielded)))
+            found.append(MetDriver(str(cav), str(human), int(step), numbers, bool(relied), bool(yielded)))
     return tuple(found)
 
 

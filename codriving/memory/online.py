@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from codriving.datatypes import Encounter, Experience, Interaction
+from codriving.datatypes import Experience, Interaction, MetDriver
 from codriving.errors import ConfigError
 from codriving.memory.embedders import EmbeddingServer
 from codriving.memory.recall import RetrievalMemory
@@ -58,12 +58,12 @@ class OnlineMemory(RetrievalMemory):
         """Begin an episode: what was learnt with smaller seeds is what can be recalled."""
         self._interaction = interaction
         self._learnt: list[Experience] = []
-        self._met: list[Encounter] = []
+        self._met: list[MetDriver] = []
         self._new = 0
         with self._store() as store:
             self._snapshot = store.snapshot(before=interaction.seed)
 
-    def learn(self, experiences: Sequence[Experience], encounters: Sequence[Encounter] = ()) -> int:
+    def learn(self, experiences: Sequence[Experience], encounters: Sequence[MetDriver] = ()) -> int:
         """Keep what was learnt in the episode that has begun: with a channel each CAV learns by itself, one by one."""
         self._learnt += experiences
         self._met += encounters

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from codriving.datatypes import CaseMemory, Encounter, Memory, Situation
+from codriving.datatypes import CaseMemory, Memory, MetDriver, Situation
 from codriving.errors import ConfigError
 from codriving.memory.describe import describe
 from codriving.memory.embedders import EmbeddingServer, make_embedder
@@ -21,7 +21,7 @@ class RetrievalMemory(CaseMemory):
         self._embedder = make_embedder(embedder, server)
         self._snapshot: Snapshot | None = None
 
-    def encounters(self) -> Sequence[Encounter]:
+    def encounters(self) -> Sequence[MetDriver]:
         """Return what human drivers did who were met in the interactions that are recalled from."""
         return () if self._snapshot is None else self._snapshot.encounters
 

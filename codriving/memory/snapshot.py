@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from codriving.datatypes import Action, Effect, Encounter, Experience, Memory, Verdict
+from codriving.datatypes import Action, Effect, Experience, Memory, MetDriver, Verdict
 from codriving.errors import MemoryFileError
 from codriving.memory.describe import brief
 from codriving.memory.embedders import Embedder, FeatureEmbedder, Vectors
@@ -61,7 +61,7 @@ class Snapshot:
         vectors: Vectors,
         digest: str,
         interactions: int,
-        encounters: Sequence[Encounter] = (),
+        encounters: Sequence[MetDriver] = (),
     ) -> None:
         self.experiences, self.encounters = tuple(experiences), tuple(encounters)
         self.digest, self.interactions = digest, interactions

@@ -10,7 +10,7 @@ from typing import Self
 
 import numpy as np
 
-from codriving.datatypes import Description, Encounter, Experience, Interaction
+from codriving.datatypes import Description, Experience, Interaction, MetDriver
 from codriving.errors import MemoryFileError
 from codriving.memory.embedders import Embedder, FeatureEmbedder, Vectors
 from codriving.memory.index import Index
@@ -56,7 +56,7 @@ class MemoryStore:
         interaction: Interaction,
         experiences: Sequence[Experience],
         vectors: Vectors | None = None,
-        encounters: Sequence[Encounter] = (),
+        encounters: Sequence[MetDriver] = (),
     ) -> int:
         """Add what was learnt in one episode, all of it or nothing; the same episode driven again replaces itself."""
         made = self.embedder.embed([e.description for e in experiences]) if vectors is None else vectors
@@ -213,7 +213,7 @@ def merge(sources: list[Path], target: Path, embedder: Embedder, duplicates: flo
 
 def read(
     path: Path, embedder: Embedder
-) -> Iterator[tuple[Interaction, list[Experience], Vectors, tuple[Encounter, ...]]]:
+) -> Iterator[tuple[Interaction, list[Experience], Vectors, tuple[MetDriver, ...]]]:
     """Read a memory interaction by interaction, with every sighting."""
     with closing(open_file(path, write=False)) as connection:
         dimension = check_embedder(path, about(connection), embedder)

@@ -10,8 +10,8 @@ from codriving.datatypes import (
     Collision,
     Decision,
     DrivingModel,
-    Encounter,
     Experience,
+    MetDriver,
     Outcome,
     Role,
     Situation,
@@ -122,7 +122,7 @@ def recall(memory: CaseMemory | None, situations: Sequence[Situation], most: int
 
 
 def learn(
-    memory: CaseMemory, experiences: Sequence[Experience], encounters: Sequence[Encounter] = ()
+    memory: CaseMemory, experiences: Sequence[Experience], encounters: Sequence[MetDriver] = ()
 ) -> dict[str, float]:
     """Put what was experienced in an episode into a memory, and what human drivers did in it."""
     new = memory.learn(experiences, encounters) if encounters else memory.learn(experiences)

@@ -9,7 +9,7 @@ from asked import Scripted
 from remembered import interaction, online
 from worlds import FULL, Junction, car
 
-from codriving.datatypes.judgement import Encounter
+from codriving.datatypes.judgement import MetDriver
 from codriving.datatypes.parts import CaseMemory
 from codriving.datatypes.world import WorldState
 from codriving.errors import ConfigError
@@ -66,7 +66,7 @@ def test_with_a_memory_it_is_told_what_drivers_did_in_like_cases(junction: Junct
     memory = online(tmp_path / "m.sqlite")
     memory.begin(interaction())
     [contest, _] = contests(junction.think(world(junction)).moment())
-    met = [Encounter("CAV1", f"HDV{k}", k, contest.numbers, bool(contest.rule), k < 2) for k in range(6)]
+    met = [MetDriver("CAV1", f"HDV{k}", k, contest.numbers, bool(contest.rule), k < 2) for k in range(6)]
     memory.learn([], met)
     memory.begin(interaction(20_001))
     method, chat = asked(junction, 0.9, memory)

@@ -10,12 +10,12 @@ from worlds import Car, Junction, car
 
 from codriving.config.build import build
 from codriving.config.compose import compose
-from codriving.datatypes.judgement import Encounter, Judgement
+from codriving.datatypes.judgement import Judgement, MetDriver
 from codriving.datatypes.parts import CaseMemory, Model, RuleModel
 from codriving.datatypes.record import Ending, Outcome
 from codriving.errors import ConfigError
 from codriving.judgement.contests import Contest, contests
-from codriving.judgement.like_cases import LikeCases, Observer
+from codriving.judgement.like_cases import CaseObserver, LikeCases
 from codriving.judgement.remembered import Remembered
 from codriving.methods.codriving import CoDriving
 
@@ -29,13 +29,13 @@ def contest(junction: Junction) -> Contest:
     return found
 
 
-def met(contest: Contest, yielded: int, went: int, relied: bool | None = None, **numbers: float) -> list[Encounter]:
+def met(contest: Contest, yielded: int, went: int, relied: bool | None = None, **numbers: float) -> list[MetDriver]:
     """Drivers in a case like this one, of whom so many let the CAV pass."""
     known, rule = {**contest.numbers, **numbers}, bool(contest.rule) if relied is None else relied
-    return [Encounter("CAV1", f"HDV{k}", k, known, rule, k < yielded) for k in range(yielded + went)]
+    return [MetDriver("CAV1", f"HDV{k}", k, known, rule, k < yielded) for k in range(yielded + went)]
 
 
-def judge_of(encounters: Sequence[Encounter], folder: Path, learns: bool = False, **change: float) -> Remembered:
+def judge_of(encounters: Sequence[MetDriver], folder: Path, learns: bool = False, **change: float) -> Remembered:
     """A judge that remembers some drivers, as it is configured but for what is named."""
     path = folder / "m.sqlite"
     memory = online(path)
@@ -101,9 +101,9 @@ def test_while_it_learns_the_rules_drive(learns: bool, contest: Contest, junctio
     assert first == ("CAV1" if learns else "HDV1")
 
 
-def seen(junction: Junction, *later: Sequence[Car]) -> list[Encounter]:
+def seen(junction: Junction, *later: Sequence[Car]) -> list[MetDriver]:
     """What is found of a pair that is judged first, and seen again at later steps."""
-    observer = Observer(junction.road_map)
+    observer = CaseObserver(junction.road_map)
     for k, cars in enumerate([(CAV, HUMAN), *later]):
         moment = junction.thoughts(*cars).moment()
         observer.watch(moment)

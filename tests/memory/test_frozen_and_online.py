@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from remembered import description, experience, filled, frozen, interaction, online
 
-from codriving.datatypes.judgement import Encounter
+from codriving.datatypes.judgement import MetDriver
 from codriving.errors import ConfigError, MemoryFileError
 
 
@@ -67,7 +67,7 @@ def test_what_several_learn_in_one_episode_is_kept_of_all(tmp_path: Path) -> Non
     """With a channel each CAV has a copy of the method, and all have one memory."""
     memory = online(tmp_path / "m.sqlite")
     memory.begin(interaction())
-    met = Encounter("CAV1", "HDV1", 3, {"priority": 1.0}, True, True)
+    met = MetDriver("CAV1", "HDV1", 3, {"priority": 1.0}, True, True)
     assert memory.learn([experience(step=1)], [met]) == 1
     assert memory.learn([experience(step=2, ego="CAV2"), experience(description(dttcp=7.5), ego="CAV2")]) == 1
     memory.begin(interaction(20_001))

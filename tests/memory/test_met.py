@@ -8,16 +8,16 @@ from pathlib import Path
 import pytest
 from remembered import description, experience, frozen, interaction, online
 
-from codriving.datatypes.judgement import Encounter
+from codriving.datatypes.judgement import MetDriver
 from codriving.errors import MemoryFileError
 from codriving.memory.embedders import FeatureEmbedder
 from codriving.memory.snapshot import open_snapshot
 from codriving.memory.store import MemoryStore, merge
 
-MET = [Encounter("CAV1", f"HDV{k}", k, {"time_ahead": 0.125 * k, "priority": 1.0}, k % 2 == 0, k < 4) for k in range(9)]
+MET = [MetDriver("CAV1", f"HDV{k}", k, {"time_ahead": 0.125 * k, "priority": 1.0}, k % 2 == 0, k < 4) for k in range(9)]
 
 
-def filled(path: Path, *episodes: list[Encounter], first: int = 20_000) -> Path:
+def filled(path: Path, *episodes: list[MetDriver], first: int = 20_000) -> Path:
     with MemoryStore(path, FeatureEmbedder(), 0.98) as store:
         for k, met in enumerate(episodes):
             store.add(interaction(first + k), [experience(description(dttcp=k))], encounters=met)
