@@ -85,6 +85,9 @@ ablate: $(READY) ## each reasoning sub-module removed in turn
 compare: $(READY) ## every method of the paper on the same seeds, each against codriving
 	$(BIN)/codriving compare baselines $(ARGS)
 
+paper: $(READY) ## drive every table and figure of the paper, and make outputs/paper/index.html of them; takes an hour
+	$(BIN)/codriving experiment paper $(ARGS)
+
 bench: $(READY) ## measure speed
 	@test -f benchmarks/__main__.py || { echo "there are no benchmarks yet" >&2; exit 2; }
 	$(BIN)/python -m benchmarks $(ARGS)
@@ -129,4 +132,4 @@ clean: ## remove .venv and what the tools left behind; outputs/ stays
 	rm -rf $(VENV) dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch local test-local train ablate compare bench tables pictures docs lint types format lock clean
+.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch local test-local train ablate compare paper bench tables pictures docs lint types format lock clean

@@ -18,6 +18,7 @@ from codriving.cli.commands import (
     bound,
     check,
     compare,
+    experiment,
     export,
     join,
     learn,
@@ -170,6 +171,7 @@ app.command(epilog="Example: codriving compare baselines scenario=intersection e
 app.command(epilog="Example: codriving stress humans scenario=intersection episodes=60")(stress)
 app.command(epilog="Example: codriving bound scenario=intersection scenario.cavs=12 episodes=40")(bound)
 app.command(epilog="Example: codriving learn scenario=intersection interactions=0,5,20 episodes=50 run=curve")(learn)
+app.command(epilog="Example: codriving experiment ablation episodes=20 run=first")(experiment)
 app.command(epilog="Example: codriving join outputs/run/big")(join)
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)

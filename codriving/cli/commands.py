@@ -12,6 +12,7 @@ from codriving.cli.arguments import ConfigDir, Overrides, ShowConfig
 from codriving.cli.completion import (
     PLURALS,
     complete_axis,
+    complete_experiment,
     complete_format,
     complete_group,
     complete_layout,
@@ -126,6 +127,41 @@ def learn(overrides: Overrides = None, config_dir: ConfigDir = None, cfg: ShowCo
     from codriving.commands import run_learn
 
     raise typer.Exit(run_learn(overrides or [], config_dir, cfg))
+
+
+def experiment(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[NAME|FILE]",
+            help="An experiment of codriving list experiments, a YAML of yours, or paper for those of the paper.",
+            autocompletion=complete_experiment,
+        ),
+    ] = None,
+    overrides: Overrides = None,
+    config_dir: ConfigDir = None,
+    cfg: ShowConfig = False,
+) -> None:
+    """Drive what a file says: rows and columns of settings, on the same seeds, into one table.
+
+    Without a name it lists them. ablate, learn and compare are such files; those of the paper say suite=paper. The same
+    command with the same run=NAME goes on where it was interrupted.
+    """
+    from codriving.config import ALL_OF_PAPER, check_config_dir, describe, experiment_names
+
+    if name is None:
+        if config_dir is not None:
+            check_config_dir(config_dir)
+        for known, file in experiment_names(config_dir).items():
+            print(_entry(known, describe(file)))
+        return
+    if name == ALL_OF_PAPER:
+        from codriving.commands import run_paper
+
+        raise typer.Exit(run_paper(overrides or [], config_dir, cfg))
+    from codriving.commands import run_experiment_file
+
+    raise typer.Exit(run_experiment_file(name, overrides or [], config_dir, cfg))
 
 
 def join(

@@ -23,6 +23,7 @@ from codriving.config import (
     conf_dir,
     default_choice,
     describe,
+    experiment_names,
     suite_sets,
     values,
 )
@@ -70,6 +71,13 @@ def complete_layout(incomplete: str) -> list[str]:
 def complete_table(incomplete: str) -> list[tuple[str, str]]:
     """Offer the tables of `codriving compare`."""
     return [(name, meaning) for name, meaning in TABLES.items() if name.startswith(incomplete)]
+
+
+def complete_experiment(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
+    """Offer the experiments with rows."""
+    folder = ctx.params.get("config_dir")
+    found = experiment_names(folder.expanduser() if folder else None)
+    return [(name, describe(file)) for name, file in found.items() if name.startswith(incomplete)]
 
 
 def complete_axis(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:

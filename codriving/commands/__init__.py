@@ -8,11 +8,13 @@ if TYPE_CHECKING:
     from codriving.commands.bounds import BoundOptions, run_bound
     from codriving.commands.check import run_check
     from codriving.commands.compare import comparison_command
+    from codriving.commands.experiment import run_experiment_file
     from codriving.commands.export import ExportOptions, run_export
     from codriving.commands.join import JoinOptions, run_join
     from codriving.commands.learn import Lessons, run_learn
     from codriving.commands.memory_build import BUILD
     from codriving.commands.memory_pages import merge_page, search_page, show_page
+    from codriving.commands.paper import run_paper
     from codriving.commands.replay import ReplayOptions, run_replay
     from codriving.commands.report import ReportOptions, run_report
     from codriving.commands.run import RUN, Command, run_command
@@ -22,8 +24,8 @@ if TYPE_CHECKING:
 __all__ = [
     "ABLATE", "BUILD", "RUN", "BoundOptions", "Command", "ExportOptions", "JoinOptions", "Lessons", "ReplayOptions",
     "ReportOptions", "ScoreOptions", "Scored", "comparison_command", "merge_page", "run_bound", "run_check",
-    "run_command", "run_export", "run_join", "run_learn", "run_replay", "run_report", "run_score", "score_files",
-    "search_page", "show_page", "stress_command",
+    "run_command", "run_experiment_file", "run_export", "run_join", "run_learn", "run_paper", "run_replay",
+    "run_report", "run_score", "score_files", "search_page", "show_page", "stress_command",
 ]  # fmt: skip
 
 _FILES = {
@@ -31,11 +33,13 @@ _FILES = {
     "bounds": ("BoundOptions", "run_bound"),
     "check": ("run_check",),
     "compare": ("comparison_command",),
+    "experiment": ("run_experiment_file",),
     "export": ("ExportOptions", "run_export"),
     "join": ("JoinOptions", "run_join"),
     "learn": ("Lessons", "run_learn"),
     "memory_build": ("BUILD",),
     "memory_pages": ("merge_page", "search_page", "show_page"),
+    "paper": ("run_paper",),
     "replay": ("ReplayOptions", "run_replay"),
     "report": ("ReportOptions", "run_report"),
     "run": ("RUN", "Command", "run_command"),

@@ -8,7 +8,8 @@ from pathlib import Path
 from codriving.commands.compare import conditions_of
 from codriving.commands.controls import ablation_controls, split_controls
 from codriving.commands.run import Command
-from codriving.config import SUITE, Point, expand
+from codriving.commands.settings import points_of
+from codriving.config import SUITE, ExperimentFile, Point, built_in
 from codriving.errors import ConfigError
 from codriving.experiment import Cell, Driven, Outputs, Plan, results_of
 from codriving.reports import (
@@ -23,35 +24,31 @@ from codriving.reports import (
     with_corrected,
 )
 
-# The readings of "each CAV generates its expected passing order"; all are reported, none is chosen afterwards.
-OWN_ORDERS = ("own_view", "same_rule", "independent")
-
-# What each cell of the ablation changes (paper, ablation study).
-REMOVALS: tuple[tuple[str, ...], ...] = (
-    (),
-    ("cda.state_sharing=false",),
-    ("cda.intent_sharing=false",),
-    # An order that was not negotiated cannot bind.
-    *(("cda.negotiation=false", "cda.binding=false", f"cda.own_order={order}") for order in OWN_ORDERS),
-    ("cda.safety_check=false",),
-)
+# What each cell of the ablation changes.
+REMOVALS: tuple[tuple[str, ...], ...] = tuple(built_in("ablate").rows.values())
 
 SUBJECT = Subject("ablations", "row", "full")
 
 
-def ablation_points(overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
-    """Take the sub-modules of the reasoning module out of each config in turn; then come the controls."""
-    wanted, overrides = split_controls(overrides, usual=True)
-    points = expand(overrides, config_dir)
-    base = () if any(token.lstrip("+").startswith("experiment=") for token in overrides) else ("experiment=ablate",)
+def ablation_points(
+    overrides: Sequence[str], config_dir: Path | None = None, spec: ExperimentFile | None = None
+) -> list[Point]:
+    """Take the sub-modules of the reasoning module out of each config in turn; then come the controls.
+
+    Args:
+        spec: Says what is removed from what; None takes that of the command.
+    """
+    removals = REMOVALS if spec is None else tuple(spec.rows.values())
+    spec = spec or built_in("ablate")
+    wanted, overrides = split_controls([*spec.words, *overrides], usual=True)
     rows = []
-    for p in points:
-        rows += [Point((*p.overrides, *removal), p.swept, removal) for removal in REMOVALS]
+    for p in points_of(spec, overrides, config_dir):
+        rows += [Point((*p.overrides, *removal), p.swept, removal) for removal in removals]
         rows += ablation_controls(p, REFERENCE, config_dir) if wanted else []
-    return [replace(row, overrides=(*base, *row.overrides)) for row in rows]
+    return rows
 
 
-def _refuse_alike(plan: Plan) -> None:
+def refuse_alike(plan: Plan) -> None:
     """A method that does not reason has nothing to remove; its ablation would be one row many times over."""
     together: defaultdict[tuple[str, ...], list[Cell]] = defaultdict(list)
     for cell in plan.cells:
@@ -91,4 +88,4 @@ def make_ablation(driven: Driven) -> Outputs:
     return Outputs(files, tuple(printed), (table,), below=True)
 
 
-ABLATE = Command("ablate", ablation_points, _refuse_alike, make_ablation)
+ABLATE = Command("ablate", ablation_points, refuse_alike, make_ablation)

@@ -11,18 +11,20 @@ from codriving.commands.compare_models import check_models, make_models, model_p
 from codriving.commands.compare_orders import ORDER, as_orders, order_points, subject_of
 from codriving.commands.controls import split_controls
 from codriving.commands.run import Command
+from codriving.commands.settings import points_of
 from codriving.config import (
     CONTROLS,
     SUITE,
     TABLES,
+    ExperimentFile,
     Point,
+    built_in,
     check_choice,
     choices,
     describe,
     expand,
     experiments_dir,
     parse,
-    sets_scenario,
     styles,
     taking_part,
     written,
@@ -59,14 +61,7 @@ from codriving.reports import (
 BASELINES, SINGLE_VEHICLE, ALL = "baselines", "single-vehicle", "all"
 LOAD, ORDERS, FILTERS, MODELS = "load", "orders", "filters", "models"
 
-# The folder of each table's runs, if the user names none.
-EXPERIMENT = {BASELINES: "compare", SINGLE_VEHICLE: "compare-single-vehicle", ALL: "compare-all", LOAD: "load"}
-EXPERIMENT |= {ORDERS: "compare-orders", FILTERS: "compare-filters", MODELS: "compare-models"}
-
 CAVS = "scenario.cavs"  # The key that the load is
-
-# What `codriving compare load` drives, as far as the user does not set it.
-LOADED = ("scenario=intersection,roundabout", f"{CAVS}=4,6,8,12")
 
 # Why there are no flows in it.
 UNBOUNDED = "no bound is defined for a flow, in which vehicles keep coming; leave --bound out"
@@ -76,12 +71,28 @@ UNLOADED = (
 )
 
 
-def comparison_command(table: str | None, bounded: bool = False) -> Command:
-    """Return the command of a table of ``codriving compare``; bounded with columns of what is above the bound."""
+def file_of(table: str) -> ExperimentFile:
+    """Read what ``codriving compare`` drives for a table."""
+    return built_in(f"compare_{table.replace('-', '_')}")
+
+
+# The folder of each table's runs, if the user names none.
+EXPERIMENT = {table: file_of(table).settings(())[0][0].partition("=")[2] for table in TABLES}
+
+
+def comparison_command(
+    table: str | None, bounded: bool = False, spec: ExperimentFile | None = None, named: str | None = None
+) -> Command:
+    """Return the command of a table of ``codriving compare``; bounded with columns of what is above the bound.
+
+    Args:
+        spec: Says what is compared; None takes the table's own file.
+        named: What is typed after ``codriving``, if it is not ``compare``.
+    """
     if not isinstance(table, str) or table not in TABLES:
         given = "compare needs the name of a table" if table is None else f"unknown table {table!r}"
         raise ConfigError(f"{given}; write codriving compare TABLE [KEY=VALUE]..., tables: {', '.join(TABLES)}")
-    points, name = partial(comparison, table), f"compare {table}"
+    points, name = partial(comparison, table, spec=spec), named or f"compare {table}"
     if bounded and table in (LOAD, FILTERS, MODELS):
         raise ConfigError(f"compare {table} has no columns of the bound; write codriving compare baselines --bound")
     if table == LOAD:
@@ -93,49 +104,54 @@ def comparison_command(table: str | None, bounded: bool = False) -> Command:
     if bounded:
         made = partial(make_comparison, table, bounded=True)
         return Command(f"{name} --bound", points, partial(refuse_flows, UNBOUNDED), made)
-    return Command(name, points, make_outputs=partial(make_comparison, table))
+    return Command(name, points, make_outputs=partial(make_comparison, table, spec=spec))
 
 
-def comparison(table: str, overrides: Sequence[str], config_dir: Path | None = None) -> list[Point]:
+def comparison(
+    table: str, overrides: Sequence[str], config_dir: Path | None = None, spec: ExperimentFile | None = None
+) -> list[Point]:
     """Find out what a comparison consists of.
 
-    Every method of the table that has a YAML takes part. ``method=`` adds others to them; controls come last.
+    Every method of the table takes part. ``method=`` adds others to them; controls come last.
     """
+    spec = spec or file_of(table)
     if table == MODELS:
-        return model_points(_named(table, overrides), written(overrides), config_dir)
-    controlled, overrides = split_controls(written(overrides), usual=table not in (LOAD, ORDERS, FILTERS))
+        return points_of(spec, written([*spec.words, *overrides]), config_dir, make=partial(model_points, ()))
+    usual = table not in (LOAD, ORDERS, FILTERS)
+    controlled, overrides = split_controls(written([*spec.words, *overrides]), usual)
     keys = [parse(token).key_or_group for token in overrides]
     added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
     others = [token for token, key in zip(overrides, keys, strict=True) if key != "method"]
-    if table == LOAD:
-        named = [*keys, *(["scenario"] if sets_scenario(overrides, config_dir) else [])]
-        others = [*(token for token in LOADED if token.partition("=")[0] not in named), *others]
-    base = _named(table, overrides)
-    methods = list(dict.fromkeys([*_methods(table, added, config_dir), *(taking_part(CONTROLS) if controlled else ())]))
-    if table == ORDERS:
-        return order_points(base, others, methods, config_dir)
-    if table == FILTERS:
-        return filter_points(base, others, methods, config_dir)
+    methods = _methods_of(spec) or _having_place(table, config_dir)
+    methods += [*_named(added, config_dir), *(taking_part(CONTROLS) if controlled else ())]
+    methods = list(dict.fromkeys(methods))
+    if table in (ORDERS, FILTERS):
+        make = order_points if table == ORDERS else filter_points
+        return points_of(spec, others, config_dir, make=lambda tokens, folder: make((), tokens, methods, folder))
     return [
-        Point((*base, *point.overrides, f"method={name}"), {**point.swept, "method": name}, point.removed)
-        for point in expand(others, config_dir)
+        Point((*point.overrides, f"method={name}"), {**point.swept, "method": name}, point.removed)
+        for point in points_of(spec, others, config_dir)
         for name in methods
     ]
 
 
-def _named(table: str, overrides: Sequence[str]) -> tuple[str, ...]:
-    """Name the folder of a table's runs; asked for once more on the command line, it is the user's."""
-    keys = [token.lstrip("+").partition("=")[0] for token in overrides]
-    return () if "experiment" in keys else (f"experiment={EXPERIMENT[table]}",)
-
-
-def _methods(table: str, added: Sequence[str], config_dir: Path | None) -> list[str]:
-    """The methods that take part: those of the table that exist, then what the user adds."""
-    own = [point.overrides[0].partition("=")[2] for token in added for point in expand([token], config_dir)]
+def _having_place(table: str, config_dir: Path | None) -> list[str]:
+    """The methods of a table that exist."""
     known = choices("method", config_dir)
+    return [name for name in taking_part(ALL if table == FILTERS else table) if name in known]
+
+
+def _named(added: Sequence[str], config_dir: Path | None) -> list[str]:
+    """The methods that the user adds."""
+    own = [point.overrides[0].partition("=")[2] for token in added for point in expand([token], config_dir)]
     for name in own:
         check_choice("method", name, config_dir)
-    return [*(name for name in taking_part(ALL if table == FILTERS else table) if name in known), *own]
+    return own
+
+
+def _methods_of(spec: ExperimentFile) -> list[str]:
+    """The methods that a file names, one a row."""
+    return [token.partition("=")[2] for (token,) in spec.rows.values()]
 
 
 def setting(resolved: Mapping[str, Any], varied: Sequence[str] = ()) -> str:
@@ -144,8 +160,10 @@ def setting(resolved: Mapping[str, Any], varied: Sequence[str] = ()) -> str:
     return json.dumps(kept, sort_keys=True)
 
 
-def make_comparison(table: str, driven: Driven, bounded: bool = False) -> Outputs:
+def make_comparison(table: str, driven: Driven, bounded: bool = False, spec: ExperimentFile | None = None) -> Outputs:
     """Make a comparison of methods."""
+    asked = _methods_of(spec or file_of(table))
+    methods = [name for name in taking_part(table) if name in asked or not asked]
     if driven.flows:
         return _compared_flows(table, driven)
     varied = (ORDER,) if table == ORDERS else ()
@@ -161,7 +179,7 @@ def make_comparison(table: str, driven: Driven, bounded: bool = False) -> Output
 
         bounds = BoundsOfRun(driven.folder)
     for block in blocks.values():
-        own = comparison_rows([results for _, results in block], taking_part(table), paper)
+        own = comparison_rows([results for _, results in block], methods, paper)
         found += bounds.over(own, block) if bounds else own
     rows = with_corrected(found)
     swept = tuple(dict.fromkeys(key for block in blocks.values() for _, results in block for key in results.swept))

@@ -1,5 +1,6 @@
 """`codriving join`: the parts that shards have driven become one run, with the tables of the command."""
 
+import shlex
 import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -8,9 +9,11 @@ from pathlib import Path
 
 from codriving.commands.ablation import ABLATE
 from codriving.commands.compare import comparison_command
+from codriving.commands.experiment import experiment_command
 from codriving.commands.learn import run_learn
 from codriving.commands.run import RUN, Command, run_command
 from codriving.commands.stress import stress_command
+from codriving.config import experiment_file, experiment_names
 from codriving.errors import RunFolderError
 from codriving.experiment import FoundPart, Joining, check_alike, find_parts, make_plan
 from codriving.runs import locked, unwritable
@@ -49,7 +52,14 @@ def run_join(runs: Sequence[Path], options: JoinOptions) -> int:
         print(f"Joining {len(parts)} parts into {run}.", file=sys.stderr)
         if part.command == "learn":
             return run_learn(overrides, own, joins=joining)
-        command = _command(parts[0], own)
+        match shlex.split(part.command):
+            case ["experiment", name] if name in experiment_names(own):
+                spec = experiment_file(name, own)
+                if spec.table == "learning":
+                    return run_learn(overrides, own, joins=joining, spec=spec, named=part.command)
+                command = experiment_command(spec, part.command)
+            case _:
+                command = _command(parts[0], own)
         plan = joining.joined(make_plan(command.points(overrides, own), own, drives=False))
         return run_command(command, part.arguments, own, plan=plan)
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from codriving.commands.controls import split_controls
 from codriving.commands.memory_build import FIRST_SEED, MOST, count_of, refuse_forgetful, split_interactions
 from codriving.commands.run import Command, as_part, print_configs, report, resume_command, run_command, stopped
-from codriving.config import Point, expand, experiments_dir, parse, sets_scenario, written
+from codriving.commands.settings import points_of
+from codriving.config import ExperimentFile, Point, built_in, experiments_dir, key_of, parse, written
 from codriving.errors import ConfigError
 from codriving.experiment import (
     Driven,
@@ -37,8 +38,6 @@ from codriving.reports import (
     read_learning,
 )
 
-SIZES = (0, 2, 5, 10, 20)  # Interactions after which is tested, unless the user says otherwise
-
 KEY = "memory.interactions"  # The key that is swept
 
 CONTROL = "memory.control"  # The key by which a memory becomes a control
@@ -46,9 +45,6 @@ CONTROL = "memory.control"  # The key by which a memory becomes a control
 ALTERED = ("verdicts", "situations", "rule")  # The controls, each of the most interactions
 
 SITE, ELSEWHERE = "drivers.site", "elsewhere"  # Where several sites are named: the memory of the next one
-
-# CDA levels, unless the user names some: everything, nothing negotiated, and only states shared.
-LEVELS = "cda=full,intent_sharing,status_sharing"
 
 
 @dataclass(frozen=True)
@@ -64,15 +60,19 @@ class Lessons:
     config_dir: Path | None = None
 
     @classmethod
-    def of(cls, overrides: Sequence[str], config_dir: Path | None = None) -> "Lessons":
-        """Read ``key=value`` tokens, among them ``interactions=0,2,5``."""
-        controlled, others = split_controls(written(overrides), usual=True)
+    def of(
+        cls, overrides: Sequence[str], config_dir: Path | None = None, spec: ExperimentFile | None = None
+    ) -> "Lessons":
+        """Read ``key=value`` tokens, among them ``interactions=0,2,5``; what they leave open is as a file says."""
+        usual = built_in("learn")
+        spec = spec or usual
+        controlled, others = split_controls([*usual.words, *spec.words, *written(overrides)], usual=True)
         sizes, others = _sizes(others)
         # Of no interactions there is nothing to mix up.
         controls = ALTERED if controlled and max(sizes) > 0 else ()
         names = [t.partition("=")[2] for t in others if t.partition("=")[0] == "run"]
         run = names[-1] if names else datetime.now().strftime("%Y-%m-%d_%H%M%S")
-        return cls(others, settings_of(others, config_dir), sizes, controls, run, bool(names), config_dir)
+        return cls(others, settings_of(others, config_dir, spec), sizes, controls, run, bool(names), config_dir)
 
     @property
     def shares(self) -> bool:
@@ -113,6 +113,8 @@ def run_learn(
     config_dir: Path | None = None,
     show_only: bool = False,
     joins: Joining | None = None,
+    spec: ExperimentFile | None = None,
+    named: str = "learn",
 ) -> int:
     """Build memories, test with them, and print how success depends on what was learnt: ``codriving learn``.
 
@@ -122,6 +124,8 @@ def run_learn(
         overrides: ``key=value`` tokens, among them ``interactions=0,2,5``.
         show_only: Print the configs with which it learns and drive nothing: the files of the tests are yet to be made.
         joins: Brings the episodes of the tests from parts; nothing is driven.
+        spec: Says what is learnt; None takes what the command does.
+        named: What is typed after ``codriving``.
 
     Returns:
         Exit code: 0, 1 if episodes ended in an error, 130 if the user stopped it.
@@ -129,11 +133,11 @@ def run_learn(
     Raises:
         UserError: If the config or a run folder cannot be used.
     """
-    lessons = Lessons.of(overrides, config_dir)
+    lessons = Lessons.of(overrides, config_dir, spec)
     if show_only:
-        print_configs(build_points(lessons.points, max(SIZES), "learn"), config_dir)
+        print_configs(build_points(lessons.points, max(lessons.sizes), "learn"), config_dir)
         return 0
-    again = resume_command("learn", overrides, config_dir, lessons.run)
+    again = resume_command(named, overrides, config_dir, lessons.run)
     try:
         learnt, files = lessons.learn(joins)
     except (Interrupted, HaltedError) as stop:
@@ -141,20 +145,23 @@ def run_learn(
     if learnt.failed:
         return report(learnt, again)
     tests = lessons.tests(files, drives=joins is None)
-    tests = joins.joined(tests) if joins else as_part(tests, "learn", overrides, config_dir)
-    return run_command(Command("learn", make_outputs=lessons.outputs), overrides, config_dir, plan=tests)
+    tests = joins.joined(tests) if joins else as_part(tests, named, overrides, config_dir)
+    return run_command(Command(named, make_outputs=lessons.outputs), overrides, config_dir, plan=tests)
 
 
-def settings_of(overrides: Sequence[str], config_dir: Path | None = None) -> tuple[Point, ...]:
+def settings_of(
+    overrides: Sequence[str], config_dir: Path | None = None, spec: ExperimentFile | None = None
+) -> tuple[Point, ...]:
     """Give the settings that are learnt and tested in, one config each, without a memory."""
     keys = [parse(token).key_or_group for token in overrides]
     if "memory" in keys:
         raise ConfigError("codriving learn sets memory itself; memory.shots and memory.least_similarity can be given")
-    named = {key.partition(".")[0] for key in keys}
-    if sets_scenario(overrides, config_dir):
-        named.add("scenario")
-    base = [token for token in ("scenario=all", LEVELS, "seed=0") if token.partition("=")[0] not in named]
-    return expand([*base, *overrides], config_dir)
+    # Whoever sets a key of a group does so in one choice of it, unless several are named.
+    heads = {key.partition(".")[0] for key in keys}
+    spec = spec or built_in("learn")
+    kept = tuple(t for t in spec.common if not (key_of(t) in heads and parse(t).is_sweep_override()))
+    kept = tuple(t for t in kept if not (t == "scenario=all" and "scenario" in heads))
+    return tuple(points_of(replace(spec, common=kept), overrides, config_dir))
 
 
 def build_points(points: Sequence[Point], interactions: int, run: str) -> list[Point]:
@@ -219,8 +226,6 @@ def learned(driven: Driven, settings: int) -> Outputs:
 def _sizes(overrides: Sequence[str]) -> tuple[list[int], list[str]]:
     """Take ``interactions=`` out of the tokens."""
     given, others = split_interactions(overrides)
-    if not given:
-        return list(SIZES), others
     texts = given[-1].split(",")
     sizes = [count_of(text) for text in texts]
     counts = {size for size in sizes if size is not None and size <= MOST}

@@ -40,7 +40,7 @@ def run_report(runs: Sequence[Path], options: ReportOptions) -> str:
     if twice:
         raise ConfigError(f"{twice[0]} is named twice; name each run once")
     path = _target(options.out, folders)
-    reported = [_run(*named, options, len(runs) > 1) for named in zip(folders, _names(folders), strict=True)]
+    reported = [reported_run(*named, options, len(runs) > 1) for named in zip(folders, _names(folders), strict=True)]
     if all(len(run.rows) == 1 for run in reported):
         reported = [replace(run, rows=(replace(run.rows[0], alone=True),)) for run in reported]
     text = report_page(reported, replays)
@@ -73,7 +73,8 @@ def _names(folders: Sequence[Path]) -> list[str]:
     ]
 
 
-def _run(folder: Path, name: str, options: ReportOptions, several: bool) -> ReportedRun:
+def reported_run(folder: Path, name: str, options: ReportOptions, several: bool) -> ReportedRun:
+    """Read the records of a run."""
     found: dict[str, list[ReportedEpisode]] = {}
     cells = {}
     for episode in all_episodes(folder, options.cell):

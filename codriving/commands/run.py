@@ -126,7 +126,7 @@ def resume_command(
         # Outside of the array of a scheduler the place in it has to be written out.
         kept = [*without_shard(kept), f"{SHARD}={part.shard}"]
     folder = ["--config-dir", str(config_dir)] if config_dir else []
-    return shlex.join(["codriving", *name.split(), *kept, *([f"run={run}"] if run else []), *folder])
+    return shlex.join(["codriving", *shlex.split(name), *kept, *([f"run={run}"] if run else []), *folder])
 
 
 def as_part(plan: Plan, command: str, overrides: Sequence[str], config_dir: Path | None) -> Plan:

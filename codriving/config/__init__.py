@@ -23,6 +23,14 @@ from codriving.config.choices import (
     values,
 )
 from codriving.config.compose import compose, compose_named, show
+from codriving.config.experiments import (
+    ALL_OF_PAPER,
+    ExperimentFile,
+    built_in,
+    experiment_file,
+    experiment_names,
+    key_of,
+)
 from codriving.config.locate import conf_dir, experiments_dir
 from codriving.config.overrides import check_choice, parse, written
 from codriving.config.plugins import PLUGINS
@@ -36,6 +44,7 @@ from codriving.config.training import compose_training, trainings
 __all__ = [
     "ABLATION",
     "ALL",
+    "ALL_OF_PAPER",
     "CONTROLS",
     "EXPERIMENTS",
     "GROUPS",
@@ -49,9 +58,11 @@ __all__ = [
     "TABLES",
     "TARGET",
     "TRAININGS",
+    "ExperimentFile",
     "Point",
     "asks_for",
     "build",
+    "built_in",
     "changed_worlds",
     "check_choice",
     "check_config_dir",
@@ -64,8 +75,11 @@ __all__ = [
     "default_choice",
     "describe",
     "expand",
+    "experiment_file",
+    "experiment_names",
     "experiments_dir",
     "find_class",
+    "key_of",
     "looks_secret",
     "members",
     "parse",

@@ -5,7 +5,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from codriving.config.choices import check_config_dir, read_yaml
+from codriving.config.choices import EXPERIMENTS, check_config_dir, read_yaml
+from codriving.config.choices import choices as known_choices
+from codriving.config.experiments import changes_of, is_delta, key_of
 from codriving.config.locate import conf_dir, experiments_root
 from codriving.config.overrides import at_home, prepare
 from codriving.config.plugins import find_beside, gathered
@@ -59,7 +61,7 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
     # Quoted, for a path may hold blanks, commas and quotes.
     folders = [str(root).replace("\\", "\\\\").replace("'", "\\'") for root in (experiments_root(), config_dir) if root]
     search_path = "hydra.searchpath=[" + ",".join(f"'file://{folder}'" for folder in folders) + "]"
-    tokens = [search_path, *(prepare(token, config_dir) for token in overrides)]
+    tokens = [search_path, *(prepare(token, config_dir) for token in _unfolded(overrides, config_dir))]
     try:
         with hydra.initialize_config_dir(str(conf_dir()), version_base="1.3"), no_resolvers():
             config = hydra.compose("config", overrides=tokens, return_hydra_config=True)
@@ -95,6 +97,19 @@ def compose_named(overrides: Sequence[str], config_dir: Path | None = None) -> t
     _check_together(plain, choices)
     find_beside(plain["plugins"], config_dir)
     return plain, choices
+
+
+def _unfolded(overrides: Sequence[str], config_dir: Path | None) -> list[str]:
+    """Write out what ``experiments=NAME`` sets, where that is a file with rows; all else comes after it."""
+    files, rest, first = known_choices(EXPERIMENTS, config_dir), [], []
+    for token in overrides:
+        file = files.get(token.partition("=")[2]) if key_of(token) == EXPERIMENTS else None
+        if file is None or is_delta(file):
+            rest.append(token)
+        else:
+            first = changes_of(file, config_dir)
+    given = set(map(key_of, rest))
+    return [*(token for token in first if key_of(token) not in given), *rest]
 
 
 def resolve(config: Any, file: Path | None = None) -> dict[str, Any]:  # noqa: ANN401 - a config of OmegaConf, which is imported late

@@ -3,7 +3,8 @@
 import io
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from itertools import cycle
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ SEVERE = 1.5  # Below this a PET counts as severe [s]
 
 MOST = 12  # Rows in one figure
 
-_INK = "#010203"  # Stands for the colour of the page's words
+INK = "#010203"  # Stands for the colour of the page's words
 
 # Okabe and Ito (2008), with a hatch or a dash as a second cue.
 ENDINGS = {
@@ -45,13 +46,19 @@ def figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
     Returns:
         Title and SVG of each figure.
     """
+    with plain_matplotlib():
+        return _figures([(_listed(name), cell) for name, cell in rows[:MOST]])
+
+
+@contextmanager
+def plain_matplotlib() -> Iterator[None]:
+    """Draw as Matplotlib is shipped, whatever its user has set; and a name with dollar signs is no formula."""
     import matplotlib
 
     with matplotlib.rc_context():
-        # As it is shipped, whatever its user has set; and a name with dollar signs is no formula.
         matplotlib.rcdefaults()
         matplotlib.rcParams["text.parse_math"] = False
-        return _figures([(_listed(name), cell) for name, cell in rows[:MOST]])
+        yield
 
 
 def _figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
@@ -71,7 +78,7 @@ def _listed(name: str) -> str:
 
 
 def _endings(rows: Sequence[tuple[str, CellResults]]) -> str:
-    figure, axis = _new(0.9 + 0.36 * len(rows))
+    figure, axis = new_figure(0.9 + 0.36 * len(rows))
     there = [e for e in ENDINGS if any(r.outcome.ending is e for _, cell in rows for r in cell.records)]
     left = np.zeros(len(rows))
     for ending in there:
@@ -89,13 +96,13 @@ def _endings(rows: Sequence[tuple[str, CellResults]]) -> str:
 
 def _pets(rows: Sequence[tuple[str, Sequence[float]]]) -> str:
     """For each time, the share of PETs below it."""
-    figure, axis = _new(3.0)
+    figure, axis = new_figure(3.0)
     for (name, pets), (colour, dash) in zip(rows, cycle(LINES), strict=False):
         if pets:
             values = np.sort(pets)
             shares = 100 * np.arange(len(values) + 1) / len(values)
             axis.step([0, *values], shares, where="post", color=colour, linestyle=dash, label=name)
-    axis.axvline(SEVERE, color=_INK, linewidth=0.8, linestyle=(0, (4, 3)))
+    axis.axvline(SEVERE, color=INK, linewidth=0.8, linestyle=(0, (4, 3)))
     axis.annotate("severe below 1.5 s", (SEVERE, 97), (4, 0), textcoords="offset points", fontsize=8, va="top")
     most = max(max(pets) for _, pets in rows if pets)
     axis.set(xlim=(0, min(most * 1.02, 20.0)), ylim=(0, 100), xlabel="PET [s]", ylabel="PETs below [%]")
@@ -111,7 +118,7 @@ def _trade(cell: CellResults) -> tuple[float, float] | None:
 
 
 def _trade_off(rows: Sequence[tuple[str, float, float]]) -> str:
-    figure, axis = _new(3.0)
+    figure, axis = new_figure(3.0)
     marks = cycle("osD^vPX*<>hp")
     for (name, velocity, severe), (colour, _), mark in zip(rows, cycle(LINES), marks, strict=False):
         axis.plot([velocity], [severe], mark, color=colour, markersize=8, label=name)
@@ -120,11 +127,12 @@ def _trade_off(rows: Sequence[tuple[str, float, float]]) -> str:
     return _svg(figure, axis, "trade-off", len(rows))
 
 
-def _new(height: float) -> "tuple[Figure, Axes]":
+def new_figure(height: float) -> "tuple[Figure, Axes]":
+    """Begin a figure as wide as a page, of a height [inch]."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    with rc_context({"axes.edgecolor": _INK, "axes.labelcolor": _INK, "xtick.color": _INK, "ytick.color": _INK}):
+    with rc_context({"axes.edgecolor": INK, "axes.labelcolor": INK, "xtick.color": INK, "ytick.color": INK}):
         figure = Figure(figsize=(7.2, height), layout="constrained")
         axis = figure.subplots()
     axis.spines[["top", "right"]].set_visible(False)
@@ -132,14 +140,28 @@ def _new(height: float) -> "tuple[Figure, Axes]":
 
 
 def _svg(figure: "Figure", axis: "Axes", name: str, entries: int) -> str:
-    from matplotlib import rc_context
-
     columns = 1 if max(map(len, axis.get_legend_handles_labels()[1]), default=0) > 30 else min(entries, 4)
     figure.set_figheight(figure.get_figheight() + 0.26 * -(-entries // columns))
-    figure.legend(loc="outside lower left", ncols=columns, frameon=False, labelcolor=_INK, fontsize=9)
+    figure.legend(loc="outside lower left", ncols=columns, frameon=False, labelcolor=INK, fontsize=9)
+    return _written(figure, name)
+
+
+def svg_of(figure: "Figure", axes: "Sequence[Axes]", name: str) -> str:
+    """Give a figure whose legend has each label once."""
+    handles = {label: h for axis in axes for h, label in zip(*axis.get_legend_handles_labels(), strict=True)}
+    columns = min(len(handles), 4) or 1
+    figure.set_figheight(figure.get_figheight() + 0.26 * -(-len(handles) // columns))
+    marks, labels = list(handles.values()), list(handles)
+    figure.legend(marks, labels, loc="outside lower left", ncols=columns, frameon=False, labelcolor=INK, fontsize=9)
+    return _written(figure, name)
+
+
+def _written(figure: "Figure", name: str) -> str:
+    from matplotlib import rc_context
+
     out = io.StringIO()
     with (
-        rc_context({"svg.fonttype": "none", "svg.hashsalt": name, "text.color": _INK, "hatch.linewidth": 0.6}),
+        rc_context({"svg.fonttype": "none", "svg.hashsalt": name, "text.color": INK, "hatch.linewidth": 0.6}),
         warnings.catch_warnings(),
     ):
         # Its own font lacks most scripts of the world; a browser takes another one.
@@ -156,7 +178,7 @@ def _for_a_page(text: str, name: str) -> str:
     text = re.sub(r' id="([^"]+)"', lambda m: f' id="{name}-{m[1]}"' if m[1] in used else "", text)
     text = re.sub(r'(href="#|url\(#)', rf"\g<1>{name}-", text)
     text = re.sub(r' style="([^"]*)"', lambda m: _attributes(m[1]), text)
-    text = text.replace(_INK, "currentColor").replace("xlink:href", "href")
+    text = text.replace(INK, "currentColor").replace("xlink:href", "href")
     size = re.search(r' width="([\d.]+)pt" height="([\d.]+)pt"', text)
     text = text.replace(size[0], "", 1) if size else text
     return text.replace("<svg ", '<svg stroke-linejoin="round" stroke-linecap="butt" ', 1).strip()

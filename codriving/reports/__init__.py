@@ -20,6 +20,7 @@ from codriving.reports.episodes import TimedEpisode, cpu_per_decision, timing_co
 from codriving.reports.figures import learning_figure, load_figure
 from codriving.reports.filters import FILTERED, FilterRow, filter_rows, filter_table, print_filters
 from codriving.reports.flows import flow_table, flow_tables, print_flows
+from codriving.reports.grid import GridRow, against_first, grid
 from codriving.reports.learning import LearningRow, learning_rows, learning_table, print_learning
 from codriving.reports.load import load_rows, load_table, print_each_load, print_loads
 from codriving.reports.models import ModelRow, Repetition, model_rows, model_table, print_models
@@ -35,10 +36,10 @@ from codriving.reports.summary import RunTables, run_tables
 
 __all__ = [
     "FILTERED", "METHODS", "METHOD_CHOICE", "REFERENCE", "BoundRow", "BuiltMemory", "CellResults", "Compared",
-    "Condition", "FilterRow", "LearningRow", "ModelRow", "Paper", "PrintedTable", "Repetition", "RunTables",
+    "Condition", "FilterRow", "GridRow", "LearningRow", "ModelRow", "Paper", "PrintedTable", "Repetition", "RunTables",
     "SceneBounds", "ScoredFiles", "StressCurve", "Subject", "Table", "TimedEpisode", "ablation_rows",
-    "ablation_table", "breaking_table", "comparison_rows", "comparison_table", "cpu_per_decision",
-    "filter_rows", "filter_table", "flow_table", "flow_tables", "learning_figure", "learning_rows",
+    "ablation_table", "against_first", "breaking_table", "comparison_rows", "comparison_table", "cpu_per_decision",
+    "filter_rows", "filter_table", "flow_table", "flow_tables", "grid", "learning_figure", "learning_rows",
     "learning_table", "load_figure", "load_rows", "load_table", "markdown_text", "model_rows", "model_table",
     "pet_table", "print_bounds", "print_built", "print_comparison", "print_each_load", "print_filters",
     "print_flows", "print_learning", "print_loads", "print_models", "print_pairs", "print_scores",

@@ -67,6 +67,14 @@ def test_list_names_and_describes_choices(group: str, name: str) -> None:
     assert len(found.split()) > 3
 
 
+def test_experiment_without_a_name_lists_what_can_be_driven() -> None:
+    result = call("experiment")
+    assert result.exit_code == 0
+    lines = {line.split()[0]: line for line in result.stdout.splitlines()}
+    assert set(lines) == set(choices("experiments"))
+    assert "(its Fig. 5)" in lines["ablation"]
+
+
 def test_every_group_of_configs_can_be_listed() -> None:
     folders = {path.name for path in conf_dir().iterdir() if path.is_dir()}
     assert folders <= set(PLURALS.values())

@@ -11,6 +11,7 @@ from codriving.commands.run import resume_command, run_command
 from codriving.config.build import build
 from codriving.config.choices import TABLES, choices, taking_part
 from codriving.config.compose import compose
+from codriving.config.experiments import experiment_file
 from codriving.config.locate import conf_dir, experiments_dir
 from codriving.datatypes.world import Kind
 from codriving.environment.scenarios.intersection import Intersection
@@ -86,6 +87,20 @@ def test_a_method_of_ones_own_is_added_once_and_takes_no_place(own: Path) -> Non
 def test_a_papers_method_of_ones_own_takes_part_without_being_asked(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(import_module("codriving.commands.compare"), "taking_part", lambda _: ("other", "codriving"))
     assert methods("baselines", config_dir=own) == ["method=other", "method=codriving"]
+
+
+def test_a_file_names_the_rows_of_a_table(own: Path) -> None:
+    (own / "experiments").mkdir()
+    rows = "  Theirs: [method=other]\n  Ours: [method=codriving]\n"
+    (own / "experiments" / "two.yaml").write_text(f"# Mine.\ntable: baselines\nrows:\n{rows}")
+    points = comparison("baselines", ["controls=false"], own, experiment_file("two", own))
+    assert [point.overrides for point in points] == [
+        ("experiment=two", "method=other"),
+        ("experiment=two", "method=codriving"),
+    ]
+    for name, table in (("comparison", "baselines"), ("single_vehicle", "single-vehicle")):
+        tokens = experiment_file(name).rows.values()
+        assert list(tokens) == [(f"method={method}",) for method in taking_part(table)]
 
 
 def test_each_scenario_and_setting_is_a_block_of_all_methods() -> None:

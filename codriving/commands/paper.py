@@ -1,0 +1,163 @@
+"""`codriving experiment paper`: everything that the paper shows, driven one after another, and one page of it."""
+
+import csv
+import io
+import shlex
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from codriving.commands.experiment import experiment_command
+from codriving.commands.learn import Lessons
+from codriving.commands.report import NAME, ReportOptions, reported_run, run_report
+from codriving.commands.run import Command, how_to_go_on, print_configs, report, stopped
+from codriving.config import ALL_OF_PAPER, ExperimentFile, experiment_file, experiment_names, key_of, written
+from codriving.errors import ConfigError, RunFolderError
+from codriving.experiment import HaltedError, Interrupted, driving, make_plan, read_film
+from codriving.pages import Case, PaperPart, ReportedRun, find_case, paper_page, replay_link
+from codriving.runs import MANIFEST, write_text
+
+OUTPUT, RUNS, PAGE = Path("outputs/paper"), "runs", "index.html"
+
+TABLES = ("ablation.csv", "comparison.csv", "learn.csv", "summary.csv", "episodes.csv")  # What a part may link
+
+OURS = ("run", "experiment", "shard")  # Keys that this command sets
+
+
+def run_paper(overrides: Sequence[str], config_dir: Path | None = None, show_only: bool = False) -> int:
+    """Drive what the paper shows, and write the page after each part; gives the exit code of a run.
+
+    Raises:
+        UserError: If the config or a run folder cannot be used.
+    """
+    overrides = written(overrides)
+    if own := [key_of(token) for token in overrides if key_of(token) in OURS]:
+        raise ConfigError(
+            f"experiment {ALL_OF_PAPER} sets {own[0]} itself; output=DIR chooses another place than {OUTPUT}"
+        )
+    given = [token.partition("=")[2] for token in overrides if key_of(token) == "output"]
+    place = Path(given[-1]) if given else OUTPUT
+    specs = papers_experiments()
+    for spec in specs if show_only else ():
+        print(f"---\n# {spec.name}: {spec.shows}")
+        if spec.table != "learning":
+            print_configs(experiment_command(spec, spec.name).points(overrides, config_dir), config_dir)
+    code = 0
+    for number, spec in enumerate(() if show_only else specs, 1):
+        print(f"{spec.name}, {number} of {len(specs)}: {spec.shows}.", file=sys.stderr, flush=True)
+        tokens = [*overrides, f"output={place}", f"experiment={RUNS}", f"run={spec.name}"]
+        code = max(code, _drive(spec, tokens, overrides, config_dir))
+        if code > 1:
+            return code
+        print(write_page(specs, place, overrides, config_dir), flush=True)
+    return code
+
+
+def papers_experiments() -> list[ExperimentFile]:
+    """Read the experiments of the paper, in its order."""
+    found = [experiment_file(name) for name in experiment_names()]
+    return sorted((spec for spec in found if spec.shows), key=lambda spec: spec.shows)
+
+
+def _drive(spec: ExperimentFile, tokens: Sequence[str], typed: Sequence[str], config_dir: Path | None) -> int:
+    again = shlex.join(["codriving", "experiment", ALL_OF_PAPER, *typed, *_folder(config_dir)])
+    try:
+        if spec.table == "learning":
+            lessons = Lessons.of(tokens, config_dir, spec)
+            learnt, files = lessons.learn()
+            if learnt.failed:
+                return report(learnt, again)
+            command, plan = Command(f"experiment {spec.name}", make_outputs=lessons.outputs), lessons.tests(files)
+        else:
+            command = experiment_command(spec, f"experiment {spec.name}")
+            plan = make_plan(command.points(tokens, config_dir), config_dir)
+            command.check(plan)
+        with driving(plan) as batch:
+            finished = batch.finished(plan, command.make_outputs)
+    except (Interrupted, HaltedError) as stop:
+        return stopped(stop, again)
+    return report(finished, how_to_go_on(plan, command.name, tokens, finished.folder))
+
+
+def write_page(
+    specs: Sequence[ExperimentFile], place: Path, overrides: Sequence[str], config_dir: Path | None = None
+) -> str:
+    """Write the page of what has been driven, and the reports that it links."""
+    parts = [_part(spec, place, overrides, config_dir) for spec in specs]
+    typed = shlex.join(["codriving", "experiment", ALL_OF_PAPER, *overrides, *_folder(config_dir)])
+    try:
+        write_text(place / PAGE, paper_page(parts, typed))
+    except OSError as error:
+        raise RunFolderError(
+            f"cannot write {place / PAGE}: {error.strerror or error}; choose another output="
+        ) from error
+    there = sum(part.run is not None for part in parts)
+    return f"Page: {place / PAGE}, {there} of {len(parts)} parts."
+
+
+def _folder(config_dir: Path | None) -> list[str]:
+    return ["--config-dir", str(config_dir)] if config_dir else []
+
+
+def _part(spec: ExperimentFile, place: Path, overrides: Sequence[str], config_dir: Path | None) -> PaperPart:
+    folder = place / RUNS / spec.name
+    kind = "case" if spec.case else spec.table if spec.table in ("ablation", "learning") else "comparison"
+    command = shlex.join(["codriving", "experiment", spec.name, *overrides])
+    numbers = tuple(csv.DictReader(io.StringIO((spec.file.parent / spec.numbers).read_text(encoding="utf-8"))))
+    made = PaperPart(spec.name, spec.shows, spec.sentence, kind, command, numbers)
+    if not (folder / "summary.csv").is_file():
+        return made
+    return _driven(made, spec, folder, config_dir)
+
+
+def _driven(part: PaperPart, spec: ExperimentFile, folder: Path, config_dir: Path | None) -> PaperPart:
+    options = ReportOptions(config_dir=config_dir)
+    run = reported_run(folder, spec.name, options, several=False)
+    page = folder / NAME
+    if not page.is_file() or page.stat().st_mtime < (folder / MANIFEST).stat().st_mtime or _newer(folder, page):
+        run_report([folder], options)
+    at = f"{RUNS}/{spec.name}"
+    links = [("Report with replays", f"{at}/{NAME}")]
+    links += [(name, f"{at}/{name}") for name in TABLES if (folder / name).is_file()]
+    case = _case(spec, run) if spec.case else None
+    if case:
+        links.insert(0, ("Replay this start, both side by side", f"{at}/{NAME}{replay_link(case)}"))
+    frames = _frames(case) if case else ()
+    return replace(part, run=run, links=links, case=case, frames=frames)
+
+
+def _newer(folder: Path, page: Path) -> bool:
+    """Whether the tables of a run are newer than its report."""
+    return (folder / "summary.csv").stat().st_mtime > page.stat().st_mtime
+
+
+def _case(spec: ExperimentFile, run: ReportedRun) -> Case:
+    """Find a start that shows what the case is about."""
+    if spec.table == "learning":
+        bad, good = sorted(run.rows[:2], key=lambda row: int(row.cell.settings.get("memory.interactions", "0")))
+        return find_case(run, good, bad, ("with memory", "without memory"))
+    (first, second), rows = list(spec.rows)[:2], run.rows
+    return find_case(run, rows[0], rows[1], (first, second))
+
+
+def _frames(case: Case) -> list[tuple[str, str, bytes]]:
+    """Draw three moments of both episodes: when they part, when the first of them has ended, and between."""
+    films = {
+        name: read_film(row.seeds[case.seed].folder, row.road, 0.75)
+        for name, row in zip(case.names, (case.good, case.bad), strict=True)
+    }
+    last = min(film.duration for film in films.values())
+    first = min(case.time or 0.0, last)
+    found = []
+    for time in dict.fromkeys((first, round((first + last) / 2, 1), last)):
+        found += [(name, f"{time:.1f} s", _png(film, time)) for name, film in reversed(films.items())]
+    return found
+
+
+def _png(film: object, time: float) -> bytes:
+    from PIL import Image
+
+    out = io.BytesIO()
+    Image.fromarray(film.frame(time)[..., :3]).quantize(128).save(out, "PNG", optimize=True)  # type: ignore[attr-defined]
+    return out.getvalue()
