@@ -10,13 +10,14 @@ from pathlib import Path
 
 from codriving.commands.experiment import experiment_command
 from codriving.commands.learn import Lessons
+from codriving.commands.memory_build import INTERACTIONS
 from codriving.commands.report import NAME, ReportOptions, reported_run, run_report
 from codriving.commands.run import Command, how_to_go_on, print_configs, report, stopped
 from codriving.config import ALL_OF_PAPER, ExperimentFile, experiment_file, experiment_names, key_of, written
 from codriving.errors import ConfigError, RunFolderError
 from codriving.experiment import HaltedError, Interrupted, driving, make_plan, read_film
-from codriving.pages import Case, PaperPart, ReportedRun, find_case, paper_page, replay_link
-from codriving.runs import MANIFEST, write_text
+from codriving.pages import Case, PaperPart, ReportedRun, find_case, lesson, paper_page, replay_link
+from codriving.runs import write_text
 
 OUTPUT, RUNS, PAGE = Path("outputs/paper"), "runs", "index.html"
 
@@ -43,14 +44,21 @@ def run_paper(overrides: Sequence[str], config_dir: Path | None = None, show_onl
         print(f"---\n# {spec.name}: {spec.shows}")
         if spec.table != "learning":
             print_configs(experiment_command(spec, spec.name).points(overrides, config_dir), config_dir)
-    code = 0
-    for number, spec in enumerate(() if show_only else specs, 1):
-        print(f"{spec.name}, {number} of {len(specs)}: {spec.shows}.", file=sys.stderr, flush=True)
-        tokens = [*overrides, f"output={place}", f"experiment={RUNS}", f"run={spec.name}"]
-        code = max(code, _drive(spec, tokens, overrides, config_dir))
+    if show_only:
+        return 0
+    code, typed = 0, shlex.join(["codriving", "experiment", ALL_OF_PAPER, *overrides, *_folder(config_dir)])
+    parts = [_part(spec, place, overrides, config_dir) for spec in specs]
+    for index, spec in enumerate(specs):
+        print(f"{spec.name}, {index + 1} of {len(specs)}: {spec.shows}.", file=sys.stderr, flush=True)
+        own = [token for token in overrides if spec.table == "learning" or key_of(token) != INTERACTIONS]
+        tokens = [*own, f"output={place}", f"experiment={RUNS}", f"run={spec.name}"]
+        ended, driven = _drive(spec, tokens, typed, config_dir)
+        code = max(code, ended)
         if code > 1:
             return code
-        print(write_page(specs, place, overrides, config_dir), flush=True)
+        if driven or parts[index].run is None:
+            parts[index] = _part(spec, place, overrides, config_dir, anew=True)
+        print(write_page(parts, place, typed), flush=True)
     return code
 
 
@@ -60,14 +68,14 @@ def papers_experiments() -> list[ExperimentFile]:
     return sorted((spec for spec in found if spec.shows), key=lambda spec: spec.shows)
 
 
-def _drive(spec: ExperimentFile, tokens: Sequence[str], typed: Sequence[str], config_dir: Path | None) -> int:
-    again = shlex.join(["codriving", "experiment", ALL_OF_PAPER, *typed, *_folder(config_dir)])
+def _drive(spec: ExperimentFile, tokens: Sequence[str], typed: str, config_dir: Path | None) -> tuple[int, int]:
+    """Drive a part; gives the exit code, and how many episodes were driven."""
     try:
         if spec.table == "learning":
             lessons = Lessons.of(tokens, config_dir, spec)
             learnt, files = lessons.learn()
             if learnt.failed:
-                return report(learnt, again)
+                return report(learnt, typed), learnt.driven
             command, plan = Command(f"experiment {spec.name}", make_outputs=lessons.outputs), lessons.tests(files)
         else:
             command = experiment_command(spec, f"experiment {spec.name}")
@@ -76,22 +84,18 @@ def _drive(spec: ExperimentFile, tokens: Sequence[str], typed: Sequence[str], co
         with driving(plan) as batch:
             finished = batch.finished(plan, command.make_outputs)
     except (Interrupted, HaltedError) as stop:
-        return stopped(stop, again)
-    return report(finished, how_to_go_on(plan, command.name, tokens, finished.folder))
+        return stopped(stop, typed), 0
+    return report(finished, how_to_go_on(plan, command.name, tokens, finished.folder)), finished.driven
 
 
-def write_page(
-    specs: Sequence[ExperimentFile], place: Path, overrides: Sequence[str], config_dir: Path | None = None
-) -> str:
-    """Write the page of what has been driven, and the reports that it links."""
-    parts = [_part(spec, place, overrides, config_dir) for spec in specs]
-    typed = shlex.join(["codriving", "experiment", ALL_OF_PAPER, *overrides, *_folder(config_dir)])
+def write_page(parts: Sequence[PaperPart], place: Path, typed: str) -> str:
+    """Write the page of what has been driven."""
     try:
+        place.mkdir(parents=True, exist_ok=True)
         write_text(place / PAGE, paper_page(parts, typed))
     except OSError as error:
-        raise RunFolderError(
-            f"cannot write {place / PAGE}: {error.strerror or error}; choose another output="
-        ) from error
+        why = error.strerror or error
+        raise RunFolderError(f"cannot write {place / PAGE}: {why}; choose another output=") from error
     there = sum(part.run is not None for part in parts)
     return f"Page: {place / PAGE}, {there} of {len(parts)} parts."
 
@@ -100,45 +104,36 @@ def _folder(config_dir: Path | None) -> list[str]:
     return ["--config-dir", str(config_dir)] if config_dir else []
 
 
-def _part(spec: ExperimentFile, place: Path, overrides: Sequence[str], config_dir: Path | None) -> PaperPart:
-    folder = place / RUNS / spec.name
+def _part(
+    spec: ExperimentFile, place: Path, overrides: Sequence[str], config_dir: Path | None, anew: bool = False
+) -> PaperPart:
+    """Read what has been driven of a part, and make its report if there is none, or anew."""
+    folder, at = place / RUNS / spec.name, f"{RUNS}/{spec.name}"
     kind = "case" if spec.case else spec.table if spec.table in ("ablation", "learning") else "comparison"
     command = shlex.join(["codriving", "experiment", spec.name, *overrides])
     numbers = tuple(csv.DictReader(io.StringIO((spec.file.parent / spec.numbers).read_text(encoding="utf-8"))))
     made = PaperPart(spec.name, spec.shows, spec.sentence, kind, command, numbers)
     if not (folder / "summary.csv").is_file():
         return made
-    return _driven(made, spec, folder, config_dir)
-
-
-def _driven(part: PaperPart, spec: ExperimentFile, folder: Path, config_dir: Path | None) -> PaperPart:
     options = ReportOptions(config_dir=config_dir)
     run = reported_run(folder, spec.name, options, several=False)
-    page = folder / NAME
-    if not page.is_file() or page.stat().st_mtime < (folder / MANIFEST).stat().st_mtime or _newer(folder, page):
+    if anew or not (folder / NAME).is_file():
         run_report([folder], options)
-    at = f"{RUNS}/{spec.name}"
     links = [("Report with replays", f"{at}/{NAME}")]
     links += [(name, f"{at}/{name}") for name in TABLES if (folder / name).is_file()]
     case = _case(spec, run) if spec.case else None
     if case:
         links.insert(0, ("Replay this start, both side by side", f"{at}/{NAME}{replay_link(case)}"))
-    frames = _frames(case) if case else ()
-    return replace(part, run=run, links=links, case=case, frames=frames)
+    return replace(made, run=run, links=links, case=case, frames=_frames(case) if case else ())
 
 
-def _newer(folder: Path, page: Path) -> bool:
-    """Whether the tables of a run are newer than its report."""
-    return (folder / "summary.csv").stat().st_mtime > page.stat().st_mtime
-
-
-def _case(spec: ExperimentFile, run: ReportedRun) -> Case:
-    """Find a start that shows what the case is about."""
-    if spec.table == "learning":
-        bad, good = sorted(run.rows[:2], key=lambda row: int(row.cell.settings.get("memory.interactions", "0")))
-        return find_case(run, good, bad, ("with memory", "without memory"))
-    (first, second), rows = list(spec.rows)[:2], run.rows
-    return find_case(run, rows[0], rows[1], (first, second))
+def _case(spec: ExperimentFile, run: ReportedRun) -> Case | None:
+    """Find a start that shows what the case is about; None where there are no two rows to show it in."""
+    if spec.table != "learning":
+        (good, bad, *_), names = (*run.rows, None, None), tuple(spec.rows)
+        return find_case(good, bad, (names[0], names[1])) if good and bad else None
+    tested = sorted((row for row in run.rows if not lesson(row)[1]), key=lambda row: lesson(row)[0])
+    return find_case(tested[-1], tested[0], ("with memory", "without memory")) if len(tested) > 1 else None
 
 
 def _frames(case: Case) -> list[tuple[str, str, bytes]]:

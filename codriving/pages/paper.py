@@ -1,6 +1,7 @@
 """The page of the paper's tables and figures driven again: ours in each cell, the paper's below it, and links."""
 
 import base64
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -98,7 +99,7 @@ def paper_page(parts: Sequence[PaperPart], command: str) -> str:
 
 def _part(part: PaperPart) -> dict[str, Any]:
     made = {"ablation": _ablation, "learning": _learning, "comparison": _comparison, "case": _case}[part.kind]
-    table, drawn = made(part) if part.run else (None, [])
+    table, drawn = made(part) if part.run and (part.case or part.kind != "case") else (None, [])
     return {
         "name": part.name,
         "shows": part.shows,
@@ -168,13 +169,20 @@ def _ablation(part: PaperPart) -> tuple[ShownTable, list[tuple[str, str]]]:
     return table, [("Success of each row in each scenario", success_bars(bars, bounds))]
 
 
+def lesson(row: ReportedRow) -> tuple[int, str]:
+    """Give after how many interactions a row was tested, and as which control; empty for none."""
+    settings = {key: json.loads(text) for key, text in row.cell.settings.items() if key.startswith("memory.")}
+    control = settings.get("memory.control", "none")
+    return int(settings.get("memory.interactions", 0)), "" if control == "none" else str(control)
+
+
 def _learning(part: PaperPart) -> tuple[ShownTable, list[tuple[str, str]]]:
     assert part.run
     found: dict[tuple[str, str], dict[int, CellResults]] = {}
     for row in part.run.rows:
-        control = row.cell.settings.get("memory.control", "none")
-        name = row.cell.scenario, "" if control == "none" else f"control: {control}"
-        found.setdefault(name, {})[int(row.cell.settings.get("memory.interactions", "0"))] = row.results
+        size, control = lesson(row)
+        name = row.cell.scenario, f"control: {control}" if control else ""
+        found.setdefault(name, {})[size] = row.results
     sizes = sorted({size for cells in found.values() for size in cells})
     said = {(row["scenario"], row["interactions"]): row for row in part.numbers}
 
@@ -250,7 +258,7 @@ def _three(name: str, values: Sequence[float]) -> dict[str, str]:
     }
 
 
-def find_case(run: ReportedRun, good: ReportedRow, bad: ReportedRow, names: tuple[str, str]) -> Case:
+def find_case(good: ReportedRow, bad: ReportedRow, names: tuple[str, str]) -> Case:
     """Choose a start: the first that ends well in one row and not in the other, else the first in which they part."""
     seeds = sorted(good.seeds.keys() & bad.seeds.keys())
     endings = {s: tuple(row.seeds[s].record.outcome.ending.value for row in (good, bad)) for s in seeds}

@@ -66,14 +66,17 @@ def test_all_parts_are_driven_and_stand_on_one_page_beside_the_papers_numbers(
     comparison = text[text.index('<section id="comparison">') :]
     ours = r"DiLu \(dilu-rule\)</th><td[^>]*>\d+ \(\d+ to \d+\)"
     assert re.search(rf'{ours}<span class="theirs (yes|no)">38 %<', comparison)
-    paper.write_page(paper.papers_experiments(), Path("outputs/paper"), SHORT)
+    assert paper.run_paper(SHORT) == 0
+    assert capsys.readouterr().out.count("Nothing to do: all") == 3
     assert (driven / "index.html").read_text() == text, "the same command makes the same page"
 
 
-def test_what_is_not_driven_yet_is_said(driven: Path) -> None:
-    driven.mkdir(parents=True)
-    specs = paper.papers_experiments()
-    assert paper.write_page(specs, Path("outputs/paper"), []) == "Page: outputs/paper/index.html, 0 of 3 parts."
+def test_what_is_not_driven_yet_is_said(
+    driven: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(paper, "_drive", lambda *_: (0, 0))
+    assert paper.run_paper([]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "Page: outputs/paper/index.html, 0 of 3 parts."
     text = (driven / "index.html").read_text()
     assert text.count("Not driven yet.") == 3
     assert "Not driven yet: Fig. 5; Fig. 8; Table I and Fig. 9. The same command goes on." in text
