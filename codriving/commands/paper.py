@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from codriving.commands.experiment import experiment_command
 from codriving.commands.learn import Lessons
@@ -19,9 +20,14 @@ from codriving.experiment import HaltedError, Interrupted, driving, make_plan, r
 from codriving.pages import Case, PaperPart, ReportedRun, find_case, lesson, paper_page, replay_link
 from codriving.runs import write_text
 
+if TYPE_CHECKING:
+    from codriving.animation import EpisodeFilm
+
 OUTPUT, RUNS, PAGE = Path("outputs/paper"), "runs", "index.html"
 
 TABLES = ("ablation.csv", "comparison.csv", "learn.csv", "summary.csv", "episodes.csv")  # What a part may link
+
+ROAD = 0.7  # Share of a frame that shows the road
 
 OURS = ("run", "experiment", "shard")  # Keys that this command sets
 
@@ -145,14 +151,17 @@ def _frames(case: Case) -> list[tuple[str, str, bytes]]:
     last = min(film.duration for film in films.values())
     first = min(case.time or 0.0, last)
     found = []
-    for time in dict.fromkeys((first, round((first + last) / 2, 1), last)):
-        found += [(name, f"{time:.1f} s", _png(film, time)) for name, film in reversed(films.items())]
+    for name, film in reversed(films.items()):
+        for time in dict.fromkeys((first, round((first + last) / 2, 1), last)):
+            found.append((name, f"{time:.1f} s", _png(film, time)))
     return found
 
 
-def _png(film: object, time: float) -> bytes:
+def _png(film: "EpisodeFilm", time: float) -> bytes:
+    """Draw the road; the words of the panel beside it would be too small to read."""
     from PIL import Image
 
-    out = io.BytesIO()
-    Image.fromarray(film.frame(time)[..., :3]).quantize(128).save(out, "PNG", optimize=True)  # type: ignore[attr-defined]
+    frame, out = film.frame(time), io.BytesIO()
+    road = frame[:, : round(ROAD * frame.shape[1]), :3]
+    Image.fromarray(road).quantize(128).save(out, "PNG", optimize=True)
     return out.getvalue()
