@@ -87,7 +87,7 @@ def paper_page(parts: Sequence[PaperPart], command: str) -> str:
         "seeds": sorted({len(row.episodes) for row in rows}),
         "episodes": sum(len(row.episodes) for row in rows),
         "behaviour": sorted({run.manifest.behaviour for run in runs}),
-        "commits": sorted({run.manifest.commit for run in runs if run.manifest.commit}),
+        "commits": sorted({run.manifest.commit[:12] for run in runs if run.manifest.commit}),
         "parts": [_part(part) for part in parts],
         "missing": [part.shows for part in parts if part.run is None],
     }
