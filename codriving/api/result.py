@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from codriving.api.frames import decision_frame, pet_frame, trajectory_frame
 from codriving.api.page import page_of
+from codriving.api.picture import Picture, pictures_of
+from codriving.commands import FigureOptions, draw_episode, draw_runs
 from codriving.errors import ConfigError, RunFolderError
 from codriving.experiment import StoredEpisode, all_episodes, find_run
 from codriving.runs import Manifest
@@ -29,6 +31,7 @@ class Result:
     episodes: "DataFrame"  # One row an episode
     summary: "DataFrame"  # One row a cell, with intervals
     table: "DataFrame"  # What the command makes: the comparison, the ablation, the learning curve; else the summary
+    config_dir: Path | None = None  # A folder with YAMLs of the user's, whose roads figures are of
 
     @cached_property
     def manifest(self) -> Manifest:
@@ -53,9 +56,20 @@ class Result:
         """Give every vehicle at every simulation step, a row each, in metres, seconds and radians."""
         return trajectory_frame(self._found(cell, episode))
 
+    def figure(self, name: str, cell: str | None = None) -> Picture:
+        """Draw one of the figures of ``codriving figures``, for instance ``"pets"``."""
+        options = FigureOptions(cell=cell, config_dir=self.config_dir, only=name)
+        (picture,) = pictures_of(draw_runs([self.folder], options, [])).values()
+        return picture
+
+    def space_time(self, episode: int, cell: str | None = None) -> Picture:
+        """Draw an episode: when each CAV was where along its route, and what ground others blocked for it."""
+        options = FigureOptions(cell=cell, episode=_seed(episode), config_dir=self.config_dir)
+        (picture,) = pictures_of(draw_episode([self.folder], options)).values()
+        return picture
+
     def _found(self, cell: str | None, episode: int | None) -> list[StoredEpisode]:
-        if episode is not None and (isinstance(episode, bool) or not isinstance(episode, int)):
-            raise ConfigError(f"episode must be a seed, a whole number, or None, got {episode!r:.100}")
+        episode = None if episode is None else _seed(episode)
         if cell is not None and not isinstance(cell, str):
             raise ConfigError(f"cell must be the name of a row, or None, got {cell!r:.100}")
         return all_episodes(self.folder, cell, episode)
@@ -67,12 +81,18 @@ class Result:
         return page_of(_heading(self), self.table)
 
 
+def _seed(episode: object) -> int:
+    if isinstance(episode, bool) or not isinstance(episode, int):
+        raise ConfigError(f"episode must be a seed, a whole number, got {episode!r:.100}")
+    return episode
+
+
 def _heading(result: Result) -> str:
     rows, episodes = len(result.summary), len(result.episodes)
     return f"{episodes} episode{'s' * (episodes != 1)} in {rows} row{'s' * (rows != 1)}, {result.folder}"
 
 
-def read_result(run: object) -> Result:
+def read_result(run: object, config_dir: Path | None = None) -> Result:
     """Read the tables of a run folder.
 
     Raises:
@@ -88,7 +108,7 @@ def read_result(run: object) -> Result:
         )
     episodes, summary = _read(folder / EPISODES), _read(folder / SUMMARY)
     own = next((name for name in OWN if name in names), None)
-    return Result(folder, episodes, summary, _read(folder / own) if own else summary)
+    return Result(folder, episodes, summary, _read(folder / own) if own else summary, config_dir)
 
 
 def _read(path: Path) -> "DataFrame":

@@ -20,6 +20,7 @@ from codriving.cli.commands import (
     compare,
     experiment,
     export,
+    figures,
     join,
     learn,
     list_choices,
@@ -176,6 +177,7 @@ app.command(epilog="Example: codriving join outputs/run/big")(join)
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
 app.command(epilog="Example: codriving report outputs/run/first outputs/run/second --out page.html")(report)
+app.command(epilog="Example: codriving figures outputs/run/first")(figures)
 app.command(epilog="Example: codriving score recording.csv outputs/run/first metrics=authors --csv scores.csv")(score)
 app.command(epilog="Example: codriving export outputs/run/first --to fcd --episode 3")(export)
 app.add_typer(memory, name="memory")

@@ -244,6 +244,27 @@ def report(
     print(run_report(runs, ReportOptions(out, cell, replays, config_dir)))
 
 
+def figures(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Run folders, or names of some under outputs/.")],
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="figures/ in the folder of the first run if not given.")
+    ] = None,
+    cell: Annotated[str | None, typer.Option(metavar="NAME", help="A row of the table, or a part of its name.")] = None,
+    episode: Annotated[
+        int | None, typer.Option(metavar="N", help="Draw the space-time diagram of this seed, and nothing else.")
+    ] = None,
+    config_dir: ConfigDir = None,
+) -> None:
+    """Draw runs, as PNG and SVG for print: endings, success, PETs, velocity against severe PETs, performance profiles.
+
+    A panel for each scenario and setting, with all rows in it. With --episode: when each CAV was where along its route,
+    and what ground others blocked for it.
+    """
+    from codriving.commands import FigureOptions, write_figures
+
+    print(write_figures(runs, FigureOptions(out, cell, episode, config_dir)))
+
+
 def score(
     words: Annotated[
         list[str] | None,

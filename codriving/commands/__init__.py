@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from codriving.commands.compare import comparison_command
     from codriving.commands.experiment import run_experiment_file
     from codriving.commands.export import ExportOptions, run_export
+    from codriving.commands.figures import FigureOptions, draw_episode, draw_runs, write_figures
     from codriving.commands.join import JoinOptions, run_join
     from codriving.commands.learn import Lessons, run_learn
     from codriving.commands.memory_build import BUILD
@@ -22,10 +23,11 @@ if TYPE_CHECKING:
     from codriving.commands.stress import stress_command
 
 __all__ = [
-    "ABLATE", "BUILD", "RUN", "BoundOptions", "Command", "ExportOptions", "JoinOptions", "Lessons", "ReplayOptions",
-    "ReportOptions", "ScoreOptions", "Scored", "comparison_command", "merge_page", "run_bound", "run_check",
-    "run_command", "run_experiment_file", "run_export", "run_join", "run_learn", "run_paper", "run_replay",
-    "run_report", "run_score", "score_files", "search_page", "show_page", "stress_command",
+    "ABLATE", "BUILD", "RUN", "BoundOptions", "Command", "ExportOptions", "FigureOptions", "JoinOptions", "Lessons",
+    "ReplayOptions", "ReportOptions", "ScoreOptions", "Scored", "comparison_command", "draw_episode", "draw_runs",
+    "merge_page", "run_bound", "run_check", "run_command", "run_experiment_file", "run_export", "run_join",
+    "run_learn", "run_paper", "run_replay", "run_report", "run_score", "score_files", "search_page", "show_page",
+    "stress_command", "write_figures",
 ]  # fmt: skip
 
 _FILES = {
@@ -35,6 +37,7 @@ _FILES = {
     "compare": ("comparison_command",),
     "experiment": ("run_experiment_file",),
     "export": ("ExportOptions", "run_export"),
+    "figures": ("FigureOptions", "draw_episode", "draw_runs", "write_figures"),
     "join": ("JoinOptions", "run_join"),
     "learn": ("Lessons", "run_learn"),
     "memory_build": ("BUILD",),

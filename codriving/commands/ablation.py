@@ -15,12 +15,16 @@ from codriving.experiment import Cell, Driven, Outputs, Plan, results_of
 from codriving.reports import (
     REFERENCE,
     CellResults,
+    Compared,
+    DrawnRow,
     Subject,
     ablation_rows,
     ablation_table,
     markdown_text,
     print_pairs,
     profile_figure,
+    rate_figure,
+    setting_of,
     with_corrected,
 )
 
@@ -82,10 +86,17 @@ def make_ablation(driven: Driven) -> Outputs:
     table = ablation_table(rows, swept, SUBJECT)
     pages = "\n".join(markdown_text(page, level=1 if page is printed[0] else 2) for page in printed)
     files = {"ablation.csv": table.csv().encode(), "ablation.md": pages.encode()}
+    drawn = [DrawnRow(row.name, _panel(row), row.cell) for row in rows if row.cell]
+    figures = rate_figure(drawn, "ablation", driven.metrics)
+    files |= {f"figures/{name}": content for name, content in figures.items()}
     if len(conditions) > 1:
         figures = profile_figure([(c.name, members) for c, members in conditions], driven.metrics)
         files |= {f"figures/{name}": content for name, content in figures.items()}
     return Outputs(files, tuple(printed), (table,), below=True)
+
+
+def _panel(row: Compared) -> str:
+    return "\n".join([row.scenario, *(f"{key}={value}" for key, value in setting_of(row.swept).items())])
 
 
 ABLATE = Command("ablate", ablation_points, refuse_alike, make_ablation)

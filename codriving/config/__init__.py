@@ -31,6 +31,7 @@ from codriving.config.experiments import (
     experiment_names,
     key_of,
 )
+from codriving.config.given import Given
 from codriving.config.locate import conf_dir, experiments_dir
 from codriving.config.overrides import check_choice, parse, written
 from codriving.config.plugins import PLUGINS
@@ -59,6 +60,7 @@ __all__ = [
     "TARGET",
     "TRAININGS",
     "ExperimentFile",
+    "Given",
     "Point",
     "asks_for",
     "build",

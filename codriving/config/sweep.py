@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from codriving.config.choices import ALL, LISTED, SUITE, check_config_dir, choices
+from codriving.config.given import Given
 from codriving.config.overrides import (
     TEXT_WITH_COMMAS,
     check_choice,
@@ -45,6 +46,7 @@ class Point:
     overrides: tuple[str, ...]
     swept: Mapping[str, str] = field(default_factory=dict)
     removed: tuple[str, ...] = ()
+    given: Given | None = None  # What stands in the place of the method that the overrides name
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from codriving.experiment.batch import Driven, Ended, Finished, HaltedError, Int
 from codriving.experiment.cells import Cell, shown_apart, swept_values
 from codriving.experiment.flows import is_flow
 from codriving.experiment.joining import FoundPart, Joining, check_alike, find_parts
-from codriving.experiment.objects import make_objects, model_of
+from codriving.experiment.objects import BuildWithGiven, make_objects, model_of
 from codriving.experiment.plan import Plan, cell_name, composed, make_plan, refuse_flows, suite_of, validated
 from codriving.experiment.remembering import learns, memory_file
 from codriving.experiment.scoring import lacks, scorers_of
@@ -22,9 +22,10 @@ from codriving.experiment.stored import (
 )
 
 __all__ = [
-    "REPLAY", "SHARD", "Cell", "Driven", "Ended", "Finished", "FoundPart", "HaltedError", "Interrupted", "Joining",
-    "Outputs", "Plan", "StoredEpisode", "all_episodes", "announce", "cell_name", "check_alike", "composed", "drive",
-    "driving", "find_episode", "find_parts", "find_run", "is_flow", "lacks", "learns", "make_objects", "make_plan",
-    "memory_file", "model_of", "read_episode", "read_film", "refuse_flows", "refuse_nameless", "refuse_part",
-    "results_of", "road_of", "scorers_of", "shown_apart", "suite_of", "swept_values", "validated", "without_shard",
+    "REPLAY", "SHARD", "BuildWithGiven", "Cell", "Driven", "Ended", "Finished", "FoundPart", "HaltedError",
+    "Interrupted", "Joining", "Outputs", "Plan", "StoredEpisode", "all_episodes", "announce", "cell_name",
+    "check_alike", "composed", "drive", "driving", "find_episode", "find_parts", "find_run", "is_flow", "lacks",
+    "learns", "make_objects", "make_plan", "memory_file", "model_of", "read_episode", "read_film", "refuse_flows",
+    "refuse_nameless", "refuse_part", "results_of", "road_of", "scorers_of", "shown_apart", "suite_of",
+    "swept_values", "validated", "without_shard",
 ]  # fmt: skip

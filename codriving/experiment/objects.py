@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from codriving.config import asks_for, build, targets
+from codriving.config import Given, asks_for, build, targets
 from codriving.datatypes import ActionFilter, CaseMemory, Communication, Method, Model, Simulator, ThinkingTime
 from codriving.experiment.scoring import scorers_of
 from codriving.experiment.worker import Objects
@@ -61,6 +61,20 @@ class BuildObjects:
 
     def __call__(self, cell: str) -> Objects:
         """Build them."""
+        return make_objects(self.configs[cell])
+
+
+@dataclass(frozen=True)
+class BuildWithGiven:
+    """Builds the objects of cells of which some have a method of the user's; each process is offered these."""
+
+    given: tuple[Given, ...]
+    configs: Mapping[str, Mapping[str, Any]]
+
+    def __call__(self, cell: str) -> Objects:
+        """Build them."""
+        for one in self.given:
+            one.offer()
         return make_objects(self.configs[cell])
 
 

@@ -142,7 +142,7 @@ def composed(
     points: Sequence[Point], config_dir: Path | None = None
 ) -> tuple[list[dict[str, Any]], list[dict[str, str]]]:
     """Compose the config of every cell; one after another, since Hydra's state is global."""
-    pairs = each_cell(points, points, lambda point: compose_named(point.overrides, config_dir))
+    pairs = each_cell(points, points, lambda point: _composed(point, config_dir))
     configs = [config for config, _ in pairs]
     for point, config in zip(points, configs, strict=True):
         for key in SHARED:
@@ -153,6 +153,11 @@ def composed(
                     f"it belongs to the run as a whole, so set {key} on the command line"
                 )
     return configs, [choices for _, choices in pairs]
+
+
+def _composed(point: Point, config_dir: Path | None) -> tuple[dict[str, Any], dict[str, str]]:
+    config, choices = compose_named(point.overrides, config_dir)
+    return point.given.put_into(config, choices) if point.given else (config, choices)
 
 
 def validated(points: Sequence[Point], configs: Sequence[Mapping[str, Any]]) -> None:

@@ -5,39 +5,29 @@ import re
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from itertools import cycle
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from codriving.datatypes import Ending
-from codriving.reports import CellResults
+from codriving.reports import (
+    FIGURES,
+    CellResults,
+    Draw,
+    draw_endings,
+    draw_performance,
+    draw_pets,
+    draw_trade_off,
+    legend_name,
+    pets_of,
+    seconds_of,
+    trade_of,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SEVERE = 1.5  # Below this a PET counts as severe [s]
-
 MOST = 12  # Rows in one figure
 
 INK = "#010203"  # Stands for the colour of the page's words
-
-# Okabe and Ito (2008), with a hatch or a dash as a second cue.
-ENDINGS = {
-    Ending.SUCCESS: ("success", "#009e73", ""),
-    Ending.COLLISION: ("collision", "#d55e00", "///"),
-    Ending.TIMEOUT: ("timeout", "#e69f00", "..."),
-    Ending.OFF_ROAD: ("off the road", "#cc79a7", "xxx"),
-    Ending.COUNTED: ("counted", "#0072b2", ""),
-    Ending.ERROR: ("error", "#7a7a7a", "---"),
-}
-
-LINES = [
-    (colour, dash)
-    for dash in ("-", "--", ":")
-    for colour in ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
-]
 
 
 def figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
@@ -47,7 +37,7 @@ def figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
         Title and SVG of each figure.
     """
     with plain_matplotlib():
-        return _figures([(_listed(name), cell) for name, cell in rows[:MOST]])
+        return _figures([(legend_name(name), cell) for name, cell in rows[:MOST]])
 
 
 @contextmanager
@@ -63,68 +53,31 @@ def plain_matplotlib() -> Iterator[None]:
 
 def _figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
     found = [("How episodes ended", _endings(rows))]
-    with_pets = [(name, [pet for e in cell.completed for pet in e.pets]) for name, cell in rows]
-    if any(pets for _, pets in with_pets):
-        found.append(("Post-encroachment times (PET) of all episodes", _pets(with_pets)))
-    placed = [(name, *place) for name, cell in rows if (place := _trade(cell)) is not None]
-    if len(placed) > 1:
-        found.append(("Velocity against severe PETs", _trade_off(placed)))
+    if any(pets_of(cell) for _, cell in rows):
+        found.append(("Post-encroachment times (PET) of all episodes", _drawn(rows, "pets", draw_pets)))
+    if sum(trade_of(cell) is not None for _, cell in rows) > 1:
+        title = "Velocity against severe PETs; lines of equal velocity times the share of other PETs"
+        found.append((title, _drawn(rows, "trade-off", draw_trade_off)))
+    if len(rows) > 1 and set.intersection(*(set(seconds_of(cell)) for _, cell in rows)):
+        title = "Seeds driven within a factor of the fastest row, by travel time"
+        found.append((title, _drawn(rows, "performance", draw_performance)))
     return found
-
-
-def _listed(name: str) -> str:
-    """Write a name so that no legend leaves it out, as one that begins with an underscore."""
-    return f" {name}" if name.startswith("_") else name
 
 
 def _endings(rows: Sequence[tuple[str, CellResults]]) -> str:
     figure, axis = new_figure(0.9 + 0.36 * len(rows))
-    there = [e for e in ENDINGS if any(r.outcome.ending is e for _, cell in rows for r in cell.records)]
-    left = np.zeros(len(rows))
-    for ending in there:
-        word, colour, hatch = ENDINGS[ending]
-        shares = np.array(
-            [100 * sum(r.outcome.ending is ending for r in cell.records) / len(cell.records) for _, cell in rows]
-        )
-        axis.barh(range(len(rows)), shares, left=left, color=colour, hatch=hatch, edgecolor="#ffffff", label=word)
-        left += shares
-    axis.set(xlim=(0, 100), xlabel="episodes [%]")
+    draw_endings(axis, rows, range(len(rows)), INK)
+    axis.set_xlabel("episodes [%]")
     axis.set_yticks(range(len(rows)), [name for name, _ in rows])
     axis.invert_yaxis()
-    return _svg(figure, axis, "endings", len(there))
+    return _svg(figure, axis, "endings", len(axis.get_legend_handles_labels()[1]))
 
 
-def _pets(rows: Sequence[tuple[str, Sequence[float]]]) -> str:
-    """For each time, the share of PETs below it."""
+def _drawn(rows: Sequence[tuple[str, CellResults]], name: str, draw: Draw) -> str:
     figure, axis = new_figure(3.0)
-    for (name, pets), (colour, dash) in zip(rows, cycle(LINES), strict=False):
-        if pets:
-            values = np.sort(pets)
-            shares = 100 * np.arange(len(values) + 1) / len(values)
-            axis.step([0, *values], shares, where="post", color=colour, linestyle=dash, label=name)
-    axis.axvline(SEVERE, color=INK, linewidth=0.8, linestyle=(0, (4, 3)))
-    axis.annotate("severe below 1.5 s", (SEVERE, 97), (4, 0), textcoords="offset points", fontsize=8, va="top")
-    most = max(max(pets) for _, pets in rows if pets)
-    axis.set(xlim=(0, min(most * 1.02, 20.0)), ylim=(0, 100), xlabel="PET [s]", ylabel="PETs below [%]")
-    return _svg(figure, axis, "pets", len(rows))
-
-
-def _trade(cell: CellResults) -> tuple[float, float] | None:
-    """Mean velocity of successful episodes [m/s], and the share of severe PETs of all [%]."""
-    pets = [pet for e in cell.completed for pet in e.pets]
-    if not cell.velocities or not pets:
-        return None
-    return float(np.mean(cell.velocities)), 100 * sum(pet < SEVERE for pet in pets) / len(pets)
-
-
-def _trade_off(rows: Sequence[tuple[str, float, float]]) -> str:
-    figure, axis = new_figure(3.0)
-    marks = cycle("osD^vPX*<>hp")
-    for (name, velocity, severe), (colour, _), mark in zip(rows, cycle(LINES), marks, strict=False):
-        axis.plot([velocity], [severe], mark, color=colour, markersize=8, label=name)
-    axis.set(xlabel="mean velocity of successful episodes [m/s]", ylabel="PETs below 1.5 s [%]")
-    axis.set_ylim(-1.0, max(5.0, 1.1 * max(severe for _, _, severe in rows)))
-    return _svg(figure, axis, "trade-off", len(rows))
+    draw(axis, rows, range(len(rows)), INK)
+    axis.set(xlabel=FIGURES[name].along, ylabel=FIGURES[name].up)
+    return _svg(figure, axis, name, len(rows))
 
 
 def new_figure(height: float) -> "tuple[Figure, Axes]":

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from codriving.pages.figures import INK, LINES, new_figure, plain_matplotlib, svg_of
-from codriving.reports import CellResults
+from codriving.pages.figures import INK, new_figure, plain_matplotlib, svg_of
+from codriving.reports import LINES, CellResults
 
 Interval = tuple[float, float]
 

@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 from codriving.datatypes import EpisodeRecord, Road
 from codriving.geometry import RoadMap, road_map
-from codriving.reports import CellResults
+from codriving.reports import CellResults, stored_results
 from codriving.runs import CellEntry, Manifest
 
 
@@ -49,12 +49,9 @@ class ReportedRow:
 
     @cached_property
     def results(self) -> CellResults:
-        """Its episodes as tables take them, scored by the metric that is usual, or by the first one that there is."""
-        records = [episode.record for episode in self.episodes]
-        names = list(dict.fromkeys(name for record in records for name in record.scores))
-        metric = "standard" if "standard" in names or not names else names[0]
+        """Its episodes as tables take them."""
         swept = {**({"run": self.run} if self.run else {}), **self.cell.swept}
-        return CellResults(records, swept, metric=metric, papers_setting=False, as_in_paper=False)
+        return stored_results([episode.record for episode in self.episodes], swept)
 
     def key(self, seed: int) -> str:
         """The name of an episode in links."""

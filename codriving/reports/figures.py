@@ -42,7 +42,7 @@ OTHERS: Sequence[Style] = (("#7a7a7a", "X", "-"), ("#7a1f5c", "<", "--"), ("#5c4
 
 SUITE_KEY = "suite"  # Of what was swept, what has panels of its own
 
-ENTRY, LETTER = 2.2, 0.075  # Width of an entry of a legend, and of a letter of a long one [inches]
+ENTRY, LETTER = 2.2, 0.085  # Width of an entry of a legend, and of a letter of a long one [inches]
 
 # For the controls of learning, beside the most interactions.
 CONTROL_MARKS = {"verdicts": "x", "situations": "+", "rule": "d", "elsewhere": "v"}
@@ -181,7 +181,7 @@ def learning_figure(
 def saved(figure: "Figure", handles: Mapping[str, "Artist"], heading: str, name: str) -> Mapping[str, bytes]:
     """Give a figure with its legend and heading as PNG and SVG, by file name."""
     # A narrow figure has no room for four names in a row.
-    entry = max(ENTRY, *(LETTER * len(name) for name in handles)) if handles else ENTRY
+    entry = entry_width(max(map(len, handles), default=0))
     columns = min(4, max(int(figure.get_figwidth() // entry), 1), len(handles) or 1)
     figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=columns)
     figure.suptitle(heading, fontsize=11)
@@ -192,6 +192,11 @@ def saved(figure: "Figure", handles: Mapping[str, "Artist"], heading: str, name:
         figure.savefig(stream, format=kind, dpi=160, metadata=metadata)
         found[f"{name}.{kind}"] = stream.getvalue()
     return found
+
+
+def entry_width(longest: int) -> float:
+    """Return the width of an entry of a legend [inches] whose longest name has so many characters."""
+    return max(ENTRY, 0.6 + LETTER * longest)
 
 
 def draw_rates(axis: "Axes", rates: Sequence[tuple[float, tuple[float | None, ...]]], style: Style, label: str) -> None:

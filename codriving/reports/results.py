@@ -177,6 +177,13 @@ class CellResults:
         return share(fallbacks, max(calls - again - shortened, fallbacks)) if self.asked else None
 
 
+def stored_results(records: Sequence[EpisodeRecord], swept: Mapping[str, str]) -> CellResults:
+    """Give stored episodes of a cell, scored by the metric that is usual, or by the first one that there is."""
+    names = list(dict.fromkeys(name for record in records for name in record.scores))
+    metric = "standard" if "standard" in names or not names else names[0]
+    return CellResults(records, swept, metric=metric, papers_setting=False, as_in_paper=False)
+
+
 @dataclass(frozen=True)
 class ScoredEpisode:
     """One episode by one metric."""

@@ -115,4 +115,5 @@ def _differences(old: CellEntry, new: CellEntry) -> list[str]:
 
 def _told(cell: CellEntry) -> dict[str, str]:
     names = {"scenario": cell.scenario, "method": cell.method, **cell.choices}
-    return {**names, **cell.settings, **{file.name: file.sha256[:12] for file in cell.files}}
+    # A node without settings would stand in the place of its name.
+    return {**cell.settings, **names, **{file.name: file.sha256[:12] for file in cell.files}}

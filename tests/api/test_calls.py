@@ -97,7 +97,7 @@ def test_what_cannot_be_read_is_said_in_a_line(there: Result, tmp_path: Path) ->
         there.pets(cell="nobody")
     with pytest.raises(RunFolderError, match=r"has no finished episode with seed 7; "):
         there.decisions(episode=7)
-    with pytest.raises(ConfigError, match=r"^episode must be a seed, a whole number, or None, got '3'$"):
+    with pytest.raises(ConfigError, match=r"^episode must be a seed, a whole number, got '3'$"):
         there.trajectories(episode="3")  # type: ignore[arg-type]
     with pytest.raises(RunFolderError, match=r"^no episode was scored by metrics=authors; it was by standard, "):
         there.pets(metrics="authors")

@@ -28,17 +28,19 @@ def drawn() -> list[tuple[str, str]]:
     return figures([("one <b>", cell(1.0, 4.0)), ("other", cell(2.0)), ("hit", cell(ending=Ending.COLLISION))])
 
 
-def test_one_for_endings_pets_and_the_trade_off(drawn: list[tuple[str, str]]) -> None:
+def test_one_for_endings_pets_trade_off_and_performance(drawn: list[tuple[str, str]]) -> None:
     assert [name for name, _ in drawn] == [
         "How episodes ended",
         "Post-encroachment times (PET) of all episodes",
-        "Velocity against severe PETs",
+        "Velocity against severe PETs; lines of equal velocity times the share of other PETs",
+        "Seeds driven within a factor of the fastest row, by travel time",
     ]
-    endings, pets, trade = (set(ElementTree.fromstring(svg).itertext()) for _, svg in drawn)
+    endings, pets, trade, performance = (set(ElementTree.fromstring(svg).itertext()) for _, svg in drawn)
     assert {"success", "collision", "one <b>", "other", "hit"} <= endings
     assert {"severe below 1.5 s", "one <b>", "other"} <= pets
     assert "hit" not in pets
     assert {"one <b>", "other"} <= trade
+    assert {"one <b>", "other", "hit"} <= performance
 
 
 def test_they_suit_a_strict_page(drawn: list[tuple[str, str]]) -> None:
@@ -65,7 +67,7 @@ def test_one_row_has_no_trade_off() -> None:
 @pytest.mark.parametrize("name", ["$x^{$", r"a \$1$2$", "_first", "\u6d4b\u8bd5 \u0641\u0627\u0631"])
 def test_a_name_is_written_as_it_is(name: str) -> None:
     found = figures([(name, cell(1.0, 4.0)), ("other", cell(2.0))])
-    assert len(found) == 3
+    assert len(found) == 4
     for _, svg in found:
         assert name in [text.strip() for text in ElementTree.fromstring(svg).itertext()]
 
