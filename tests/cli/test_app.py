@@ -321,7 +321,7 @@ def test_cfg_of_a_sweep_is_a_document_for_each_cell(command: str, cells: int) ->
 def test_cfg_prints_the_config_and_runs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     import yaml
 
-    monkeypatch.setattr("codriving.commands.run.drive", None)
+    monkeypatch.setattr("codriving.commands.run.driving", None)
     result = call("run", "--cfg", "episodes=3", "cda=prescriptive")
     assert result.exit_code == 0
     shown = yaml.safe_load(result.stdout)
