@@ -8,7 +8,7 @@ from codriving.errors import ConfigError, RunFolderError
 
 
 @dataclass(frozen=True)
-class Picture:
+class DrawnFigure:
     """One figure; its bytes are the same each time."""
 
     name: str
@@ -31,7 +31,7 @@ class Picture:
         return self.png
 
 
-def pictures_of(files: Mapping[str, bytes]) -> dict[str, Picture]:
+def pictures_of(files: Mapping[str, bytes]) -> dict[str, DrawnFigure]:
     """Put the two files of each figure together."""
     names = dict.fromkeys(name.rpartition(".")[0] for name in files)
-    return {name: Picture(name, files[f"{name}.png"], files[f"{name}.svg"]) for name in names}
+    return {name: DrawnFigure(name, files[f"{name}.png"], files[f"{name}.svg"]) for name in names}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from codriving.api.frames import decision_frame, pet_frame, trajectory_frame
 from codriving.api.page import page_of
-from codriving.api.picture import Picture, pictures_of
+from codriving.api.picture import DrawnFigure, pictures_of
 from codriving.commands import FigureOptions, draw_episode, draw_runs
 from codriving.errors import ConfigError, RunFolderError
 from codriving.experiment import StoredEpisode, all_episodes, find_run
@@ -56,13 +56,13 @@ class Result:
         """Give every vehicle at every simulation step, a row each, in metres, seconds and radians."""
         return trajectory_frame(self._found(cell, episode))
 
-    def figure(self, name: str, cell: str | None = None) -> Picture:
+    def figure(self, name: str, cell: str | None = None) -> DrawnFigure:
         """Draw one of the figures of ``codriving figures``, for instance ``"pets"``."""
         options = FigureOptions(cell=cell, config_dir=self.config_dir, only=name)
         (picture,) = pictures_of(draw_runs([self.folder], options, [])).values()
         return picture
 
-    def space_time(self, episode: int, cell: str | None = None) -> Picture:
+    def space_time(self, episode: int, cell: str | None = None) -> DrawnFigure:
         """Draw an episode: when each CAV was where along its route, and what ground others blocked for it."""
         options = FigureOptions(cell=cell, episode=_seed(episode), config_dir=self.config_dir)
         (picture,) = pictures_of(draw_episode([self.folder], options)).values()

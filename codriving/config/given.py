@@ -7,11 +7,10 @@ from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
+from codriving.config.choices import taking_part
 from codriving.config.object_identity import identity_of, name_of
 from codriving.datatypes import Method, OrderOfCavs
 from codriving.errors import ConfigError
-
-ORDERING = "fcfs"  # The method of ours whose rule an order rule takes the place of
 
 
 @dataclass(frozen=True)
@@ -47,7 +46,8 @@ class Given:
     @property
     def base(self) -> str:
         """The name of a method of ours whose config it is put into."""
-        return ORDERING if self.is_rule else "codriving"
+        # The first baseline is a rule with an executor, and an order rule takes the place of that rule.
+        return taking_part("baselines")[0] if self.is_rule else "codriving"
 
     def offer(self) -> str:
         """Let configs of this process ask for it; gives its ``_target_``."""
