@@ -85,7 +85,7 @@ ablate: $(READY) ## each reasoning sub-module removed in turn
 compare: $(READY) ## every method of the paper on the same seeds, each against codriving
 	$(BIN)/codriving compare baselines $(ARGS)
 
-paper: $(READY) ## drive every table and figure of the paper, and make outputs/paper/index.html of them; takes an hour
+paper: $(READY) ## drive every table and figure of the paper, and make outputs/paper/index.html of them; takes half an hour
 	$(BIN)/codriving experiment paper $(ARGS)
 
 bench: $(READY) ## measure speed
