@@ -11,6 +11,7 @@ CodrivingError                      anything this program raises on purpose
 │   ├── MemoryFileError             a file of memories that is missing, damaged, or of another embedder or version
 │   ├── WeightsError                trained weights that are missing, damaged, or meant for something else
 │   ├── TrainingError               a training that cannot begin or go on
+│   ├── LauncherError               a launcher that cannot drive, or that has lost episodes
 │   └── ModelError                  a language model that cannot be used, or must not be used any more
 │       └── SpendingLimitError      the tokens or the money that may be spent are used up
 └── EpisodeError                    an episode could not go on; it becomes a record and the batch continues
@@ -60,6 +61,10 @@ class WeightsError(UserError):
 
 class TrainingError(UserError):
     """Raised when a training cannot begin or go on, for instance without PyTorch."""
+
+
+class LauncherError(UserError):
+    """Raised when a launcher cannot drive, or does not give back what it was given; what is finished is kept."""
 
 
 class EpisodeError(CodrivingError):

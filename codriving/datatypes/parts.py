@@ -150,6 +150,7 @@ class CaseMemory(ABC):
 
     label: str = ""  # What it is called in tables
     digest: str = ""  # SHA-256 of the contents of a snapshot; empty where there is none
+    asks: bool = False  # Whether a server is asked to find what is similar
     learns: bool = False  # Whether episodes learn from one another, so that they have to be driven in order
     reflections: int = 0  # Mistakes of an episode whose lessons a language model writes at most
 

@@ -6,18 +6,20 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field, fields, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from signal import SIGINT
 from typing import Any, TypeAlias
 
 from codriving.config import experiments_dir, show
 from codriving.datatypes import Ending, EpisodeRecord
-from codriving.errors import ConfigError, DamagedEpisodeError, MemoryFileError, ModelError, UserError
+from codriving.errors import ConfigError, DamagedEpisodeError, LauncherError, MemoryFileError, ModelError, UserError
 from codriving.experiment.as_in_paper import results_of
 from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell, with_metrics
 from codriving.experiment.film import FilmEpisode
 from codriving.experiment.flows import is_flow
+from codriving.experiment.launchers import accounted
 from codriving.experiment.objects import BuildObjects, modules_to_preload
 from codriving.experiment.places import FailuresInARow, places
 from codriving.experiment.plan import Plan
@@ -41,6 +43,7 @@ from codriving.runs import (
     BEHAVIOUR,
     FORMAT,
     MANIFEST,
+    RECORD,
     Manifest,
     RunFolder,
     Timing,
@@ -70,7 +73,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 class HaltedError(ModelError):
-    """Raised when a batch stops since its language model or its memory cannot be used; everything is in order."""
+    """Raised when a batch stops since its model, memory or launcher cannot be used; everything is in order."""
 
     def __init__(self, reason: UserError, folder: Path, finished: int, planned: int) -> None:
         self.text = f"{str(reason).rstrip('.;')}; {finished} of {planned} episodes are finished and kept"
@@ -241,15 +244,15 @@ def driving(plan: Plan, build: _Build | None = None) -> Iterator[_DrivenBatch]:
         try:
             usage = models.usage if models.models else None
             with stopped_by_signals(), show_progress(Counter(unit.cell for unit in todo), usage) as update:
-                for part, launcher, workers in places(missing, unfilmed, plan, models):
+                for part, launcher, workers in places(missing, unfilmed, replace(plan, cells=tuple(cells)), models):
                     failures = FailuresInARow(models.names, models.patience)
                     with closing(launcher.launch(part, job, workers, preload)) as reports:
-                        for report in reports:
+                        for report in accounted(reports, part, launcher, partial(_is_saved, folder)):
                             if report.ending is Ending.ERROR:
                                 failed.append(report)
                             failures.note(report)
                             update(report.unit.cell, report.ending is Ending.ERROR)
-        except (KeyboardInterrupt, ModelError, MemoryFileError) as stop:
+        except (KeyboardInterrupt, ModelError, MemoryFileError, LauncherError) as stop:
             finished = len(_records(folder, cells, units, records, damaged=[]))
             if isinstance(stop, UserError):
                 raise HaltedError(stop, folder.path, finished, len(units)) from stop
@@ -299,6 +302,11 @@ def _changed(there: Manifest, here: Manifest, served: Mapping[str, str]) -> tupl
     known = {name: served.get(name, was) for name, was in there.versions.items() if name.startswith("model ")}
     own = {name: version for name, version in here.versions.items() if not name.startswith("model ")}
     return changed_versions(there, replace(here, versions=own | known))
+
+
+def _is_saved(folder: RunFolder, unit: Unit) -> bool:
+    """Whether an episode is there; of a folder that was taken away more is said later."""
+    return (folder.episode(unit.cell, unit.seed) / RECORD).exists() or not folder.path.is_dir()
 
 
 def _records(

@@ -24,6 +24,12 @@ def memory_of(config: Mapping[str, Any]) -> CaseMemory | None:
     return build(node, CaseMemory, "memory", plugins)
 
 
+def consults(config: Mapping[str, Any]) -> bool:
+    """Tell whether what a config describes asks a language model, one that stands for it, or a server for vectors."""
+    llm, memory = model_of(config), memory_of(config)
+    return (llm is not None and llm.chat() is not None) or (memory is not None and memory.asks)
+
+
 def make_method(config: Mapping[str, Any], llm: Model | None, memory: CaseMemory | None) -> Method:
     """Build the method of a config, handed what it asks for, with filter, thinking time and channel around it."""
     plugins = config["plugins"]

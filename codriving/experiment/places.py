@@ -7,6 +7,7 @@ from codriving.datatypes import Ending
 from codriving.errors import ModelError, ModelUnavailableError
 from codriving.experiment.asking import Asked
 from codriving.experiment.launchers import Launcher, Serial
+from codriving.experiment.objects import consults
 from codriving.experiment.plan import Plan
 from codriving.experiment.processes import Processes
 from codriving.experiment.remembering import learns
@@ -21,7 +22,8 @@ def places(
 
     Episodes whose method asks no language model are driven as the plan says. Those that ask one wait for its server
     nearly all the time, and share one client with its limits: they are driven in threads of this process, as many at
-    once as requests may be under way, unless the plan says otherwise than in processes. Episodes that learn from one
+    once as requests may be under way, unless the launcher of the plan keeps to that. What asks a server in another way
+    does not leave this machine, so that no key has to. Episodes that learn from one
     another come one after the other, each cell in the order of its seeds.
     """
     if not plan.launcher.drives:
@@ -31,11 +33,14 @@ def places(
     independent = [unit for unit in missing if unit.cell not in in_order]
     computed = [unit for unit in independent if unit.cell not in models.models]
     waiting = [unit for unit in independent if unit.cell in models.models]
-    threads: Launcher = Threads() if isinstance(plan.launcher, Processes) else plan.launcher
+    at_home = {cell.folder for cell in plan.cells if plan.launcher.elsewhere and consults(cell.resolved)}
+    threads = plan.launcher if plan.launcher.asks else Threads()
     if in_order:
         yield [unit for unit in missing if unit.cell in in_order], Serial(), 1
-    if computed or unfilmed:
-        yield [*computed, *unfilmed], plan.launcher, plan.workers
+    if consulting := [unit for unit in computed if unit.cell in at_home]:
+        yield consulting, Processes(), plan.workers
+    if elsewhere := [*(unit for unit in computed if unit.cell not in at_home), *unfilmed]:
+        yield elsewhere, plan.launcher, plan.workers
     if waiting:
         yield waiting, threads, side_by_side(plan.workers, models.concurrency)
 

@@ -20,6 +20,8 @@ class Threads(Launcher):
     That is not waited for, since it may be waiting for a server.
     """
 
+    asks = True
+
     def launch(
         self, units: Sequence[Unit], job: Job, workers: int | str, preload: Sequence[str]
     ) -> Generator[Report, None, None]:

@@ -23,6 +23,9 @@ class Unit:
     cell: str
     seed: int
 
+    def __str__(self) -> str:
+        return f"{self.cell}, seed {self.seed}"
+
 
 class Objects(NamedTuple):
     """What the episodes of one cell are driven with, built once a worker."""
@@ -105,21 +108,24 @@ class Worker:
 
     def run(self, unit: Unit) -> Report:
         """Drive one unit and save it."""
-        job, labels = self._job, self._job.labels[unit.cell]
-        if (ending := job.saved(unit)) is not None:
-            report = Report(unit, ending)
-        else:
-            try:
-                environment, method, metrics, _, memory = self._objects_of(unit.cell)
-                result = run_episode(environment, method, metrics, unit.seed, labels, self._go_on, memory)
-            except UserError:
-                raise
-            except Exception as error:
-                result = failed_result(labels, unit.seed, error, traceback.format_exc())
-            report = self._save(unit, result)
-        if job.after:
-            job.after.finish(unit)
-        return report
+        if (ending := self._job.saved(unit)) is not None:
+            return self._finished(Report(unit, ending))
+        return self.keep(unit, self.drive(unit))
+
+    def drive(self, unit: Unit) -> EpisodeResult:
+        """Drive one unit."""
+        labels = self._job.labels[unit.cell]
+        try:
+            environment, method, metrics, _, memory = self._objects_of(unit.cell)
+            return run_episode(environment, method, metrics, unit.seed, labels, self._go_on, memory)
+        except UserError:
+            raise
+        except Exception as error:
+            return failed_result(labels, unit.seed, error, traceback.format_exc())
+
+    def keep(self, unit: Unit, result: EpisodeResult) -> Report:
+        """Save what was driven, wherever that was."""
+        return self._finished(self._save(unit, result))
 
     def abandon(self, unit: Unit, error: Exception) -> Report:
         """Save a unit as failed without driving it."""
@@ -128,6 +134,11 @@ class Worker:
             self._job.after.abandon(unit, error)
             return Report(unit, ending)
         return self._save(unit, failed_result(self._job.labels[unit.cell], unit.seed, error))
+
+    def _finished(self, report: Report) -> Report:
+        if self._job.after:
+            self._job.after.finish(report.unit)
+        return report
 
     def _objects_of(self, cell: str) -> Objects:
         if cell not in self._objects:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from codriving.datatypes import CaseMemory, Memory, MetDriver, Situation
 from codriving.errors import ConfigError
 from codriving.memory.describe import describe
-from codriving.memory.embedders import EmbeddingServer, make_embedder
+from codriving.memory.embedders import LITELLM, EmbeddingServer, make_embedder
 from codriving.memory.snapshot import Snapshot
 
 
@@ -18,7 +18,7 @@ class RetrievalMemory(CaseMemory):
         if not -1 <= least_similarity <= 1:
             raise ConfigError(f"least_similarity must be -1 to 1, got {least_similarity:g}")
         self._shots, self._least_similarity = shots, least_similarity
-        self._embedder = make_embedder(embedder, server)
+        self._embedder, self.asks = make_embedder(embedder, server), embedder == LITELLM
         self._snapshot: Snapshot | None = None
 
     def encounters(self) -> Sequence[MetDriver]:
