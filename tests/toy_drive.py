@@ -119,6 +119,7 @@ class ToyMethod(Method):
     dies: tuple[int, ...] = ()
     gate: Path | None = None
     waits_from: int = 0
+    dies_once: bool = False
     name: str = "steady"
     variant: str = "full"
     reasoner: str = "rules"
@@ -138,7 +139,7 @@ class ToyMethod(Method):
         return ToyDeliberation({"CAV1": Action.IDLE}, world.step)
 
     def _at_gate(self, gate: Path) -> None:
-        if self.seed in self.dies:
+        if self.seed in self.dies and not (self.dies_once and (gate / f"died-{self.seed}").exists()):
             with (gate / f"died-{self.seed}").open("a") as file:
                 file.write("x")
             os.kill(os.getpid(), 9)
@@ -193,9 +194,10 @@ class BuildToy:
     gate: Path | None = None
     waits_from: int = 0
     nan: tuple[int, ...] = ()
+    dies_once: bool = False
     configs: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     def __call__(self, cell: str) -> Objects:
         """Build them, whatever the cell."""
-        method = ToyMethod(self.raises, self.dies, self.gate, self.waits_from)
+        method = ToyMethod(self.raises, self.dies, self.gate, self.waits_from, self.dies_once)
         return Objects(ToyEnvironment(), method, toy_scorers(self.configs.get(cell, {}), self.nan))

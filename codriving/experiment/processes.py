@@ -91,7 +91,7 @@ class WorkerProcess:
         self.connection, theirs = context.Pipe()
         self.unit: Unit | None = None
         self._process = context.Process(target=drive_units, args=(theirs, job), daemon=True, name="codriving-worker")
-        with _without_main():
+        with without_main():
             self._process.start()
         theirs.close()
 
@@ -135,7 +135,7 @@ def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
     # A mask outlives fork and exec: with it, Ctrl-C reaches neither the server, even in its imports, nor a worker.
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        with _without_main():
+        with without_main():
             multiprocessing.forkserver.ensure_running()
     except OSError as error:
         # The server is spoken to by a socket in the folder for temporary files, whose path has 107 bytes at most.
@@ -149,7 +149,7 @@ def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
 
 
 @contextmanager
-def _without_main() -> Iterator[None]:
+def without_main() -> Iterator[None]:
     """Keep workers from importing the caller's script again."""
     main = sys.modules["__main__"]
     sys.modules["__main__"] = types.ModuleType("__main__")

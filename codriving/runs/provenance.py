@@ -1,5 +1,6 @@
 """Where results come from: versions, commit and machine, for the manifest."""
 
+import hashlib
 import os
 import platform
 import subprocess
@@ -34,6 +35,19 @@ def versions() -> dict[str, str]:
         with suppress(PackageNotFoundError):
             found[name] = version(name)
     return found
+
+
+@cache
+def source_digest() -> str:
+    """Return the SHA-256 of the files of this package, which one version need not tell."""
+    top, digest = Path(__file__).resolve().parents[1], hashlib.sha256()
+    for path in sorted(top.rglob("*")):
+        name = path.relative_to(top)
+        # Configs are a part of an installed package only, and nodes are sent theirs.
+        if path.is_file() and name.parts[0] not in ("_conf", "_experiments") and not name.name.endswith((".pyc", "~")):
+            content = hashlib.sha256(path.read_bytes()).digest()
+            digest.update(hashlib.sha256(name.as_posix().encode()).digest() + content)
+    return digest.hexdigest()
 
 
 def machine() -> dict[str, str]:

@@ -56,6 +56,8 @@ MAY_IMPORT = {
 
 DOORS = {
     "highway_env": "environment",
+    "dask": "experiment",
+    "distributed": "experiment",
     "gymnasium": "gym",
     "pettingzoo": "gym",
     "litellm": "llm",
