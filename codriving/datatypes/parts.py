@@ -270,11 +270,7 @@ class Method(ABC):
         return {}
 
     def unfinished_step(self, time: float) -> Account:
-        """Return what was asked in a step that an error broke off, so that its cost is not lost.
-
-        Args:
-            time: Simulated time of the step [s].
-        """
+        """Return what was asked in a step that an error broke off at a time [s], so that its cost is not lost."""
         return {}, []
 
 

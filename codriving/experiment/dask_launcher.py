@@ -15,7 +15,7 @@ from codriving.errors import ConfigError, LauncherError, require, require_range
 from codriving.experiment.asking import announce
 from codriving.experiment.launchers import Launcher, worker_count
 from codriving.experiment.nodes import NodeJob, drive_on_node, program, program_differences
-from codriving.experiment.processes import ATTEMPTS, WorkerDied, without_main
+from codriving.experiment.processes import ATTEMPTS, WorkerDied, uninterrupted, without_main
 from codriving.experiment.worker import Job, Report, Unit
 
 CONNECT = 30.0  # How long to try to reach a scheduler [s]
@@ -233,7 +233,7 @@ def _local_cluster(processes: int) -> Iterator[str]:
         dask.config.set(_OWN_CLUSTER),
     ):
         # That the usual port of a page that is not served is taken is no news.
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), uninterrupted():
             warnings.simplefilter("ignore")
             try:
                 cluster = distributed.LocalCluster(

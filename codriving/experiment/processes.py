@@ -130,12 +130,9 @@ def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([__name__, *preload])
-    # The tracker unblocks SIGINT when it starts, so it has to be there before.
-    multiprocessing.resource_tracker.ensure_running()
-    # A mask outlives fork and exec: with it, Ctrl-C reaches neither the server, even in its imports, nor a worker.
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        with without_main():
+        # Ctrl-C reaches neither the server, even in its imports, nor a worker.
+        with uninterrupted(), without_main():
             multiprocessing.forkserver.ensure_running()
     except OSError as error:
         # The server is spoken to by a socket in the folder for temporary files, whose path has 107 bytes at most.
@@ -143,9 +140,22 @@ def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
             f"cannot start worker processes in the folder for temporary files {tempfile.gettempdir()} ({error}); set "
             "TMPDIR to another folder with a short path, or launcher=serial"
         ) from error
+    return context
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Keep Ctrl-C from what is started meanwhile, and from what that starts: a mask outlives fork and exec."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # The tracker unblocks SIGINT when it starts, so it has to be there before.
+    multiprocessing.resource_tracker.ensure_running()
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-    return context
 
 
 @contextmanager

@@ -1,5 +1,8 @@
 """Several processes: same results, dead workers replaced, none left behind."""
 
+import signal
+import subprocess
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +14,7 @@ from codriving.datatypes.record import Ending
 from codriving.errors import ConfigError
 from codriving.experiment.episode import EpisodeResult
 from codriving.experiment.launchers import Serial, available_cores, worker_count
-from codriving.experiment.processes import Processes, run_parallel
+from codriving.experiment.processes import Processes, run_parallel, uninterrupted
 from codriving.experiment.worker import Job, Objects, Report, Unit
 
 UNITS = [Unit("cell", seed) for seed in range(8)]
@@ -67,6 +70,13 @@ def test_a_killed_worker_is_tried_once_more_and_the_batch_goes_on(tmp_path: Path
 def test_a_mistake_of_the_users_arrives_as_it_was_raised(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"got 99"):
         run_batch(UNITS, job(tmp_path / "out", Misconfigured()), Processes(), workers=2)
+
+
+def test_what_is_started_uninterrupted_is_not_reached_by_ctrl_c() -> None:
+    asked = [sys.executable, "-c", "import signal as s; print(s.SIGINT in s.pthread_sigmask(s.SIG_BLOCK, []))"]
+    with uninterrupted():
+        assert subprocess.run(asked, capture_output=True, text=True, check=True).stdout == "True\n"
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])
 
 
 def test_auto_takes_the_cores_that_there_are_and_no_more_than_units() -> None:
