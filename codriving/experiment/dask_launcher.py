@@ -6,6 +6,7 @@ import tempfile
 import warnings
 from collections import deque
 from collections.abc import Generator, Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager
 from queue import Empty, SimpleQueue
 from time import monotonic
@@ -108,15 +109,18 @@ def _drive(waiting: deque[Unit], job: NodeJob, nodes: "_Nodes", most: int | None
         except Empty:
             continue
         unit, _ = flying.pop(future.key)
-        if future.status == "finished":
-            yield job.take(unit, future.result())
-        elif future.status != "error":
-            raise nodes.lost()
-        elif isinstance(error := future.exception(), KilledWorker):
-            died = f"{error.allowed_failures + 1} processes that drove this episode died"
+        try:
+            # It raises what went wrong there, or here if what was driven is lost while it is fetched.
+            answer = future.result()
+        except KilledWorker as killed:
+            died = f"{killed.allowed_failures + 1} processes that drove this episode died"
             yield job.abandon(unit, WorkerDied(died))
+        except CancelledError as error:
+            raise nodes.lost() from error
+        except Exception as error:
+            raise LauncherError(f"the cluster {nodes.name} failed to drive {unit}: {_line(error)}") from error
         else:
-            raise LauncherError(f"the cluster {nodes.name} failed to drive {unit}: {_line(error)}")
+            yield job.take(unit, answer)
 
 
 class _Nodes:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from codriving.config import asks_for, build, looks_secret
+from codriving.config import asks_for, build, looks_secret, targets
 from codriving.datatypes import Model, Scenario
 from codriving.errors import LauncherError, UserError
 from codriving.experiment.contents import contents
@@ -111,6 +111,9 @@ def _sent(build: Callable[[str], Objects], cell: str) -> tuple[Callable[[str], O
     config = {key: value for key, value in build.configs[cell].items() if key not in _AT_HOME}
     if not asks_for(config["method"], Model, config["plugins"]):
         config["llm"] = None
+    # Of a launcher of the user's own, for instance, a node needs no module.
+    named = {target.partition(".")[0] for target in targets(config)}
+    config["plugins"] = [name for name in config["plugins"] if name.partition(".")[0] in named]
     plain, masked = flat(config), flat(redact(config))
     suspect = [key for key, text in plain.items() if masked.get(key) != text or looks_secret(text)]
     if suspect or consults(config):

@@ -1,6 +1,7 @@
 """What a node is sent, what it is not, and what becomes of what it gives back."""
 
 import pickle
+import sys
 from collections.abc import Generator
 from dataclasses import replace
 from pathlib import Path
@@ -86,6 +87,21 @@ def test_what_may_be_a_secret_is_refused_and_not_shown(key: str, value: str) -> 
 def test_what_asks_a_model_is_never_sent(tokens: tuple[str, ...]) -> None:
     with pytest.raises(LauncherError, match=r"^no node is sent cell: it asks a server, which stays on this machine; "):
         NodeJob(job(compose([*SHORT, *tokens]))).task(UNIT)
+
+
+def test_a_node_needs_only_the_plug_ins_that_it_builds_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    source = "from codriving.methods.idm import Idm\n\n\nclass Mine(Idm):\n    pass\n"
+    for name in ("my_methods", "my_launchers"):
+        (tmp_path / f"{name}.py").write_text(source)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    config = compose([*SHORT, "method=idm", "plugins=[my_methods,my_launchers]"])
+    config["method"] = {**config["method"], "_target_": "my_methods.Mine"}
+    task = NodeJob(job(config)).task(UNIT)
+    assert isinstance(task.build, BuildObjects)
+    assert task.build.configs["cell"]["plugins"] == ["my_methods"]
+    assert set(task.files) == {"plug-in my_methods.py"}
+    for name in ("my_methods", "my_launchers"):
+        sys.modules.pop(name, None)
 
 
 def test_a_node_of_another_program_refuses() -> None:
