@@ -13,6 +13,8 @@ from codriving.runs import check_files, read_record, write_text
 
 NAME = "report.html"  # In the folder of the run, where nothing else is said
 
+LONGEST = 150  # A longer name of several runs is said shorter: file systems take 255 [bytes]
+
 REPLAYS = 40  # Episodes that can be replayed, where nothing else is said
 
 
@@ -56,6 +58,8 @@ def run_report(runs: Sequence[Path], options: ReportOptions) -> str:
 
 def _target(out: Path | None, folders: Sequence[Path]) -> Path:
     name = NAME if len(folders) == 1 else f"report-{'-'.join(folder.resolve().name for folder in folders)}.html"
+    if len(name.encode(errors="replace")) > LONGEST:
+        name = f"report-of-{len(folders)}-runs.html"
     path = out / name if out and out.is_dir() else out or folders[0] / name
     if path.suffix.lower() not in (".html", ".htm"):
         raise ConfigError(f"--out ends in {path.suffix or 'nothing'}, but a page is .html; name it so")

@@ -89,7 +89,9 @@ def _check_file(path: Path) -> None:
         with path.open("rb") as file:
             begins = file.read(len(_MAGIC))
     except OSError as error:
-        raise ModelError(f"llm.model_file={path} cannot be read ({error.strerror}); mend that") from error
+        raise ModelError(
+            f"llm.model_file={path} cannot be read ({error.strerror}); name a GGUF file that can"
+        ) from error
     require(begins == _MAGIC, f"{wish}, got {path}, which is none; convert the model, or fetch it as GGUF")
 
 

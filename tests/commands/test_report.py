@@ -59,6 +59,15 @@ def test_a_page_of_several_is_called_by_their_names(run: Path, tmp_path: Path, m
     assert [path.name for path in here.glob("*.html")] == ["report-here-other.html"]
 
 
+def test_a_page_of_many_has_a_short_name(run: Path, tmp_path: Path) -> None:
+    named = [tmp_path / f"{'x' * 100}{k}" for k in range(3)]
+    for folder in named:
+        shutil.copytree(run, folder)
+    result = call(*named, "--replays", 0)
+    assert result.exit_code == 0, result.output
+    assert [path.name for path in named[0].glob("*.html")] == ["report-of-3-runs.html"]
+
+
 @pytest.mark.parametrize(
     ("args", "words"),
     [

@@ -271,6 +271,11 @@ def test_what_breaks_a_rule_is_refused(changes: dict[str, object], rule: str) ->
         build({**NODE, **changes}, object, "llm")
 
 
+def test_a_folder_is_no_model(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match=r"cannot be read \(Is a directory\); name a GGUF file that can$"):
+        model(tmp_path)
+
+
 def test_answers_are_kept_by_the_content_of_the_file(gguf: Path) -> None:
     address = model(gguf, cache="use").address
     assert address is not None
