@@ -108,6 +108,6 @@ def main(arguments: list[str]) -> None:
     for name, row in ((f"{prompts} {name}", row) for prompts, rows in found.items() for name, row in rows.items()):
         print(
             f"  {name:24}{row['calls']:5.2f} calls ({row['calls_share']:4.0%}){row['tokens']:6} prompt tokens "
-            f"({row['tokens_share']:4.0%}); if all are asked{row['full_step_tokens']:6} tokens "
-            f"({row['full_step_share']:4.0%})"
+            f"({row['tokens_share']:4.0%}); an order{row['order_tokens']:5}, a decision{row['decision_tokens']:5}; "
+            f"if all are asked{row['full_step_tokens']:6} ({row['full_step_share']:4.0%})"
         )
