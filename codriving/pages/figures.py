@@ -15,7 +15,7 @@ from codriving.reports import (
     draw_performance,
     draw_pets,
     draw_trade_off,
-    legend_name,
+    legend_names,
     pets_of,
     seconds_of,
     trade_of,
@@ -37,7 +37,8 @@ def figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
         Title and SVG of each figure.
     """
     with plain_matplotlib():
-        return _figures([(legend_name(name), cell) for name, cell in rows[:MOST]])
+        names = legend_names([name for name, _ in rows[:MOST]])
+        return _figures([(name, cell) for name, (_, cell) in zip(names, rows, strict=False)])
 
 
 @contextmanager

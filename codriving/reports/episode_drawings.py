@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
+from unicodedata import east_asian_width
 
 import numpy as np
 
@@ -39,12 +40,32 @@ INK = "#000000"
 
 RATES = (("success", "#0072b2", ""), ("clean success", "#e69f00", "////"))
 
+LONGEST = 46  # Widest name beside bars and in a legend [Latin letters]
+
 SLOWEST = 3.0  # Largest factor of a performance profile
 
 
-def legend_name(name: str) -> str:
-    """Write a name so that no legend leaves it out, as one that begins with an underscore."""
-    return f" {name}" if name.startswith("_") else name
+def legend_names(names: Sequence[str]) -> list[str]:
+    """Write names so that they leave room for a figure, are told apart, and no legend leaves one out.
+
+    Long ones lose their middle, and two that are then alike are numbered. Matplotlib leaves out what begins with an
+    underscore.
+    """
+    short = [name if _width(name) <= LONGEST else _without_middle(name) for name in names]
+    numbered = [
+        name if short.count(name) == 1 else f"{name} ({short[:place].count(name) + 1})"
+        for place, name in enumerate(short)
+    ]
+    return [f" {name}" if name.startswith("_") else name for name in numbered]
+
+
+def _width(name: str) -> int:
+    return sum(1 + (east_asian_width(letter) in "WF") for letter in name)
+
+
+def _without_middle(name: str) -> str:
+    """Keep the begin and the end, fewer letters of them where letters are wide."""
+    return f"{name[:27]}...{name[-16:]}" if _width(name) <= 1.2 * len(name) else f"{name[:13]}...{name[-8:]}"
 
 
 def pets_of(cell: CellResults) -> list[float]:

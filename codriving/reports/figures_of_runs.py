@@ -13,7 +13,7 @@ from codriving.reports.episode_drawings import (
     draw_pets,
     draw_rate_bars,
     draw_trade_off,
-    legend_name,
+    legend_names,
     pets_of,
     seconds_of,
     trade_of,
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PANELS, ROWS = 8, 24  # Most in one figure: more cannot be told apart
-
-LONGEST = 46  # Characters of a name beside bars and in a legend
 
 # Takes axes, rows, the place of each among those of all panels, and the colour of words.
 Draw: TypeAlias = "Callable[[Axes, Sequence[Named], Sequence[int], str], None]"
@@ -67,7 +65,7 @@ def run_figures(rows: Sequence[DrawnRow], metrics: str, only: Sequence[str] = ()
 def panels_of(rows: Sequence[DrawnRow]) -> dict[str, list[Named]]:
     """Sort rows into panels, with names that a figure has room for."""
     names = list(dict.fromkeys(row.name for row in rows))
-    shown = dict(zip(names, _shortened(names), strict=True))
+    shown = dict(zip(names, legend_names(names), strict=True))
     panels: dict[str, list[Named]] = {}
     for row in rows:
         panels.setdefault(row.block, []).append((shown[row.name], row.cell))
@@ -77,15 +75,6 @@ def panels_of(rows: Sequence[DrawnRow]) -> dict[str, list[Named]]:
 def panel_count(rows: Sequence[DrawnRow]) -> int:
     """How many panels all rows would take."""
     return len({row.block for row in rows})
-
-
-def _shortened(names: Sequence[str]) -> list[str]:
-    """Leave out the middle of long names; two that are then alike are numbered."""
-    short = [name if len(name) <= LONGEST else f"{name[:27]}...{name[-16:]}" for name in names]
-    return [
-        legend_name(name if short.count(name) == 1 else f"{name} ({short[:place].count(name) + 1})")
-        for place, name in enumerate(short)
-    ]
 
 
 def rate_figure(rows: Sequence[DrawnRow], what: str, metrics: str) -> Mapping[str, bytes]:

