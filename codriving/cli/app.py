@@ -18,6 +18,7 @@ from codriving.cli.commands import (
     bound,
     check,
     compare,
+    exam,
     experiment,
     export,
     figures,
@@ -175,6 +176,7 @@ app.command(epilog="Example: codriving learn scenario=intersection interactions=
 app.command(epilog="Example: codriving experiment ablation episodes=20 run=first")(experiment)
 app.command(epilog="Example: codriving join outputs/run/big")(join)
 app.command(epilog="Example: codriving check llm=openai llm.model=openai/gpt-4o-mini")(check)
+app.command(epilog="Example: codriving exam llm=local --most 40")(exam)
 app.command(epilog="Example: codriving replay outputs/run/first --episode 3 --format gif")(replay)
 app.command(epilog="Example: codriving report outputs/run/first outputs/run/second --out page.html")(report)
 app.command(epilog="Example: codriving figures outputs/run/first")(figures)

@@ -194,6 +194,26 @@ def check(overrides: Overrides = None, config_dir: ConfigDir = None) -> None:
     raise typer.Exit(run_check(overrides or [], config_dir))
 
 
+def exam(
+    overrides: Overrides = None,
+    most: Annotated[
+        int | None, typer.Option("--most", metavar="N", help="Ask so many questions at most, evenly taken of all.")
+    ] = None,
+    file: Annotated[
+        Path | None, typer.Option("--file", metavar="FILE", help="Another exam, of docs/exam/build.py.")
+    ] = None,
+    config_dir: ConfigDir = None,
+) -> None:
+    """Ask a language model stored questions, without driving: is its action safe, acceptable, in form, repeatable?
+
+    llm=NAME,NAME names models; the rules and the controls have their rows beside them, controls=false leaves the
+    controls out, and epochs=N asks everything N times.
+    """
+    from codriving.commands import ExamOptions, run_exam
+
+    raise typer.Exit(run_exam(overrides or [], ExamOptions(most, file, config_dir)))
+
+
 def replay(
     run: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder, or the name of one under outputs/.")],
     overrides: Annotated[
@@ -290,7 +310,7 @@ def score(
 def export(
     run: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder, or the name of one under outputs/.")],
     to: Annotated[
-        str, typer.Option("--to", metavar="fcd|interhub|csv", help="The layout.", autocompletion=complete_layout)
+        str, typer.Option("--to", metavar="fcd|interhub|csv|sft", help="The layout.", autocompletion=complete_layout)
     ],
     episode: Annotated[int | None, typer.Option(metavar="N", help="Its seed; all if not given.")] = None,
     cell: Annotated[str | None, typer.Option(metavar="NAME", help="A row of the table, or a part of its name.")] = None,
@@ -300,7 +320,7 @@ def export(
     """Write the episodes of a run for other programs.
 
     fcd: floating car data as SUMO's --fcd-output. interhub: the interactions, in the columns of InterHub's table.
-    csv: a tidy table with sizes and routes.
+    csv: a tidy table with sizes and routes. sft: a chat a line, question and answer, to tune a language model on.
     """
     from codriving.commands import ExportOptions, run_export
 

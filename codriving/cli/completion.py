@@ -65,7 +65,7 @@ def complete_format(incomplete: str) -> list[str]:
 
 def complete_layout(incomplete: str) -> list[str]:
     """Offer the layouts of `codriving export`."""
-    return [name for name in ("fcd", "interhub", "csv") if name.startswith(incomplete)]
+    return [name for name in ("fcd", "interhub", "csv", "sft") if name.startswith(incomplete)]
 
 
 def complete_table(incomplete: str) -> list[tuple[str, str]]:

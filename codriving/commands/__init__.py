@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from codriving.commands.bounds import BoundOptions, run_bound
     from codriving.commands.check import run_check
     from codriving.commands.compare import comparison_command
+    from codriving.commands.exam import ExamOptions, run_exam
     from codriving.commands.experiment import run_experiment_file
     from codriving.commands.export import ExportOptions, run_export
     from codriving.commands.figures import FigureOptions, draw_episode, draw_runs, write_figures
@@ -23,11 +24,11 @@ if TYPE_CHECKING:
     from codriving.commands.stress import stress_command
 
 __all__ = [
-    "ABLATE", "BUILD", "RUN", "BoundOptions", "Command", "ExportOptions", "FigureOptions", "JoinOptions", "Lessons",
-    "ReplayOptions", "ReportOptions", "ScoreOptions", "Scored", "comparison_command", "draw_episode", "draw_runs",
-    "merge_page", "run_bound", "run_check", "run_command", "run_experiment_file", "run_export", "run_join",
-    "run_learn", "run_paper", "run_replay", "run_report", "run_score", "score_files", "search_page", "show_page",
-    "stress_command", "write_figures",
+    "ABLATE", "BUILD", "RUN", "BoundOptions", "Command", "ExamOptions", "ExportOptions", "FigureOptions",
+    "JoinOptions", "Lessons", "ReplayOptions", "ReportOptions", "ScoreOptions", "Scored", "comparison_command",
+    "draw_episode", "draw_runs", "merge_page", "run_bound", "run_check", "run_command", "run_exam",
+    "run_experiment_file", "run_export", "run_join", "run_learn", "run_paper", "run_replay", "run_report", "run_score",
+    "score_files", "search_page", "show_page", "stress_command", "write_figures",
 ]  # fmt: skip
 
 _FILES = {
@@ -35,6 +36,7 @@ _FILES = {
     "bounds": ("BoundOptions", "run_bound"),
     "check": ("run_check",),
     "compare": ("comparison_command",),
+    "exam": ("ExamOptions", "run_exam"),
     "experiment": ("run_experiment_file",),
     "export": ("ExportOptions", "run_export"),
     "figures": ("FigureOptions", "draw_episode", "draw_runs", "write_figures"),

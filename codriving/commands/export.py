@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from codriving.commands.sft import FILE as SFT_FILE
+from codriving.commands.sft import refuse_measured, sft_text
 from codriving.config import compose
 from codriving.datatypes import EpisodeRecord, Trajectory
 from codriving.errors import ConfigError, RunFolderError
@@ -13,7 +15,7 @@ from codriving.experiment import StoredEpisode, all_episodes, find_run, lacks, r
 from codriving.recordings import fcd_text, interhub_rows, tidy_text
 from codriving.runs import write_text
 
-LAYOUTS = ("fcd", "interhub", "csv")
+LAYOUTS = ("fcd", "interhub", "csv", "sft")
 
 FOLDER = "exported"  # Below the run, where nothing else is said
 
@@ -40,7 +42,10 @@ def run_export(run: Path, options: ExportOptions) -> str:
     if options.out is not None and options.out.exists() and not options.out.is_dir():
         raise ConfigError(f"--out must be a folder, and {options.out} is a file; name another one")
     folder = options.out or find_run(run)[0] / FOLDER
-    driven = [(episode, *read_episode(episode)) for episode in all_episodes(run, options.cell, options.episode)]
+    chosen = all_episodes(run, options.cell, options.episode)
+    if options.to == "sft":
+        refuse_measured(chosen)
+    driven = [(episode, *read_episode(episode)) for episode in chosen]
     moved = [
         (e, record, trajectory) for e, record, trajectory in driven if trajectory is not None and trajectory.tracks
     ]
@@ -48,6 +53,8 @@ def run_export(run: Path, options: ExportOptions) -> str:
         raise RunFolderError(f"nothing was driven in the episodes of {run} that were chosen; choose others")
     if options.to == "interhub":
         files = {"interhub.csv": _interhub(moved, options.config_dir)}
+    elif options.to == "sft":
+        files = {SFT_FILE: sft_text([(episode, record) for episode, record, _ in moved])}
     else:
         ending, text = (".fcd.xml", fcd_text) if options.to == "fcd" else (".csv", tidy_text)
         files = {f"{e.cell.folder}-{e.seed}{ending}": text(trajectory) for e, _, trajectory in moved}

@@ -226,6 +226,19 @@ class Environment(Simulator):
         return {v.id: v.manner for v in self._traffic.vehicles if v.kind is Kind.HDV}
 
     @property
+    def lasting(self) -> tuple[object, ...]:
+        """What no episode changes, so that copies of a world may share it."""
+        lanes = self._network.lanes_list()
+        return (self.road_map, self.driving_model, self.scenario, self._network, *lanes, *self._route_paths.values())
+
+    def redraw_drivers(self, seed: int) -> None:
+        """Let drivers drawn anew from the same mix go on where human drivers are now; nothing where none are drawn."""
+        if isinstance(self.drivers, DriverMix):
+            for vehicle in self._traffic.vehicles:
+                if isinstance(vehicle, HumanDriver):
+                    vehicle.become(self.drivers.draw(seed, vehicle.id))
+
+    @property
     def _time(self) -> float:
         return round(self._steps * self.driving_model.step, 9)
 

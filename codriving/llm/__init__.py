@@ -23,12 +23,13 @@ if TYPE_CHECKING:
     from codriving.llm.prompts.variables import decision_view, lane_views, memory_lines, negotiation_view
     from codriving.llm.prompts.views import MeaningView, SeenView, WayView
     from codriving.llm.question import Answer, Chat, Question
+    from codriving.llm.scripted import ScriptedChat
     from codriving.llm.sqlite_file import connect_sqlite, create_sqlite
 
 __all__ = [
-    "Answer", "Chat", "ContestView", "CorrectionReply", "DecisionReply", "EmbeddingModel",
-    "JudgementReply", "Ledger", "LessonReply", "MeaningView", "Names", "OrderReply", "Prompts", "Question", "SeenView",
-    "WayView", "chances", "connect_sqlite", "correction_reply", "create_sqlite", "decision_reply", "decision_view",
+    "Answer", "Chat", "ContestView", "CorrectionReply", "DecisionReply", "EmbeddingModel", "JudgementReply", "Ledger",
+    "LessonReply", "MeaningView", "Names", "OrderReply", "Prompts", "Question", "ScriptedChat", "SeenView", "WayView",
+    "chances", "connect_sqlite", "correction_reply", "create_sqlite", "decision_reply", "decision_view",
     "first_of_pairs", "judgement_reply", "lane_views", "load_prompts", "memory_lines", "names_for", "negotiation_view",
     "one_line", "order_reply", "pair_names", "prompts_name", "seen_names", "template_files",
 ]  # fmt: skip
@@ -47,6 +48,7 @@ _FILES = {
     "prompts.variables": ("decision_view", "lane_views", "memory_lines", "negotiation_view"),
     "prompts.views": ("MeaningView", "SeenView", "WayView"),
     "question": ("Answer", "Chat", "Question"),
+    "scripted": ("ScriptedChat",),
     "sqlite_file": ("connect_sqlite", "create_sqlite"),
 }  # fmt: skip
 

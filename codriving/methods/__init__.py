@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from codriving.methods.codriving import CoDriving, perception_at
+    from codriving.methods.language_model.model_coordinator import ModelCoordinator, most_urgent
     from codriving.methods.language_model.model_decider import CheckedDecider
-    from codriving.methods.language_model.prompted_model import prompted
+    from codriving.methods.language_model.prompted_model import PromptedModel, prompted
     from codriving.methods.learned.features import Features, Observation
     from codriving.methods.learned.layout import (
         ACTIONS,
@@ -42,14 +43,16 @@ if TYPE_CHECKING:
 __all__ = [
     "ACTIONS", "ATTENTION", "EGO", "FAMILIES", "FAR", "FORMS", "HEADS", "NEAR", "PERCEPTRON", "SLOT", "SLOTS",
     "VERSION", "WIDTH", "AnyNetwork", "Attention", "CheckedDecider", "CoDriving", "Driver", "Features", "FloatArray",
-    "Madqn", "Network", "Observation", "Ordered", "Ppo", "Purpose", "SingleVehicle", "Tell", "Trained", "allowed",
-    "feature_count", "greedy", "load", "perception_at", "prompted", "save",
+    "Madqn", "ModelCoordinator", "Network", "Observation", "Ordered", "Ppo", "PromptedModel", "Purpose",
+    "SingleVehicle", "Tell", "Trained", "allowed", "feature_count", "greedy", "load", "most_urgent", "perception_at",
+    "prompted", "save",
 ]  # fmt: skip
 
 _FILES = {
     "codriving": ("CoDriving", "perception_at"),
+    "language_model.model_coordinator": ("ModelCoordinator", "most_urgent"),
     "language_model.model_decider": ("CheckedDecider",),
-    "language_model.prompted_model": ("prompted",),
+    "language_model.prompted_model": ("PromptedModel", "prompted"),
     "learned.features": ("Features", "Observation"),
     "learned.layout": (
         "ACTIONS", "EGO", "FAMILIES", "FAR", "NEAR", "SLOT", "SLOTS", "VERSION", "allowed", "feature_count",

@@ -10,10 +10,11 @@ from codriving.metrics.intervals import (
     rate_interval,
     wilson_interval,
 )
+from codriving.metrics.pet import post_encroachment_times
 from codriving.metrics.recorded import outcome_of, recorded_time
 from codriving.metrics.scorer import Scorer, with_alone
 
 __all__ = [
     "FEWEST", "RESAMPLES", "Scorer", "holm", "mcnemar", "mean_interval", "outcome_of", "paired_interval",
-    "rate_interval", "recorded_time", "wilson_interval", "with_alone",
+    "post_encroachment_times", "rate_interval", "recorded_time", "wilson_interval", "with_alone",
 ]  # fmt: skip

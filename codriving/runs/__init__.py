@@ -31,7 +31,7 @@ from codriving.runs.intact import RECORD, TRAJECTORY, check_files, rewrite_recor
 from codriving.runs.manifest import FORMAT, MANIFEST, Manifest, only_old_world, read_manifest
 from codriving.runs.parts import PART, PARTS, Part, Shard, read_part, write_part
 from codriving.runs.provenance import commit, machine, source_digest, versions
-from codriving.runs.redaction import MASK, flat, nested, redact, secrets_of, variables_in
+from codriving.runs.redaction import MASK, flat, nested, redact, scrubbed, secrets_of, variables_in
 from codriving.runs.run_folder import (
     RunFolder,
     checked_record,
@@ -49,7 +49,8 @@ __all__ = [
     "changed_versions", "check_files", "checked_record", "commit", "difference", "driving_values", "episode_folder",
     "files_of", "fingerprint", "flat", "locked", "machine", "nested", "new_run_path", "only_old_world",
     "read_decisions", "read_manifest", "read_part", "read_record", "read_timing", "read_trajectory", "read_transcript",
-    "redact", "removed", "rewrite_record", "same_cell", "secrets_of", "settings_of", "snapshot_of", "source_digest",
+    "redact", "removed", "rewrite_record", "same_cell", "scrubbed", "secrets_of", "settings_of", "snapshot_of",
+    "source_digest",
     "timing_of", "unwritable", "variables_in", "versions", "whole_file", "whole_folder", "within", "write_episode",
     "write_part", "write_text",
 ]  # fmt: skip

@@ -167,5 +167,5 @@ def test_keys_are_those_of_the_suite(tmp_path: Path) -> None:
 
 
 def test_layouts_of_export_are_offered() -> None:
-    assert complete_layout("") == ["fcd", "interhub", "csv"]
+    assert complete_layout("") == ["fcd", "interhub", "csv", "sft"]
     assert complete_layout("f") == ["fcd"]

@@ -200,3 +200,19 @@ def test_body_ahead_is_the_nearest_one_in_the_way(intersection: Build, by_hand: 
             assert body_seen is None
             assert gap == np.inf
     assert found > 50
+
+
+def test_drivers_are_drawn_anew_where_they_are(configured: Callable[..., Environment]) -> None:
+    environment = configured("suite=default", "drivers=mixed", "scenario.hdvs=[4,4]")
+    world = environment.reset(20_000)
+    before = environment.manners()
+    environment.redraw_drivers(1)
+    first = environment.manners()
+    environment.redraw_drivers(2)
+    second = environment.manners()
+    environment.redraw_drivers(1)
+    assert environment.manners() == first
+    assert len({str(manners) for manners in (before, first, second)}) == 3
+    acting = {v.id: Action.IDLE for v in world.cavs}
+    after = environment.step(acting)
+    assert [v.id for v in after.vehicles] == [v.id for v in world.vehicles]

@@ -70,6 +70,18 @@ class HumanDriver(RouteFollower, IDMVehicle):
         traits = self.traits
         return Manner(traits.gives_way, self.judgement.hesitates, traits.reaction, traits.distraction)
 
+    def become(self, traits: DriverTraits) -> None:
+        """Let another driver go on in its place, who has stood as long and signals alike; only of one with traits."""
+        assert self.traits is not None
+        assert self.judgement is not None
+        traits.profile.apply(self, to_class=False)
+        self.DELTA, stood = traits.exponent, self.judgement.stood
+        self.target_speed *= traits.speed / self.traits.speed
+        self.traits, self.judgement = traits, DriverJudgement(traits)
+        self.judgement.stood = stood
+        if self.style != BLOCKER:
+            self.style = traits.style
+
     def act(self, action: dict[str, float] | str | None = None) -> None:
         """Steer along the route and follow the vehicle ahead on it."""
         if self.stands > 1e-9:

@@ -49,7 +49,7 @@ class ModelCoordinator(Coordinator):
         """Return an order without cycles for all conflicts."""
         given = given or {}
         problem = with_given(pose(moment), given)
-        urgent = _most_urgent(problem, moment.conflicts)
+        urgent = most_urgent(problem, moment.conflicts)
         asked = open_pairs(problem.instance, urgent)
         if not asked:
             self._agreed = None
@@ -59,7 +59,7 @@ class ModelCoordinator(Coordinator):
         if agreed is not None:
             self.model.ledger.count("kept_orders")
             return self.rules.settle(moment, problem, {**agreed, **given})
-        agreed, mended = self._ask(moment.scenes, problem, [urgent[pair] for pair in asked])
+        agreed, mended = self.ask(moment.scenes, problem, [urgent[pair] for pair in asked])
         by_rules = copy(self.rules).settle(moment, problem, given)
         order = self.rules.settle(moment, problem, {**(agreed or {}), **given})
         if agreed is None:
@@ -81,7 +81,7 @@ class ModelCoordinator(Coordinator):
             return None
         return {pair: why for pair, why in agreed.items() if pair in now.leads or pair[::-1] in now.leads}
 
-    def _ask(
+    def ask(
         self, scenes: Mapping[str, SceneDescription], problem: Problem, conflicts: Iterable[Conflict]
     ) -> tuple[AgreedPairs | None, bool]:
         """Ask the model, and repair what it says; None if there is no answer. Tells whether it was read tolerantly."""
@@ -131,7 +131,7 @@ class ModelCoordinator(Coordinator):
         return Question("negotiate", "", messages, order_reply(shown, self.model.thoughts), check, shorter, more)
 
 
-def _most_urgent(problem: Problem, conflicts: Mapping[str, tuple[Conflict, ...]]) -> dict[Pair, Conflict]:
+def most_urgent(problem: Problem, conflicts: Mapping[str, tuple[Conflict, ...]]) -> dict[Pair, Conflict]:
     """Return the most urgent conflict of each pair of CAVs, seen from the one with the lower id."""
     vehicles = problem.instance.vehicles
     found: dict[Pair, Conflict] = {}
