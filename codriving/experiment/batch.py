@@ -19,7 +19,7 @@ from codriving.experiment.asking import Asked
 from codriving.experiment.cells import Cell, with_metrics
 from codriving.experiment.film import FilmEpisode
 from codriving.experiment.flows import is_flow
-from codriving.experiment.launchers import accounted
+from codriving.experiment.launchers import Account
 from codriving.experiment.objects import BuildObjects, modules_to_preload
 from codriving.experiment.places import FailuresInARow, places
 from codriving.experiment.plan import Plan
@@ -246,12 +246,15 @@ def driving(plan: Plan, build: _Build | None = None) -> Iterator[_DrivenBatch]:
             with stopped_by_signals(), show_progress(Counter(unit.cell for unit in todo), usage) as update:
                 for part, launcher, workers in places(missing, unfilmed, replace(plan, cells=tuple(cells)), models):
                     failures = FailuresInARow(models.names, models.patience)
+                    account = Account(part, launcher, partial(_is_saved, folder))
                     with closing(launcher.launch(part, job, workers, preload)) as reports:
-                        for report in accounted(reports, part, launcher, partial(_is_saved, folder)):
+                        for report in reports:
+                            account.note(report)
                             if report.ending is Ending.ERROR:
                                 failed.append(report)
                             failures.note(report)
                             update(report.unit.cell, report.ending is Ending.ERROR)
+                    account.close()
         except (KeyboardInterrupt, ModelError, MemoryFileError, LauncherError) as stop:
             finished = len(_records(folder, cells, units, records, damaged=[]))
             if isinstance(stop, UserError):

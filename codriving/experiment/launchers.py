@@ -2,7 +2,7 @@
 
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from typing import ClassVar
 
 from codriving.datatypes import EpisodeLauncher
@@ -49,25 +49,39 @@ class Serial(Launcher):
         yield from map(Worker(job).run, units)
 
 
-def accounted(
-    reports: Iterable[Report], units: Sequence[Unit], launcher: Launcher, is_saved: Callable[[Unit], bool]
-) -> Iterator[Report]:
-    """Pass on what a launcher reports, as long as it is about what it was given.
+class Account:
+    """Of what a launcher was given, what it has not reported yet."""
 
-    Raises:
-        LauncherError: If it reports a unit that it was not given or has not saved, or one twice, or loses any.
-    """
-    name, due = type(launcher).__name__, dict.fromkeys(units)
-    for report in reports:
-        if report.unit not in due:
-            raise LauncherError(f"the launcher {name} reports {report.unit}, which it was not given or reported before")
-        if not is_saved(report.unit):
-            raise LauncherError(f"the launcher {name} reports {report.unit}, which it has not saved")
-        del due[report.unit]
-        yield report
-    if due:
-        shown = ", ".join(map(str, list(due)[:NAMED])) + (f" and {len(due) - NAMED} more" if len(due) > NAMED else "")
-        raise LauncherError(f"the launcher {name} has lost {len(due)} of {len(units)} episodes: {shown}")
+    def __init__(self, units: Sequence[Unit], launcher: Launcher, is_saved: Callable[[Unit], bool]) -> None:
+        self._name, self._due, self._is_saved = type(launcher).__name__, dict.fromkeys(units), is_saved
+        self._given = len(units)
+
+    def note(self, report: Report) -> None:
+        """Cross a unit off.
+
+        Raises:
+            LauncherError: If it was not given or has not been saved, or is reported twice.
+        """
+        if report.unit not in self._due:
+            raise LauncherError(
+                f"the launcher {self._name} reports {report.unit}, which it was not given or reported before"
+            )
+        if not self._is_saved(report.unit):
+            raise LauncherError(f"the launcher {self._name} reports {report.unit}, which it has not saved")
+        del self._due[report.unit]
+
+    def close(self) -> None:
+        """Refuse an account in which units are left.
+
+        Raises:
+            LauncherError: If any are.
+        """
+        if self._due:
+            rest = f" and {len(self._due) - NAMED} more" if len(self._due) > NAMED else ""
+            shown = ", ".join(map(str, list(self._due)[:NAMED])) + rest
+            raise LauncherError(
+                f"the launcher {self._name} has lost {len(self._due)} of {self._given} episodes: {shown}"
+            )
 
 
 def worker_count(workers: int | str, units: int) -> int:

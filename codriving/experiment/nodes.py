@@ -85,7 +85,9 @@ class NodeJob:
 def drive_on_node(task: NodeTask) -> EpisodeResult | Refusal:
     """Drive a unit on a node, with objects that each of its threads builds once a cell."""
     try:
-        return _worker(task).drive(task.unit)
+        worker, driven = _worker(task)
+        worker.run(task.unit)
+        return driven.pop()
     except UserError as error:
         return Refusal(f"the node {platform.node()}", str(error))
 
@@ -135,8 +137,9 @@ _PLACE = threading.local()  # The workers of a thread, since objects must not be
 _BUILDING = threading.Lock()  # They import modules, and work out a road that all threads then share
 
 
-def _worker(task: NodeTask) -> Worker:
-    workers: dict[tuple[str, str], Worker] = _PLACE.__dict__.setdefault("workers", {})
+def _worker(task: NodeTask) -> tuple[Worker, list[EpisodeResult]]:
+    """Return what drives a cell in this thread, and where it leaves what it has driven."""
+    workers: dict[tuple[str, str], tuple[Worker, list[EpisodeResult]]] = _PLACE.__dict__.setdefault("workers", {})
     key = task.batch, task.unit.cell
     if key not in workers:
         with _BUILDING:
@@ -146,7 +149,9 @@ def _worker(task: NodeTask) -> Worker:
                 _refuse_changed(task.files, _files_named(task.build.configs[task.unit.cell]))
         while len(workers) >= CELLS_AT_ONCE:
             del workers[next(iter(workers))]
-        workers[key] = Worker(Job({task.unit.cell: task.labels}, _one_by_one(task.build), _keeps_nothing))
+        driven: list[EpisodeResult] = []
+        job = Job({task.unit.cell: task.labels}, _one_by_one(task.build), lambda _, result: driven.append(result))
+        workers[key] = Worker(job), driven
     return workers[key]
 
 
@@ -162,7 +167,3 @@ def _one_by_one(build: Callable[[str], Objects]) -> Callable[[str], Objects]:
             return build(cell)
 
     return locked
-
-
-def _keeps_nothing(unit: Unit, result: EpisodeResult) -> None:
-    raise AssertionError("a node writes nothing")

@@ -110,18 +110,15 @@ class Worker:
         """Drive one unit and save it."""
         if (ending := self._job.saved(unit)) is not None:
             return self._finished(Report(unit, ending))
-        return self.keep(unit, self.drive(unit))
-
-    def drive(self, unit: Unit) -> EpisodeResult:
-        """Drive one unit."""
         labels = self._job.labels[unit.cell]
         try:
             environment, method, metrics, _, memory = self._objects_of(unit.cell)
-            return run_episode(environment, method, metrics, unit.seed, labels, self._go_on, memory)
+            result = run_episode(environment, method, metrics, unit.seed, labels, self._go_on, memory)
         except UserError:
             raise
         except Exception as error:
-            return failed_result(labels, unit.seed, error, traceback.format_exc())
+            result = failed_result(labels, unit.seed, error, traceback.format_exc())
+        return self.keep(unit, result)
 
     def keep(self, unit: Unit, result: EpisodeResult) -> Report:
         """Save what was driven, wherever that was."""

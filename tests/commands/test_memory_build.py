@@ -211,10 +211,10 @@ def test_a_memory_that_fails_meanwhile_ends_the_batch_and_keeps_what_is_finished
 ) -> None:
     add = MemoryStore.add
 
-    def fails(self: MemoryStore, learnt: Interaction, *args: Any) -> int:
+    def fails(self: MemoryStore, learnt: Interaction, *args: Any, **more: Any) -> int:
         if learnt.seed == 1:
             raise MemoryFileError("cannot write the memory: database or disk is full; make room")
-        return add(self, learnt, *args)
+        return add(self, learnt, *args, **more)
 
     monkeypatch.setattr(MemoryStore, "add", fails)
     with pytest.raises(
