@@ -93,8 +93,8 @@ def test_what_cannot_be_read_is_said_in_a_line(there: Result, tmp_path: Path) ->
         codriving.load("nowhere")
     with pytest.raises(ConfigError, match=r"^a run is a folder, or the name of one below outputs/, got 5$"):
         codriving.load(5)  # type: ignore[arg-type]
-    with pytest.raises(RunFolderError, match=r"has no cell nobody; cells: "):
-        there.pets(cell="nobody")
+    with pytest.raises(RunFolderError, match=r"has no cell elsewhere; cells: "):
+        there.pets(cell="elsewhere")
     with pytest.raises(RunFolderError, match=r"has no finished episode with seed 7; "):
         there.decisions(episode=7)
     with pytest.raises(ConfigError, match=r"^episode must be a seed, a whole number, got '3'$"):

@@ -119,7 +119,7 @@ def test_beside_the_methods_of_a_comparison() -> None:
             ("method.action=x",),
             "method.action=x does not reach an object; give it the value where it is made",
         ),
-        ("nobody", (), "unknown method 'nobody'; choices: "),
+        ("nomethod", (), "unknown method 'nomethod'; choices: "),
         (Farthest, ("scenario.cavs=99",), "scenario.cavs must be "),
     ],
 )

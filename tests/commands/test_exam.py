@@ -63,7 +63,7 @@ def test_some_questions_and_no_controls(file: Path, tmp_path: Path) -> None:
             ["scenario=merge"],
             "an exam takes llm, epochs, prompts, output, run and controls, and its world from",
         ),
-        (["llm=nobody"], "unknown llm 'nobody'"),
+        (["llm=nomodel"], "unknown llm 'nomodel'"),
         (["epochs=0"], "epochs must be a whole number of 1 to 100"),
         (["controls=maybe"], "controls must be true or false"),
         (["--most", "0"], "--most must be 1 or more, got 0"),

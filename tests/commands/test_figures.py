@@ -57,7 +57,7 @@ def test_the_space_time_diagram_of_an_episode(run: Path, tmp_path: Path) -> None
     [
         (["--episode", 7, "--cell", "fcfs"], "has no episode with seed 7; seeds: 0"),
         (["--episode", 0], "holds 2 cells; choose one with --cell: "),
-        (["--cell", "nobody"], "has no cell nobody; cells: "),
+        (["--cell", "elsewhere"], "has no cell elsewhere; cells: "),
         (["--out", __file__], "--out must be a folder, and "),
     ],
 )
