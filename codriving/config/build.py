@@ -38,10 +38,12 @@ T = TypeVar("T")
 TARGET = "_target_"
 
 # Objects that are handed to every constructor that has a parameter annotated with their class.
-Given = Mapping[type, object]
+HandedIn = Mapping[type, object]
 
 
-def build(node: object, expected: type[T], key: str = "", plugins: Sequence[str] = (), given: Given | None = None) -> T:
+def build(
+    node: object, expected: type[T], key: str = "", plugins: Sequence[str] = (), given: HandedIn | None = None
+) -> T:
     """Construct what a node describes, and first whatever its own keys describe.
 
     A node is a constructor call: ``_target_`` names the class, every other key is one of its arguments. What the class
@@ -72,7 +74,7 @@ def targets(node: object) -> Iterator[str]:
     return (text for key, text in texts(node) if key.rpartition(".")[2] == TARGET)
 
 
-def _build(node: object, expected: Sequence[type], key: str, plugins: Sequence[str], given: Given) -> Any:  # noqa: ANN401
+def _build(node: object, expected: Sequence[type], key: str, plugins: Sequence[str], given: HandedIn) -> Any:  # noqa: ANN401
     if not isinstance(node, Mapping) or TARGET not in node:
         raise ConfigError(f"{key or 'the node'} must hold a {TARGET}, got {value_shown(node)}")
     cls = find_class(node[TARGET], key, plugins)
@@ -145,7 +147,7 @@ def _classes(annotation: Any) -> tuple[type, ...]:  # noqa: ANN401 - an annotati
     return (annotation,) if isinstance(annotation, type) and annotation.__module__ not in ("builtins", "typing") else ()
 
 
-def _nested(value: object, expected: Sequence[type], key: str, plugins: Sequence[str], given: Given) -> object:
+def _nested(value: object, expected: Sequence[type], key: str, plugins: Sequence[str], given: HandedIn) -> object:
     if isinstance(value, Mapping):
         if TARGET in value:
             return _build(value, expected, key, plugins, given)
