@@ -1,5 +1,6 @@
 """What tells an object of a user's: values, code, and what the code names; not comments, lines or names of modules."""
 
+import os
 import subprocess
 import sys
 import threading
@@ -29,21 +30,133 @@ class Mine(Base):
 USUAL = {"limit": 3, "factor": 2, "bound": 7, "comment": ""}
 
 
-def made(module: str = "__main__", /, **changed: object) -> type[Any]:
-    """The class of a notebook, with what was changed in it."""
-    space: dict[str, Any] = {"__name__": module}
-    exec(CLASS.format(**{**USUAL, **changed}), space)
+def of_code(code: str) -> Any:
+    """What is called Mine in a notebook with such code."""
+    space: dict[str, Any] = {"__name__": "__main__"}
+    exec(code, space)
     return space["Mine"]
 
 
-def test_it_does_not_depend_on_comments_lines_or_the_process() -> None:
-    code = (
+def made(**changed: object) -> type[Any]:
+    """The class of a notebook, with what was changed in it."""
+    return of_code(CLASS.format(**{**USUAL, **changed}))  # type: ignore[no-any-return]
+
+
+def test_it_does_not_depend_on_comments_and_lines() -> None:
+    assert identity_of(made()(3.0)) == identity_of(made(comment="# a\n    # b")(3.0))
+
+
+SEVERAL = """
+from enum import Enum
+from functools import cache
+from random import choice, random
+class Gap(Enum): NEAR = 3.0
+@cache
+def helper(x): return x in {"one", "two", "three"}
+class Mine:
+    names = {"one", "two", "three"}
+    near = {Gap.NEAR: frozenset(names)}
+    def act(self, world): return choice(world) + random() + helper(world)
+"""
+
+
+@pytest.mark.parametrize("code", [CLASS.format(**USUAL), SEVERAL])
+def test_it_is_the_same_in_each_process(code: str) -> None:
+    asked = (
         "from codriving.config.object_identity import identity_of\n"
-        f"space = {{'__name__': '__main__'}}\nexec({CLASS.format(**USUAL)!r}, space)\n"
-        "print(identity_of(space['Mine'](3.0)))"
+        f"space = {{'__name__': '__main__'}}\nexec({code!r}, space)\nprint(identity_of(space['Mine']()))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == identity_of(made()(3.0)) == identity_of(made(comment="# a\n    # b")(3.0))
+    seeds = [{**os.environ, "PYTHONHASHSEED": seed} for seed in ("1", "2")]
+    done = [
+        subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True, env=seed).stdout
+        for seed in seeds
+    ]
+    assert done == [f"{identity_of(of_code(code)())}\n"] * 2
+
+
+CATCHES = """
+class Mine:
+    def act(self, world):
+        try:
+            self.order(world)
+{after}            self.decide(world)
+{caught}
+"""
+
+CAUGHT = "        except ValueError:\n            pass\n"
+
+# Code with a place, and what two users write there.
+CHANGES = {
+    "what is caught": (CATCHES, {"after": "", "caught": CAUGHT}, {"after": f"{CAUGHT}        else:\n", "caught": ""}),
+    "arguments": (
+        "def f(x, {y}): return y\nclass Mine:\n    def act(self): return f(1, (2,))",
+        {"y": "y"},
+        {"y": "*y"},
+    ),
+    "kept results": (
+        "import functools\n@functools.cache\ndef f(x): return {x}\nclass Mine:\n    def act(self): return f(1)",
+        {"x": "x"},
+        {"x": "-x"},
+    ),
+    "cached_property": (
+        "import functools\nclass Mine:\n    @functools.cached_property\n    def far(self): return {x}",
+        {"x": 1},
+        {"x": 2},
+    ),
+    "singledispatch": (
+        "import functools\n@functools.singledispatch\ndef f(x): return x\n@f.register\ndef g(x: int): return {x}\n"
+        "class Mine:\n    def act(self): return f(1)",
+        {"x": 1},
+        {"x": 2},
+    ),
+    "value of a member": (
+        "from enum import Enum\nclass Gap(Enum): NEAR = {x}\nclass Mine: gap = Gap.NEAR\ndel Gap",
+        {"x": "[1]"},
+        {"x": "[2]"},
+    ),
+    "method of a member": (
+        "from enum import Enum\nclass Gap(Enum):\n    NEAR = 1\n    def far(self): return {x}\n"
+        "class Mine: gap = Gap.NEAR\ndel Gap",
+        {"x": 1},
+        {"x": 2},
+    ),
+    "method of a value": ("class Mine: rank = {{'CAV1': {x}}}.get", {"x": 1}, {"x": 2}),
+    "metaclass": (
+        "class Meta(type):\n    def __call__(cls): return {x}\nclass Mine(metaclass=Meta): pass",
+        {"x": 1},
+        {"x": 2},
+    ),
+    "kind of a number": ("class Far(float): far = {x}\nclass Mine: gap = Far(3)", {"x": 1}, {"x": 2}),
+    "docstring that is used": (
+        "class Mine:\n    def act(self):\n        '{x}'\n        return '{x}'",
+        {"x": "One."},
+        {"x": "Two."},
+    ),
+    "module of a function": ("from {x} import sqrt\nclass Mine: rank = sqrt", {"x": "math"}, {"x": "cmath"}),
+    "order of a dictionary": ("class Mine: rank = dict({x})", {"x": "a=1, b=2"}, {"x": "b=2, a=1"}),
+}
+
+
+@pytest.mark.parametrize("what", CHANGES)
+def test_a_change_of_code_is_noticed(what: str) -> None:
+    code, *both = CHANGES[what]
+    first, second, again = (identity_of(of_code(code.format(**words))) for words in (*both, both[0]))
+    assert first == again
+    assert first != second
+
+
+def test_the_words_of_a_docstring_the_order_of_attributes_and_what_was_cached_are_no_part_of_it() -> None:
+    code = (
+        "import functools\nclass Mine:\n    def act(self):\n        '{x}'\n        return 'one'\n"
+        "    @functools.cached_property\n    def far(self): return 3"
+    )
+    cls = of_code(code.format(x="One."))
+    assert identity_of(cls) == identity_of(of_code(code.format(x="Two.")))
+    one, other = cls(), cls()
+    one.gap, one.limit = 1, 2
+    other.limit, other.gap = 2, 1
+    assert other.far == 3
+    assert identity_of(one) == identity_of(other)
 
 
 @pytest.mark.parametrize("changed", [{"limit": 4}, {"factor": 3}, {"bound": 8}])
