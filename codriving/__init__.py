@@ -20,6 +20,11 @@ def __getattr__(name: str) -> object:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
+def __dir__() -> list[str]:
+    """What completion offers, also before it is imported."""
+    return sorted({*globals(), *__all__})
+
+
 def parallel_env(name: str, *overrides: str, **settings: Any) -> "ParallelDriving":  # noqa: ANN401 - any setting
     """Make an environment in which every CAV is an agent, with the interface of PettingZoo.
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from codriving.errors import ConfigError, RunFolderError
+from codriving.errors import ConfigError, RunFolderError, require
 
 
 @dataclass(frozen=True)
@@ -17,6 +17,7 @@ class DrawnFigure:
 
     def save(self, path: str | Path) -> Path:
         """Write it as what the name of the file says, ``.png`` or ``.svg``."""
+        require(isinstance(path, str | Path), f"a file is named by a text or a path, got {path!r:.100}")
         path = Path(path)
         content = {".png": self.png, ".svg": self.svg}.get(path.suffix.lower())
         if content is None:

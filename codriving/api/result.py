@@ -10,7 +10,7 @@ from codriving.api.frames import decision_frame, pet_frame, trajectory_frame
 from codriving.api.page import page_of
 from codriving.api.picture import DrawnFigure, pictures_of
 from codriving.commands import FigureOptions, draw_episode, draw_runs
-from codriving.errors import ConfigError, RunFolderError
+from codriving.errors import ConfigError, RunFolderError, require
 from codriving.experiment import StoredEpisode, all_episodes, find_run
 from codriving.runs import Manifest
 
@@ -42,7 +42,7 @@ class Result:
         """Give every PET [s], a row each.
 
         Args:
-            cell: Name of a row of the table, or a part of it; None takes all.
+            cell: Name of a row of the table, or a part of the names of some; None takes all.
             episode: Seed; None takes all.
             metrics: By which metric; None takes the usual one, or the first that there is.
         """
@@ -58,27 +58,31 @@ class Result:
 
     def figure(self, name: str, cell: str | None = None) -> DrawnFigure:
         """Draw one of the figures of ``codriving figures``, for instance ``"pets"``."""
-        options = FigureOptions(cell=cell, config_dir=self.config_dir, only=name)
+        require(isinstance(name, str), f"a figure is asked for by its name, got {name!r:.100}")
+        options = FigureOptions(cell=_name(cell), config_dir=self.config_dir, only=name)
         (picture,) = pictures_of(draw_runs([self.folder], options, [])).values()
         return picture
 
     def space_time(self, episode: int, cell: str | None = None) -> DrawnFigure:
         """Draw an episode: when each CAV was where along its route, and what ground others blocked for it."""
-        options = FigureOptions(cell=cell, episode=_seed(episode), config_dir=self.config_dir)
+        options = FigureOptions(cell=_name(cell), episode=_seed(episode), config_dir=self.config_dir)
         (picture,) = pictures_of(draw_episode([self.folder], options)).values()
         return picture
 
     def _found(self, cell: str | None, episode: int | None) -> list[StoredEpisode]:
         episode = None if episode is None else _seed(episode)
-        if cell is not None and not isinstance(cell, str):
-            raise ConfigError(f"cell must be the name of a row, or None, got {cell!r:.100}")
-        return all_episodes(self.folder, cell, episode)
+        return all_episodes(self.folder, _name(cell), episode)
 
     def __repr__(self) -> str:
         return f"<{_heading(self)}; .table, .summary, .episodes, .pets(), .decisions(), .trajectories()>"
 
     def _repr_html_(self) -> str:
         return page_of(_heading(self), self.table)
+
+
+def _name(cell: str | None) -> str | None:
+    require(cell is None or isinstance(cell, str), f"cell must be the name of a row, or None, got {cell!r:.100}")
+    return cell
 
 
 def _seed(episode: object) -> int:

@@ -58,7 +58,8 @@ class Given:
             own["__signature__"] = _signature(cls)
         else:
             own |= {"__signature__": inspect.Signature(), "__new__": lambda _: _copied(self.thing)}
-        globals()[name] = type(cls)(name, (cls,), own)
+        globals()[name] = made = type(cls)(name, (cls,), own)
+        made.__name__ = name_of(self.thing)  # In what is said of it
         return f"{__name__}.{name}"
 
     def put_into(self, config: dict[str, Any], choices: dict[str, str]) -> tuple[dict[str, Any], dict[str, str]]:

@@ -106,8 +106,11 @@ def make_cell(
     check_flow(resolved, method, scorer.metric, memory)
     method.check_road(scenario.road, scenario.pace.target_speeds, 1 / scenario.pace.decision_frequency)
     for key, made in (("scenario", scenario), ("method", method), ("metrics", scorer.metric)):
-        if not made.name:
+        if not isinstance(made.name, str) or not made.name:
             raise ConfigError(f"{key}: {type(made).__name__} needs an attribute 'name' of type str for the tables")
+    for name in ("variant", "reasoner"):
+        if not isinstance(getattr(method, name), str):
+            raise ConfigError(f"method: the attribute {name!r} of {type(method).__name__} must be of type str")
     labels = Labels(scenario.name, method.name, method.variant, method.reasoner, method.remembers)
     swept = swept_values(point.swept, resolved) if point else {}
     files, chosen = contents(resolved, method.files(scenario.road)), choices or {}

@@ -99,6 +99,13 @@ def test_what_cannot_be_read_is_said_in_a_line(there: Result, tmp_path: Path) ->
         there.decisions(episode=7)
     with pytest.raises(ConfigError, match=r"^episode must be a seed, a whole number, got '3'$"):
         there.trajectories(episode="3")  # type: ignore[arg-type]
+    for draw in (lambda: there.figure("pets", cell=3), lambda: there.space_time(20000, cell=3)):  # type: ignore[arg-type]
+        with pytest.raises(ConfigError, match=r"^cell must be the name of a row, or None, got 3$"):
+            draw()
+    with pytest.raises(ConfigError, match=r"^a figure is asked for by its name, got \['pets'\]$"):
+        there.figure(["pets"])  # type: ignore[arg-type]
+    with pytest.raises(ConfigError, match=r"^a file is named by a text or a path, got 3$"):
+        there.figure("endings").save(3)  # type: ignore[arg-type]
     with pytest.raises(RunFolderError, match=r"^no episode was scored by metrics=authors; it was by standard, "):
         there.pets(metrics="authors")
     with pytest.raises(ConfigError, match="nothing to score; name files of trajectories, or a run folder"):
@@ -130,7 +137,8 @@ def test_an_ablation_and_a_learning_curve_are_tables_of_their_own(
 
 
 def test_the_import_is_light() -> None:
+    assert {"run", "load", "score", "parallel_env"} <= set(dir(codriving))
     heavy = "pandas", "hydra", "highway_env", "matplotlib", "numpy", "codriving.commands"
-    code = f"import sys, codriving; codriving.__all__; print([name for name in {heavy} if name in sys.modules])"
+    code = f"import sys, codriving; dir(codriving); print([name for name in {heavy} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"

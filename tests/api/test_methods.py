@@ -121,6 +121,8 @@ def test_beside_the_methods_of_a_comparison() -> None:
         ),
         ("nomethod", (), "unknown method 'nomethod'; choices: "),
         (Farthest, ("scenario.cavs=99",), "scenario.cavs must be "),
+        (type("Odd", (Steady,), {"name": 3}), (), "method: Odd needs an attribute 'name' of type str for the tables"),
+        (type("Odd", (Steady,), {"reasoner": 3}), (), "method: the attribute 'reasoner' of Odd must be of type str"),
     ],
 )
 def test_what_is_no_method_is_refused_in_a_line(method: object, tokens: tuple[str, ...], said: str) -> None:
