@@ -86,13 +86,13 @@ def _seeds(run: Path, cell: CellEntry) -> tuple[Path, list[int]]:
 
 
 def all_episodes(run: Path, cell: str | None = None, seed: int | None = None) -> list[StoredEpisode]:
-    """Find the episodes of a run, or those of one cell, or with one seed.
+    """Find the episodes of a run, or those of the cells with a word in their names, or with one seed.
 
     Raises:
         RunFolderError: If there is none.
     """
     run, manifest = find_run(run)
-    entries = manifest.cells if cell is None else [_cell(run, manifest.cells, cell)]
+    entries = manifest.cells if cell is None else _cells(run, manifest.cells, cell)
     found = []
     for entry in entries:
         episodes, seeds = _seeds(run, entry)
@@ -181,13 +181,18 @@ def _cell(run: Path, cells: Sequence[CellEntry], name: str | None) -> CellEntry:
         if len(folders) > 1:
             raise RunFolderError(f"{run} holds {len(folders)} cells; choose one with --cell: {', '.join(folders)}")
         return cells[0]
-    matches = [cell for cell in cells if cell.folder == name]
-    matches = matches or [cell for cell in cells if name in cell.folder]
-    if len(matches) == 1:
-        return matches[0]
-    if matches:
+    matches = _cells(run, cells, name)
+    if len(matches) > 1:
         raise RunFolderError(f"several cells of {run} are called like {name}: {', '.join(c.folder for c in matches)}")
-    raise RunFolderError(f"{run} has no cell {name}; cells: {', '.join(folders)}")
+    return matches[0]
+
+
+def _cells(run: Path, cells: Sequence[CellEntry], name: str) -> list[CellEntry]:
+    """The cell of a name, else those with the name in theirs."""
+    matches = [cell for cell in cells if cell.folder == name] or [cell for cell in cells if name in cell.folder]
+    if not matches:
+        raise RunFolderError(f"{run} has no cell {name}; cells: {', '.join(cell.folder for cell in cells)}")
+    return matches
 
 
 def _names(paths: list[Path]) -> str:

@@ -11,7 +11,7 @@ from driven_run import driven_run
 from codriving.commands.run import run_experiment
 from codriving.environment.scenarios.intersection import Intersection
 from codriving.errors import ConfigError, RunFolderError
-from codriving.experiment.stored import _filled, find_episode, find_run, read_film, road_of
+from codriving.experiment.stored import _filled, all_episodes, find_episode, find_run, read_film, road_of
 from codriving.runs.episode_folder import DECISIONS, RECORD
 from codriving.runs.manifest import MANIFEST
 from codriving.runs.trajectory_file import TRAJECTORY
@@ -64,6 +64,17 @@ def test_every_cell_has_its_own_road(swept: Path) -> None:
 def test_what_is_not_there_is_answered_with_what_is(swept: Path, cell: str | None, seed: int, said: str) -> None:
     with pytest.raises(RunFolderError, match=said):
         find_episode(swept, cell, seed)
+
+
+def test_a_word_takes_all_cells_with_it_in_their_names_and_a_name_takes_its_cell(swept: Path) -> None:
+    found = all_episodes(swept, "cavs=2")
+    assert [(one.cell.swept["scenario.leg_length"], one.seed) for one in found] == [
+        *(("100", 3), ("100", 4), ("120", 3), ("120", 4))
+    ]
+    whole = found[0].cell.folder
+    assert {one.cell.folder for one in all_episodes(swept, whole, 3)} == {whole}
+    with pytest.raises(RunFolderError, match="has no cell nothing; cells: intersection-codriving-full"):
+        all_episodes(swept, "nothing")
 
 
 def test_a_run_is_found_by_its_name_below_outputs(swept: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
