@@ -41,9 +41,10 @@ class Copied:
         """Copy the world and one that drives it on."""
         notebook_of(method).closed = True
         observer, self.environment.observer = self.environment.observer, method.observer
-        copied = deepcopy((self.environment, method), dict(self._shared))
-        self.environment.observer = observer
-        return copied
+        try:
+            return deepcopy((self.environment, method), dict(self._shared))
+        finally:
+            self.environment.observer = observer
 
     def of_actions(self, situation: Situation, quick: bool = False) -> dict[Action, Consequence]:
         """Let a CAV do each action that is allowed; `quick` takes one continuation and one draw."""

@@ -7,25 +7,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from codriving.reports import (
-    FIGURES,
-    CellResults,
-    Draw,
-    draw_endings,
-    draw_performance,
-    draw_pets,
-    draw_trade_off,
-    legend_names,
-    pets_of,
-    seconds_of,
-    trade_of,
-)
+from codriving.reports import FIGURES, CellResults, draw_endings, legend_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 MOST = 12  # Rows in one figure
+IN_TABLES = ("rates",)  # Figures whose numbers stand in the tables of a page
 
 INK = "#010203"  # Stands for the colour of the page's words
 
@@ -53,15 +42,11 @@ def plain_matplotlib() -> Iterator[None]:
 
 
 def _figures(rows: Sequence[tuple[str, CellResults]]) -> list[tuple[str, str]]:
-    found = [("How episodes ended", _endings(rows))]
-    if any(pets_of(cell) for _, cell in rows):
-        found.append(("Post-encroachment times (PET) of all episodes", _drawn(rows, "pets", draw_pets)))
-    if sum(trade_of(cell) is not None for _, cell in rows) > 1:
-        title = "Velocity against severe PETs; lines of equal velocity times the share of other PETs"
-        found.append((title, _drawn(rows, "trade-off", draw_trade_off)))
-    if len(rows) > 1 and set.intersection(*(set(seconds_of(cell)) for _, cell in rows)):
-        title = "Seeds driven within a factor of the fastest row, by travel time"
-        found.append((title, _drawn(rows, "performance", draw_performance)))
+    found = []
+    for name, kind in FIGURES.items():
+        if name not in IN_TABLES and kind.there(rows):
+            drawn = _drawn(rows, name) if kind.up else _endings(rows)
+            found.append((kind.what[0].upper() + kind.what[1:], drawn))
     return found
 
 
@@ -74,9 +59,9 @@ def _endings(rows: Sequence[tuple[str, CellResults]]) -> str:
     return _svg(figure, axis, "endings", len(axis.get_legend_handles_labels()[1]))
 
 
-def _drawn(rows: Sequence[tuple[str, CellResults]], name: str, draw: Draw) -> str:
+def _drawn(rows: Sequence[tuple[str, CellResults]], name: str) -> str:
     figure, axis = new_figure(3.0)
-    draw(axis, rows, range(len(rows)), INK)
+    FIGURES[name].draw(axis, rows, range(len(rows)), INK)
     axis.set(xlabel=FIGURES[name].along, ylabel=FIGURES[name].up)
     return _svg(figure, axis, name, len(rows))
 

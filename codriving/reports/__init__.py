@@ -20,18 +20,12 @@ from codriving.reports.comparison import (
 from codriving.reports.episode_drawings import (
     LINES,
     draw_endings,
-    draw_performance,
-    draw_pets,
-    draw_trade_off,
     legend_names,
-    pets_of,
-    seconds_of,
-    trade_of,
 )
 from codriving.reports.episodes import TimedEpisode, cpu_per_decision, timing_columns
 from codriving.reports.exam import ExamRow, exam_table, print_exam
 from codriving.reports.figures import learning_figure, line_labels, load_figure, plain_settings, saved
-from codriving.reports.figures_of_runs import FIGURES, PANELS, Draw, DrawnRow, panel_count, rate_figure, run_figures
+from codriving.reports.figures_of_runs import FIGURES, PANELS, DrawnRow, panel_count, rate_figure, run_figures
 from codriving.reports.filters import FILTERED, FilterRow, filter_rows, filter_table, print_filters
 from codriving.reports.flows import flow_table, flow_tables, print_flows
 from codriving.reports.grid import GridRow, against_first, grid
@@ -50,16 +44,15 @@ from codriving.reports.summary import RunTables, run_tables
 
 __all__ = [
     "FIGURES", "FILTERED", "LINES", "METHODS", "METHOD_CHOICE", "PANELS", "REFERENCE", "BoundRow", "BuiltMemory",
-    "CellResults", "Compared", "Condition", "Draw", "DrawnRow", "ExamRow", "FilterRow", "GridRow", "LearningRow",
-    "ModelRow", "Paper", "PrintedTable", "Repetition", "RunTables", "SceneBounds", "ScoredFiles", "StressCurve",
-    "Subject", "Table", "TimedEpisode", "ablation_rows", "ablation_table", "against_first", "breaking_table",
-    "comparison_rows", "comparison_table", "cpu_per_decision", "draw_endings", "draw_performance", "draw_pets",
-    "draw_trade_off", "exam_table", "filter_rows", "filter_table", "flow_table", "flow_tables", "grid",
-    "learning_figure", "learning_rows", "learning_table", "legend_names", "line_labels", "load_figure", "load_rows",
-    "load_table", "markdown_text", "model_rows", "model_table", "panel_count", "pet_table", "pets_of",
-    "plain_settings", "print_bounds", "print_built", "print_comparison", "print_each_load", "print_exam",
-    "print_filters", "print_flows", "print_learning", "print_loads", "print_models", "print_pairs", "print_scores",
-    "print_stress", "print_table", "profile_figure", "rate_figure", "read_learning", "read_paper", "run_figures",
-    "run_tables", "saved", "score_table", "seconds_of", "setting_of", "stored_results", "stress_figure",
-    "stress_notes", "stress_table", "table", "timing_columns", "trade_of", "with_bounds", "with_corrected",
+    "CellResults", "Compared", "Condition", "DrawnRow", "ExamRow", "FilterRow", "GridRow", "LearningRow", "ModelRow",
+    "Paper", "PrintedTable", "Repetition", "RunTables", "SceneBounds", "ScoredFiles", "StressCurve", "Subject",
+    "Table", "TimedEpisode", "ablation_rows", "ablation_table", "against_first", "breaking_table", "comparison_rows",
+    "comparison_table", "cpu_per_decision", "draw_endings", "exam_table", "filter_rows", "filter_table",
+    "flow_table", "flow_tables", "grid", "learning_figure", "learning_rows", "learning_table", "legend_names",
+    "line_labels", "load_figure", "load_rows", "load_table", "markdown_text", "model_rows", "model_table",
+    "panel_count", "pet_table", "plain_settings", "print_bounds", "print_built", "print_comparison",
+    "print_each_load", "print_exam", "print_filters", "print_flows", "print_learning", "print_loads", "print_models",
+    "print_pairs", "print_scores", "print_stress", "print_table", "profile_figure", "rate_figure", "read_learning",
+    "read_paper", "run_figures", "run_tables", "saved", "score_table", "setting_of", "stored_results",
+    "stress_figure", "stress_notes", "stress_table", "table", "timing_columns", "with_bounds", "with_corrected",
 ]  # fmt: skip

@@ -50,7 +50,6 @@ __all__ = [
     "files_of", "fingerprint", "flat", "locked", "machine", "nested", "new_run_path", "only_old_world",
     "read_decisions", "read_manifest", "read_part", "read_record", "read_timing", "read_trajectory", "read_transcript",
     "redact", "removed", "rewrite_record", "same_cell", "scrubbed", "secrets_of", "settings_of", "snapshot_of",
-    "source_digest",
-    "timing_of", "unwritable", "variables_in", "versions", "whole_file", "whole_folder", "within", "write_episode",
-    "write_part", "write_text",
+    "source_digest", "timing_of", "unwritable", "variables_in", "versions", "whole_file", "whole_folder", "within",
+    "write_episode", "write_part", "write_text",
 ]  # fmt: skip

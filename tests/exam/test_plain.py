@@ -1,4 +1,4 @@
-"""What is stored is what was there, but for digits that nobody reads."""
+"""What is stored is what was there, but for digits too small to matter."""
 
 from math import inf
 

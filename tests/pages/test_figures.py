@@ -31,7 +31,7 @@ def drawn() -> list[tuple[str, str]]:
 def test_one_for_endings_pets_trade_off_and_performance(drawn: list[tuple[str, str]]) -> None:
     assert [name for name, _ in drawn] == [
         "How episodes ended",
-        "Post-encroachment times (PET) of all episodes",
+        "PETs of all pairs",
         "Velocity against severe PETs; lines of equal velocity times the share of other PETs",
         "Seeds driven within a factor of the fastest row, by travel time",
     ]
