@@ -1,4 +1,4 @@
-"""The environment for learners: PettingZoo with one agent a CAV, Gymnasium with one agent for all CAVs.
+"""The environment for learners: PettingZoo with one agent a CAV, Gymnasium with one agent for all CAVs or for one.
 
 Importing this room registers every scenario with Gymnasium.
 """

@@ -49,8 +49,8 @@ def action_mask(available: Collection[Action], count: int) -> NDArray[np.int8]:
 
 
 def action_of(agent: str, number: object, count: int) -> Action:
-    """Return the action of a number."""
-    found = _whole(number)
+    """Return the action of a number; an action stands for itself."""
+    found = ACTIONS.index(number) if isinstance(number, Action) else _whole(number)
     if not 0 <= found < count:
         names = ", ".join(f"{i} {action}" for i, action in enumerate(ACTIONS[:count]))
         raise EpisodeError(f"the action of {agent} must be one of {names}; got {number!r}")

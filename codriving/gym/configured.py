@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from codriving.config import build, check_config_dir, choices, compose, config_folder
-from codriving.datatypes import Scenario
+from codriving.datatypes import CaseMemory, Method, Model, RuleModel, Scenario
 from codriving.environment import Environment
 from codriving.errors import ConfigError
 from codriving.reasoning import CdaLevel
@@ -23,23 +23,43 @@ def configured(
     name: str, overrides: Sequence[str], cda: str, config_dir: str | Path | None, settings: Mapping[str, Any]
 ) -> tuple[Environment, CdaLevel]:
     """Build the environment of a scenario."""
-    folder = config_folder(config_dir)
-    if folder is not None:
-        check_config_dir(folder)
-    for group, choice in (("scenario", name), ("cda", cda)):
-        known = choices(group, folder)
-        if not isinstance(choice, str) or choice not in known:
-            raise ConfigError(f"unknown {group} {choice!r}; choices: {', '.join(known)}")
-    for token in overrides:
-        _check_read(token)
-    tokens = [f"scenario.{key}={_written(f'scenario.{key}', value)}" for key, value in settings.items()]
-    config = compose([f"scenario={name}", f"cda={cda}", *overrides, *tokens], folder)
+    config = _composed({"scenario": name, "cda": cda}, overrides, config_dir, settings)
     if config["flow"] is not None:
         raise ConfigError("an environment drives episodes and no flows; take a suite that leaves flow alone")
     plugins = config["plugins"]
     build(config["scenario"], Scenario, "scenario", plugins)
     environment = build(config["environment"], Environment, "environment", plugins)
     return environment, build(config["cda"], CdaLevel, "cda", plugins)
+
+
+def configured_method(
+    name: str,
+    overrides: Sequence[str],
+    method: str,
+    cda: str,
+    config_dir: str | Path | None,
+    settings: Mapping[str, Any],
+) -> Method:
+    """Build a method as it drives in the world of a scenario, by the built-in rules and without a memory."""
+    config = _composed({"scenario": name, "cda": cda, "method": method}, overrides, config_dir, settings)
+    return build(config["method"], Method, "method", config["plugins"], {Model: RuleModel(), CaseMemory: None})
+
+
+def _composed(
+    chosen: Mapping[str, str], overrides: Sequence[str], config_dir: str | Path | None, settings: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Compose the config of an environment from a choice of some groups and keys of the scenario."""
+    folder = config_folder(config_dir)
+    if folder is not None:
+        check_config_dir(folder)
+    for group, choice in chosen.items():
+        known = choices(group, folder)
+        if not isinstance(choice, str) or choice not in known:
+            raise ConfigError(f"unknown {group} {choice!r}; choices: {', '.join(known)}")
+    for token in overrides:
+        _check_read(token)
+    tokens = [f"scenario.{key}={_written(f'scenario.{key}', value)}" for key, value in settings.items()]
+    return compose([*(f"{group}={choice}" for group, choice in chosen.items()), *overrides, *tokens], folder)
 
 
 def _check_read(token: str) -> None:

@@ -124,8 +124,8 @@ class ParallelDriving(ParallelEnv):
         """Carry out one decision of every CAV on the road.
 
         Args:
-            actions: A number of ``ACTIONS`` for each of ``agents``; those of agents that have left are ignored. One
-                that the road does not allow is carried out as IDLE and counted.
+            actions: A number of ``ACTIONS``, or the action itself, for each of ``agents``; those of agents that have
+                left are ignored. One that the road does not allow is carried out as IDLE and counted.
 
         Returns:
             Observations, rewards, terminations, truncations and infos of all CAVs that were on the road.

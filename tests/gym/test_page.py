@@ -3,6 +3,7 @@
 import inspect
 import re
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from codriving.gym.registration import env_id
 from codriving.gym.reward import RewardWeights
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "use-as-environment.md").read_text(encoding="utf-8")
+ego_id = partial(env_id, face="-ego")
 EXAMPLES = re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.MULTILINE | re.DOTALL)
 
 
@@ -40,6 +42,8 @@ def test_every_weight_is_named_with_its_default() -> None:
             assert re.search(rf"^\| `{field.name}` \| {field.default:g}[ |]", PAGE, flags=re.MULTILINE), field.name
 
 
-@pytest.mark.parametrize("name", [*FEATURES, *Action, *map(env_id, choices("scenario"))])
+@pytest.mark.parametrize(
+    "name", [*FEATURES, *Action, *map(env_id, choices("scenario")), *map(ego_id, choices("scenario"))]
+)
 def test_name_is_on_the_page(name: str) -> None:
     assert f"`{name}`" in PAGE

@@ -23,7 +23,8 @@ def run(code: str) -> str:
 
 
 def test_every_scenario_is_registered() -> None:
-    assert {env_id(name) for name in choices("scenario")} <= set(gymnasium.registry)
+    ids = {f"codriving/{name}{face}-v{n}" for name in choices("scenario") for face in ("", "-ego") for n in (0, 1)}
+    assert ids <= set(gymnasium.registry)
 
 
 def test_the_version_of_an_id_is_that_of_its_world() -> None:
@@ -67,5 +68,7 @@ def test_scenarios_of_the_user_are_registered_on_request(tmp_path: Path) -> None
     try:
         env = gymnasium.make(name, cavs=3)
         assert env.reset(seed=0)[0].shape == (3, 8, 6)
+        assert gymnasium.make(f"{name[:-3]}-ego-v1", cavs=3).reset(seed=0)[0].shape == (8, 6)
     finally:
-        del gymnasium.registry[name]
+        for made in [known for known in gymnasium.registry if "registered_by_test" in known]:
+            del gymnasium.registry[made]
