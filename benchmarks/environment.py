@@ -1,125 +1,88 @@
-"""CPU time of a decision step: our environment against highway-env's own intersection, with as many vehicles."""
+"""CPU time of an environment step against highway-env's own environment, which drives the same scene on the same road.
 
-import json
+The physics are the same bit for bit on both sides: corrections and limits are off, and so is what ours adds to human
+drivers. Each side is asked for what a method gets of it: ours for a world state, highway-env for its observation.
+"""
+
+import contextlib
+from collections.abc import Iterator
+from itertools import islice
 from time import process_time
 
 import numpy as np
-from highway_env.envs.intersection_env import IntersectionEnv
 
+from benchmarks.goals import Row, show
 from benchmarks.options import options
+from benchmarks.stock import Stock
 from codriving.config.build import build
+from codriving.config.choices import choices
 from codriving.config.compose import compose
+from codriving.datatypes.parts import Simulator
 from codriving.datatypes.world import Action
 from codriving.environment.environment import Environment
 
-SEEDS = (0, 1, 2)
-ROUNDS = 4
-DECISIONS = 8
-CAVS, HDVS = 4, 3
+RATES = {1: (10.0, 15), 5: (15.0, 15)}
+"""Decisions a second: how many times faster than highway-env ours should be, and simulation steps a second."""
+SECONDS = 8
+NAMES = ("SLOWER", "IDLE", "FASTER")
 
 
-class Ours:
-    """Our environment with highway-env's own human drivers and without limits, everything corrected."""
-
-    def __init__(self) -> None:
-        config = compose(["suite=paper", f"scenario.cavs={CAVS}", f"scenario.hdvs=[{HDVS},{HDVS}]"])
-        made = build(config["environment"], object, "environment")
-        assert isinstance(made, Environment)
-        self.environment = made
-
-    def reset(self, seed: int) -> None:
-        """Begin the episode of a seed."""
-        self.world = self.environment.reset(seed)
-
-    def step(self, rng: np.random.Generator) -> int:
-        """Take one decision; return the number of vehicles that were driven."""
-        if self.environment.outcome is not None:
-            return 0
-        actions = {cav.id: (Action.SLOWER, Action.IDLE)[int(rng.integers(2))] for cav in self.world.cavs}
-        vehicles = len(self.world.vehicles)
-        self.world = self.environment.step(actions)
-        return vehicles
+def environment(scenario: str, rate: int, *, same: bool) -> Environment:
+    """Build our environment: with highway-env's physics, or as it is by default."""
+    _, frequency = RATES[rate]
+    pace = (f"scenario.decision_frequency={rate}", f"scenario.simulation_frequency={frequency}")
+    typed = [f"scenario={scenario}", *pace, *(["suite=paper"] if same else [])]
+    node = compose(typed)["environment"]
+    if same:
+        node["corrections"] |= {name: False for name in node["corrections"] if name != "_target_"}
+    made = build(node, Simulator, "environment", [])
+    assert isinstance(made, Environment)
+    return made
 
 
-class Stock:
-    """highway-env's intersection with several agents, at the same frequencies; no vehicle is added on the way."""
+def spent(ours: Environment, stock: Stock, seed: int, rate: int) -> Iterator[tuple[float, float]]:
+    """Step both by turns with the same actions.
 
-    def __init__(self) -> None:
-        agents = {"type": "MultiAgentAction", "action_config": {"type": "DiscreteMetaAction", "lateral": False}}
-        agents["action_config"] |= {"longitudinal": True, "target_speeds": [0, 3, 6, 9]}  # type: ignore[operator]
-        self.environment = IntersectionEnv(
-            config={
-                "action": agents,
-                "controlled_vehicles": CAVS,
-                "initial_vehicle_count": HDVS,
-                "spawn_probability": 0.0,
-                "simulation_frequency": 10,
-                "policy_frequency": 2,
-                "duration": 1000,
-            }
-        )
-
-    def reset(self, seed: int) -> None:
-        """Begin the episode of a seed, then take away vehicles to even out their number; none is added."""
-        self.environment.reset(seed=seed)
-        road = self.environment.road
-        surplus = len(road.vehicles) - CAVS - HDVS
-        others = [v for v in road.vehicles if v not in self.environment.controlled_vehicles]
-        for vehicle in others[: max(surplus, 0)]:
-            road.vehicles.remove(vehicle)
-
-    def step(self, rng: np.random.Generator) -> int:
-        """Take one decision; return the number of vehicles that were driven."""
-        vehicles = len(self.environment.road.vehicles)
-        self.environment.step(tuple(int(a) for a in rng.integers(0, 2, size=CAVS)))
-        return vehicles
-
-
-def measure(rounds: int = ROUNDS) -> dict[str, float]:
-    """Step both alternately.
-
-    Args:
-        rounds: Rounds over the same seeds; the fastest one of each side counts, so the first may warm caches up.
-
-    Returns:
-        CPU time a decision and a vehicle [ms], and the ratio of the two.
+    Yields:
+        CPU time of a decision step of ours and of highway-env's [s].
     """
-    sides: dict[str, Ours | Stock] = {"ours": Ours(), "stock": Stock()}
-    best = dict.fromkeys(sides, np.inf)
-    for _ in range(rounds):
-        spent = dict.fromkeys(sides, 0.0)
-        driven = dict.fromkeys(sides, 0)
-        for seed in SEEDS:
-            rngs = {name: np.random.default_rng(seed) for name in sides}
-            for side in sides.values():
-                side.reset(seed)
-            for _ in range(DECISIONS):
-                for name, side in sides.items():
-                    before = process_time()
-                    driven[name] += side.step(rngs[name])
-                    spent[name] += process_time() - before
-        for name in sides:
-            best[name] = min(best[name], 1e3 * spent[name] / driven[name])
-    vehicles = CAVS + HDVS
-    return {
-        "vehicles": vehicles,
-        "ours_ms": round(best["ours"] * vehicles, 3),
-        "stock_ms": round(best["stock"] * vehicles, 3),
-        "ratio": round(best["stock"] / best["ours"], 1),
-    }
+    rng = np.random.default_rng(seed)
+    world = ours.reset(seed)
+    stock.begin(seed)
+    for _ in range(SECONDS * rate):
+        if ours.outcome is not None:
+            return
+        known = [cav.id for cav in world.cavs]
+        actions = {name: NAMES[int(rng.integers(len(NAMES)))] for name in known}
+        possible = {name: Action(a if a in world.available[name] else "IDLE") for name, a in actions.items()}
+        before = process_time()
+        world = ours.step(possible)
+        between = process_time()
+        stock.decide({name: str(possible.get(name, "IDLE")) for name in stock.cavs})
+        yield between - before, process_time() - between
+
+
+def measure(episodes: int) -> Iterator[Row]:
+    """Drive all scenarios at all rates, with the same physics and in the default world."""
+    for scenario in choices("scenario"):
+        for rate, (goal, _) in RATES.items():
+            for world, same in (("same physics", True), ("default", False)):
+                ours = environment(scenario, rate, same=same)
+                stock = Stock(environment(scenario, rate, same=True))
+                with contextlib.closing(stock):
+                    # What is imported and worked out once belongs to neither.
+                    list(islice(spent(ours, stock, 0, rate), 2))
+                    pairs = [pair for seed in range(1, 1 + episodes) for pair in spent(ours, stock, seed, rate)]
+                mine, theirs = (1e3 * sum(side) / len(pairs) for side in zip(*pairs, strict=True))
+                yield Row(f"environment, {scenario} at {rate} Hz, {world}", mine, theirs, "ms", goal, least=True)
 
 
 def main(arguments: list[str]) -> None:
     """Measure and print.
 
     Args:
-        arguments: ``--json`` prints JSON instead of a table.
+        arguments: ``--episodes`` of each scenario and rate.
     """
-    wanted = options(arguments)
-    found = measure()
-    if wanted.json:
-        print(json.dumps({"environment": found}))
-        return
-    print(f"environment: CPU time of a decision step with {found['vehicles']} vehicles, 5 simulation steps [ms]")
-    print(f"  ours, corrected            {found['ours_ms']:8.2f}")
-    print(f"  highway-env's intersection {found['stock_ms']:8.2f}   {found['ratio']:.1f} times ours")
+    wanted = options(arguments, 3)
+    rows = measure(wanted.episodes)
+    show("environment", "highway-env", rows, as_json=wanted.json, store=wanted.store)

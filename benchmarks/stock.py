@@ -23,15 +23,18 @@ from codriving.environment.traffic.route_following import route_path
 class Stock(AbstractEnv):
     """highway-env's environment with the road, the vehicles and the frequencies of one of ours.
 
+    Each CAV has an action and an observation of its own, as highway-env has it for several agents.
+
     Args:
         ours: Our environment.
 
     Attributes:
         named: Vehicles on the road, by id.
+        cavs: Ids of those that are decided for.
     """
 
     def __init__(self, ours: Environment) -> None:
-        self.ours, self.named = ours, dict[str, Vehicle]()
+        self.ours, self.named, self.cavs = ours, dict[str, Vehicle](), list[str]()
         self._network = stock_network(ours.scenario.road)
         pace = ours.scenario.pace
         speeds = {"target_speeds": list(pace.target_speeds)}
@@ -40,6 +43,10 @@ class Stock(AbstractEnv):
                 "action": {
                     "type": "MultiAgentAction",
                     "action_config": {"type": "DiscreteMetaAction", **speeds},
+                },
+                "observation": {
+                    "type": "MultiAgentObservation",
+                    "observation_config": {"type": "Kinematics"},
                 },
                 "simulation_frequency": pace.simulation_frequency,
                 "policy_frequency": pace.decision_frequency,
@@ -62,12 +69,12 @@ class Stock(AbstractEnv):
             actions: Name of the action of each CAV, by id.
         """
         numbers = self.action_type.agents_action_types[0].actions_indexes
-        self.step(tuple(numbers[actions[name]] for name in self._cavs))
+        self.step(tuple(numbers[actions[name]] for name in self.cavs))
 
     def _reset(self) -> None:
         self.road, self.named = populated(self.ours, self._network, getattr(self, "_seed", 0))
         self.controlled_vehicles = [v for v in self.road.vehicles if isinstance(v, MDPVehicle)]
-        self._cavs = [name for name, v in self.named.items() if isinstance(v, MDPVehicle)]
+        self.cavs = [name for name, v in self.named.items() if isinstance(v, MDPVehicle)]
 
     def _reward(self, action: Any) -> float:  # noqa: ANN401
         return 0.0
