@@ -103,10 +103,12 @@ bench: $(READY) ## measure speed
 tables: $(READY) ## drive what the tables of README.md and docs/results.md show, and write them; takes hours
 	$(BIN)/python docs/tables $(ARGS)
 
-pictures: $(READY) ## draw the roads of docs/scenarios.md and the frames of docs/replay.md
+pictures: $(READY) ## draw the roads of docs/scenarios.md, the frames of docs/replay.md and the film of README.md
 	$(BIN)/python docs/images/roads.py
 	rm -rf $(VENV)/pictures
 	$(BIN)/codriving run scenario=all episodes=1 run=frames output=$(VENV)/pictures
+	$(BIN)/codriving run suite=crowd seed=20001 episodes=1 run=film output=$(VENV)/pictures
+	$(BIN)/codriving replay $(VENV)/pictures/run/film --scale 0.7 --speed 2 --out docs/images/crowd.gif
 	$(BIN)/codriving replay $(VENV)/pictures/run/frames --cell intersection --frame 10.5 --out docs/images/replay-intersection.png
 	$(BIN)/codriving replay $(VENV)/pictures/run/frames --cell roundabout --frame 8 --out docs/images/replay-roundabout.png
 	$(BIN)/codriving replay $(VENV)/pictures/run/frames --cell highway --frame 12 --out docs/images/replay-highway.png

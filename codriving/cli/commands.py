@@ -154,6 +154,7 @@ def experiment(
             check_config_dir(config_dir)
         for known, file in experiment_names(config_dir).items():
             print(_entry(known, describe(file)))
+        print(_entry(ALL_OF_PAPER, "Those of the paper, one after another, and a page of all of them."))
         return
     if name == ALL_OF_PAPER:
         from codriving.commands import run_paper

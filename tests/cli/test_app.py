@@ -71,7 +71,7 @@ def test_experiment_without_a_name_lists_what_can_be_driven() -> None:
     result = call("experiment")
     assert result.exit_code == 0
     lines = {line.split()[0]: line for line in result.stdout.splitlines()}
-    assert set(lines) == set(choices("experiments"))
+    assert set(lines) == {*choices("experiments"), "paper"}
     assert "(its Fig. 5)" in lines["ablation"]
 
 
