@@ -1,9 +1,10 @@
 """What comes of an answer: the world is copied, and driven on with it."""
 
 import hashlib
+import pickle
 from collections.abc import Callable, Mapping, Sequence
-from copy import deepcopy
 from dataclasses import dataclass
+from io import BytesIO
 
 import numpy as np
 
@@ -30,21 +31,54 @@ class _Drive:
     lost: float  # [s]
 
 
+class _WorldWriter(pickle.Pickler):
+    """Writes down all but some parts, which copies share."""
+
+    shared: Mapping[int, object]
+
+    def persistent_id(self, part: object) -> int | None:
+        """Name a part that is not written."""
+        return id(part) if id(part) in self.shared else None
+
+
+class _WorldReader(pickle.Unpickler):
+    """Makes a copy of what was written."""
+
+    shared: Mapping[int, object]
+
+    def persistent_load(self, name: int) -> object:
+        """Return a part that was not written."""
+        return self.shared[name]
+
+
 class Copied:
-    """A world at one moment, with the methods that may drive it on."""
+    """A world at one moment, with the methods that may drive it on, written down once for all copies."""
 
     def __init__(self, environment: Environment, continuations: Sequence[Method], world: WorldState, seed: int) -> None:
         self.environment, self.continuations, self.world, self.seed = environment, continuations, world, seed
-        self._shared = {id(part): part for part in environment.lasting}
+        notebooks = [notebook_of(method) for method in continuations]
+        self._shared = {id(part): part for part in (*environment.lasting, *notebooks)}
+        self._written: dict[int, bytes] = {}
 
     def copy(self, method: Method) -> tuple[Environment, Method]:
-        """Copy the world and one that drives it on."""
+        """Copy the world and one that drives it on, both as they were when the first copy was made."""
+        if id(method) not in self._written:
+            self._written[id(method)] = self._write(method)
+        reader = _WorldReader(BytesIO(self._written[id(method)]))
+        reader.shared = self._shared
+        environment, copied = reader.load()
+        return environment, copied
+
+    def _write(self, method: Method) -> bytes:
         notebook_of(method).closed = True
         observer, self.environment.observer = self.environment.observer, method.observer
         try:
-            return deepcopy((self.environment, method), dict(self._shared))
+            writer = _WorldWriter(out := BytesIO(), pickle.HIGHEST_PROTOCOL)
+            writer.shared = self._shared
+            writer.dump((self.environment, method))
         finally:
             self.environment.observer = observer
+        return out.getvalue()
 
     def of_actions(self, situation: Situation, quick: bool = False) -> dict[Action, Consequence]:
         """Let a CAV do each action that is allowed; `quick` takes one continuation and one draw."""
