@@ -95,6 +95,7 @@ from codriving.datatypes.situation import (
 from codriving.datatypes.stress import StressAxis, StressLevel
 from codriving.datatypes.world import (
     Action,
+    ControlInput,
     DrivingModel,
     Intent,
     Kind,
@@ -109,13 +110,13 @@ from codriving.datatypes.world import (
 __all__ = [
     "BLOCKER", "EACH", "GOES", "NEAREST", "UNCLEAR", "UNITS", "YIELDS", "Account", "Action", "ActionAssessment",
     "ActionFilter", "ActionOutlook", "Approach", "ApproachingVehicle", "Arc", "Block", "CaseMemory", "Chat",
-    "Collision", "Communication", "Conflict", "Cooperation", "Coordination", "Decision", "Deliberation", "Description",
-    "Drivers", "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "ExpectedPassage", "Experience",
-    "Flow", "FlowArrival", "FlowLog", "HumanJudge", "HumanOutlook", "Instance", "Intent", "Interaction", "Judgement",
-    "Judgements", "Kind", "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner", "Memory",
-    "MetDriver", "Method", "Metric", "Model", "NamedNumber", "OrderAgreement", "OrderExecutor", "OrderMessage",
-    "OrderOfCavs", "Outcome", "Outlook", "Pair", "Participant", "Party", "PassingOrder", "PastDecision", "Pet",
-    "Point", "Precedence", "Proposal", "ReasonedDeliberation", "Relation", "Response", "Road", "Role", "Route",
+    "Collision", "Communication", "Conflict", "ControlInput", "Cooperation", "Coordination", "Decision", "Deliberation",
+    "Description", "Drivers", "DrivingModel", "Effect", "Ending", "EpisodeLauncher", "EpisodeRecord", "ExpectedPassage",
+    "Experience", "Flow", "FlowArrival", "FlowLog", "HumanJudge", "HumanOutlook", "Instance", "Intent", "Interaction",
+    "Judgement", "Judgements", "Kind", "Lane", "LaneChange", "LaneId", "LaneNeighbour", "LaneShape", "Line", "Manner",
+    "Memory", "MetDriver", "Method", "Metric", "Model", "NamedNumber", "OrderAgreement", "OrderExecutor",
+    "OrderMessage", "OrderOfCavs", "Outcome", "Outlook", "Pair", "Participant", "Party", "PassingOrder", "PastDecision",
+    "Pet", "Point", "Precedence", "Proposal", "ReasonedDeliberation", "Relation", "Response", "Road", "Role", "Route",
     "RuleModel", "Scenario", "Scene", "SceneDescription", "Score", "Severity", "Shares", "Simulator", "Sine",
     "Situation", "Start", "Straight", "StressAxis", "StressLevel", "ThinkingTime", "Told", "Track", "TrackedVehicle",
     "Trajectory", "TravelScore", "Turn", "VehicleLimits", "VehicleState", "Verdict", "WorldState", "Wrapped", "beside",

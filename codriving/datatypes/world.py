@@ -53,6 +53,14 @@ class Action(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class ControlInput:
+    """Pedal and wheel of a CAV until its next decision, in the place of an action."""
+
+    acceleration: float  # [m/s2]
+    steering: float  # Angle of the front wheels, positive to the right [rad]
+
+
+@dataclass(frozen=True, slots=True)
 class DrivingModel:
     """The vehicle model seen through the actions (paper Eq. 1)."""
 

@@ -1,20 +1,23 @@
 """A connected automated vehicle: highway-env's semantic actions, driven with the paper's gains."""
 
+import math
 from collections.abc import Mapping
 
 from highway_env.road.road import Road
 from highway_env.vehicle.controller import MDPVehicle
 
-from codriving.datatypes import Action, Kind, Start
+from codriving.datatypes import Action, ControlInput, Kind, Start
+from codriving.environment.motion import clip
 from codriving.environment.settings import ControlGains, Corrections
 from codriving.environment.traffic.route_following import RouteFollower, RoutePath
 
 
 class ConnectedVehicle(RouteFollower, MDPVehicle):
-    """A vehicle that takes one of the five actions a decision (paper Section II and Eq. 1), or HOLD if that is one."""
+    """A vehicle that takes one of the five actions a decision (paper Section II and Eq. 1), HOLD, or a command."""
 
     kind = Kind.CAV
     may_hold: bool = False  # Whether HOLD is an action
+    command: ControlInput | None = None  # What it carries out in the place of an action
     reckoned: float  # Where it was at the last decision, and how far it has driven since [m]
 
     @classmethod
@@ -32,8 +35,19 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
         gains.apply(vehicle)
         return vehicle
 
+    def take(self, decision: Action | ControlInput) -> None:
+        """Take a decision."""
+        self.command = decision if isinstance(decision, ControlInput) else None
+        self.act(None if self.command is not None else str(decision))
+
     def act(self, action: str | None = None) -> None:
-        """Take a decision, or go on with the last one."""
+        """Take an action, or go on with the last decision."""
+        if self.command is not None:
+            # No faster than the highest target speed: others reckon with it.
+            pedal = min(self.command.acceleration, self.KP_A * (float(self.target_speeds[-1]) - self.speed))
+            steering = clip(self.command.steering, self.MAX_STEERING_ANGLE)
+            self.action = {"steering": steering, "acceleration": pedal}
+            return
         if action in (Action.LANE_LEFT, Action.LANE_RIGHT):
             super().act(action)
             if self.corrections.route_lane:
@@ -50,6 +64,21 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
         elif action == Action.HOLD:
             self.target_speed = self.speed
         self.action = {"steering": self.keep_lane(), "acceleration": self.speed_control(self.target_speed)}
+
+    def step(self, dt: float) -> None:
+        """Move by one simulation step [s]; with a command, past what is planned for curves and off its lane."""
+        if self.command is None:
+            super().step(dt)
+            return
+        self.hold(math.inf, dt)
+        self.move(dt)
+        if self.corrections.no_reverse:
+            self.speed = max(self.speed, 0.0)
+        self.target_speed = self.speed
+        if self.target_lane_index != self.lane_index:
+            self.target_lane_index = self.lane_index
+            if self.corrections.route_lane:
+                self.follow_target_lane()
 
     def odometer(self, dt: float) -> float:
         """Return its place on the route, reckoned from the last decision on: so it is predicted exactly [m]."""

@@ -1,5 +1,6 @@
 """The environment module of the paper: a scene becomes a world that answers to decisions."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -7,6 +8,7 @@ import numpy as np
 
 from codriving.datatypes import (
     Action,
+    ControlInput,
     DrivingModel,
     Flow,
     Kind,
@@ -107,17 +109,17 @@ class Environment(Simulator):
         self._let_in()
         return self._look()
 
-    def step(self, actions: Mapping[str, Action]) -> WorldState:
+    def step(self, actions: Mapping[str, Action | ControlInput]) -> WorldState:
         """Let every CAV carry out its decision until the next one is due, or until the episode ends.
 
         Raises:
-            EpisodeError: If no episode is going on, or an action is missing, of no CAV, or not available.
+            EpisodeError: If no episode is going on, or an action is missing, of no CAV, not available, or not finite.
         """
         self._check(actions)
         for vehicle in self._traffic.vehicles:
             if isinstance(vehicle, ConnectedVehicle):
-                vehicle.act(str(actions[vehicle.id]))
-        in_force = {name: str(action) for name, action in actions.items()}
+                vehicle.take(actions[vehicle.id])
+        in_force = {name: str(action) for name, action in actions.items() if isinstance(action, Action)}
         for _ in range(self.driving_model.substeps):
             self._traffic.act()
             self._traffic.step(self.driving_model.step)
@@ -246,7 +248,7 @@ class Environment(Simulator):
         self._world = snapshot(self._traffic, self._time, self._decisions)
         return self._world
 
-    def _check(self, actions: Mapping[str, Action]) -> None:
+    def _check(self, actions: Mapping[str, Action | ControlInput]) -> None:
         """Refuse actions that the CAVs on the road cannot carry out."""
         if self._world is None:
             raise EpisodeError("no episode has begun; call reset(seed) before step(actions)")
@@ -256,7 +258,10 @@ class Environment(Simulator):
         if set(actions) != set(available):
             raise EpisodeError(f"one action for each of {sorted(available)} is needed, got {sorted(actions)}")
         for name, action in actions.items():
-            if action not in available[name]:
+            if isinstance(action, ControlInput):
+                if not math.isfinite(action.acceleration + action.steering):
+                    raise EpisodeError(f"the command of {name} must be finite numbers, got {action}")
+            elif action not in available[name]:
                 raise EpisodeError(f"{name} cannot do {action} here; it can do {', '.join(available[name])}")
 
 

@@ -21,7 +21,7 @@ WORDS = frozenset(signature(ParallelDriving).parameters)  # All other settings a
 DRAW = 3  # Key of the random numbers of the method, apart from those of the scene and of the drivers
 
 
-class EgoDriving(gymnasium.Env[FloatArray, np.int64]):
+class EgoDriving(gymnasium.Env[FloatArray, Any]):
     """One agent that drives one CAV; a method decides for all other CAVs.
 
     Args:
@@ -72,7 +72,7 @@ class EgoDriving(gymnasium.Env[FloatArray, np.int64]):
         self._over = False
         return observations[self.ego], infos[self.ego]
 
-    def step(self, action: np.int64) -> tuple[FloatArray, float, bool, bool, Info]:
+    def step(self, action: object) -> tuple[FloatArray, float, bool, bool, Info]:
         """Carry out one decision; the episode ends when the ego vehicle has arrived.
 
         Raises:
@@ -97,6 +97,11 @@ class EgoDriving(gymnasium.Env[FloatArray, np.int64]):
         self.parallel.close()
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return the mask of the ego vehicle, as MaskablePPO of sb3-contrib wants it."""
+        """Return the mask of the ego vehicle, as MaskablePPO of sb3-contrib wants it.
+
+        Raises:
+            EpisodeError: If actions are continuous, which have no masks.
+        """
+        self.parallel.check_masks()
         mask: NDArray[np.bool_] = self.parallel.infos([self.ego])[self.ego]["action_mask"].astype(np.bool_)
         return mask

@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from codriving.datatypes import Action, Ending, Kind, WorldState
+from codriving.datatypes import Action, ControlInput, Ending, Kind, WorldState
 from codriving.environment import Environment
 from codriving.errors import EpisodeError, ScenarioError
-from codriving.gym.actions import action_count, action_mask, action_of
+from codriving.gym.actions import ActionType, SemanticActions
 from codriving.gym.observation import FloatArray, Observer
 from codriving.gym.reward import CavStep, RewardWeights, rewards
 
@@ -28,13 +28,15 @@ class AgentEpisode:
         world: The world as it is now; None before the first episode.
     """
 
-    def __init__(self, environment: Environment, observer: Observer, weights: RewardWeights) -> None:
+    def __init__(
+        self, environment: Environment, observer: Observer, weights: RewardWeights, kind: ActionType | None = None
+    ) -> None:
         self.environment, self.observer, self.weights = environment, observer, weights
         self.cavs = [start.id for start in environment.scenario.scene(0).starts if start.kind is Kind.CAV]
-        self.count = action_count(environment.driving_model)
+        self.kind = kind or SemanticActions(environment.driving_model)
         self.driving: list[str] = []
         self.world: WorldState | None = None
-        self.actions: dict[str, Action] = {}
+        self.actions: dict[str, Action | ControlInput] = {}
         self.seed = 0
         self._refused: dict[str, int] = {}
         self._views: dict[str, FloatArray] = {}
@@ -81,7 +83,7 @@ class AgentEpisode:
         outcome = self.environment.outcome
         involved = () if outcome is None else outcome.failed
         return {
-            "action_mask": action_mask(self.world.available.get(name, ()), self.count),
+            **self.kind.said(self.world.available.get(name, ())),
             "refused": self._refused[name],
             "arrived": name not in self.world.available,
             "outcome": "" if outcome is None else str(outcome.ending),
@@ -90,16 +92,16 @@ class AgentEpisode:
             "seed": self.seed,
         }
 
-    def _decide(self, actions: Mapping[str, object], world: WorldState) -> dict[str, Action]:
+    def _decide(self, actions: Mapping[str, object], world: WorldState) -> dict[str, Action | ControlInput]:
         """Return what each CAV carries out: IDLE instead of what the road does not allow, as in highway-env."""
         missing = [name for name in self.driving if name not in actions]
         unknown = [str(name) for name in actions if name not in self.cavs]
         if missing or unknown:
             fault = f"none for {', '.join(missing)}" if missing else f"one for {', '.join(unknown)}"
             raise EpisodeError(f"one action for each of {', '.join(self.driving)} is needed, got {fault}")
-        wanted = {name: action_of(name, actions[name], self.count) for name in self.driving}
+        wanted = {name: self.kind.read(name, actions[name]) for name in self.driving}
         for name, action in wanted.items():
-            if action not in world.available[name]:
+            if isinstance(action, Action) and action not in world.available[name]:
                 wanted[name] = Action.IDLE
                 self._refused[name] += 1
         return wanted

@@ -5,7 +5,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium.spaces import MultiDiscrete
+from gymnasium.spaces import Box, Discrete, MultiDiscrete
 from numpy.typing import NDArray
 
 from codriving.errors import EpisodeError
@@ -15,7 +15,7 @@ from codriving.gym.observation import FloatArray
 from codriving.gym.parallel import METADATA, ParallelDriving
 
 
-class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
+class JointDriving(gymnasium.Env[FloatArray, NDArray[Any]]):
     """One agent that decides for all CAVs: observations and actions are the products of theirs (paper Section II)."""
 
     metadata = METADATA
@@ -24,7 +24,9 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         self.parallel = ParallelDriving(name, f"suite={suite}", *overrides, **settings)
         self.render_mode, self.metadata = self.parallel.render_mode, self.parallel.metadata
         self.observation_space = self.parallel.state_space
-        self.action_space = MultiDiscrete([int(space.n) for space in self.parallel.action_spaces.values()])
+        spaces = list(self.parallel.action_spaces.values())
+        discrete = [int(space.n) for space in spaces if isinstance(space, Discrete)]
+        self.action_space = MultiDiscrete(discrete) if discrete else Box(-1.0, 1.0, (len(spaces), 2), np.float32)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[FloatArray, Info]:
         """Begin an episode."""
@@ -33,7 +35,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         self.parallel.reset(draw_seed(self.np_random) if given is None else given)
         return self.parallel.state(), self._info()
 
-    def step(self, action: NDArray[np.int64]) -> tuple[FloatArray, float, bool, bool, Info]:
+    def step(self, action: NDArray[Any]) -> tuple[FloatArray, float, bool, bool, Info]:
         """Carry out one decision of every CAV."""
         agents = self.parallel.possible_agents
         numbers = np.asarray(action).tolist()
@@ -54,13 +56,19 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[np.int64]]):
         self.parallel.close()
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return the masks of all CAVs one after another, as MaskablePPO of sb3-contrib wants them."""
+        """Return the masks of all CAVs one after another, as MaskablePPO of sb3-contrib wants them.
+
+        Raises:
+            EpisodeError: If actions are continuous, which have no masks.
+        """
+        self.parallel.check_masks()
         return np.concatenate([info["action_mask"] for info in self._infos()]).astype(np.bool_)
 
     def _info(self) -> Info:
         infos = self._infos()
+        masks = [info["action_mask"] for info in infos if "action_mask" in info]
         return {
-            "action_mask": np.stack([info["action_mask"] for info in infos]),
+            **({"action_mask": np.stack(masks)} if masks else {}),
             "arrived": np.array([info["arrived"] for info in infos]),
             "refused": sum(info["refused"] for info in infos),
             "outcome": infos[0]["outcome"],

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
 from codriving.animation import LivePicture
-from codriving.datatypes import WorldState
+from codriving.datatypes import Action, WorldState
 from codriving.errors import ConfigError, EpisodeError
-from codriving.gym.actions import check_seed, draw_seed
+from codriving.gym.actions import action_type, check_seed, draw_seed
 from codriving.gym.configured import configured
 from codriving.gym.episode import AgentEpisode, Info
 from codriving.gym.observation import CdaObserver, FloatArray, Layout
@@ -35,6 +35,7 @@ class ParallelDriving(ParallelEnv):
         cda: How far the CAVs cooperate, which decides what they observe; a preset such as ``status_sharing``.
         coordinates: ``relative`` or ``absolute`` places of the other vehicles.
         render_mode: ``rgb_array``, or None for no pictures.
+        actions: ``semantic``, or ``continuous`` for acceleration and steering.
         **settings: Keys of the scenario, for instance ``cavs=4``.
 
     Raises:
@@ -54,6 +55,7 @@ class ParallelDriving(ParallelEnv):
         reward: RewardWeights | Mapping[str, float] | None = None,
         render_mode: str | None = None,
         config_dir: str | Path | None = None,
+        actions: str = "semantic",
         **settings: Any,  # noqa: ANN401 - whatever the scenario's keys take
     ) -> None:
         if render_mode is not None and render_mode not in RENDER_MODES:
@@ -62,13 +64,13 @@ class ParallelDriving(ParallelEnv):
         self.environment, level = configured(name, overrides, cda, config_dir, settings)
         model = self.environment.driving_model
         observer = CdaObserver(self.environment.road_map, model, level, layout)
-        self._drive = AgentEpisode(self.environment, observer, weights)
+        self._drive = AgentEpisode(self.environment, observer, weights, action_type(actions, model))
         self.name, self.render_mode, self.lanes = name, render_mode, observer.lanes
         version = 0 if [token for token in overrides if token.startswith("suite=")][-1:] == ["suite=paper"] else 1
         self.metadata = {**METADATA, "name": f"codriving_{name}_v{version}", "render_fps": 1 / model.decision_interval}
         self.possible_agents = list(self._drive.cavs)
         self.observation_spaces = {agent: observer.space() for agent in self.possible_agents}
-        self.action_spaces = {agent: Discrete(self._drive.count) for agent in self.possible_agents}
+        self.action_spaces = {agent: self._drive.kind.space() for agent in self.possible_agents}
         spaces = self.observation_spaces.values()
         self.state_space = Box(np.stack([s.low for s in spaces]), np.stack([s.high for s in spaces]), dtype=np.float32)
         self._rng: np.random.Generator | None = None
@@ -94,7 +96,7 @@ class ParallelDriving(ParallelEnv):
         """Return the space of an agent's observations."""
         return self.observation_spaces[agent]
 
-    def action_space(self, agent: str) -> Discrete:
+    def action_space(self, agent: str) -> Discrete | Box:
         """Return the space of an agent's actions."""
         return self.action_spaces[agent]
 
@@ -125,7 +127,8 @@ class ParallelDriving(ParallelEnv):
 
         Args:
             actions: A number of ``ACTIONS``, or the action itself, for each of ``agents``; those of agents that have
-                left are ignored. One that the road does not allow is carried out as IDLE and counted.
+                left are ignored. One that the road does not allow is carried out as IDLE and counted. With
+                ``actions="continuous"`` acceleration and steering, each from -1 to 1.
 
         Returns:
             Observations, rewards, terminations, truncations and infos of all CAVs that were on the road.
@@ -165,7 +168,8 @@ class ParallelDriving(ParallelEnv):
             self._picture = LivePicture(self.environment.road_map, title)
         arrivals = {t.id: t.arrived for t in self.environment.trajectory().tracks if t.arrived is not None}
         outcome = self.environment.outcome
-        return self._picture.draw(world, self._drive.actions, outcome=outcome, arrivals=arrivals, title=title)
+        taken = {name: action for name, action in self._drive.actions.items() if isinstance(action, Action)}
+        return self._picture.draw(world, taken, outcome=outcome, arrivals=arrivals, title=title)
 
     def close(self) -> None:
         """Let go of the picture; there is nothing else to close."""
@@ -174,3 +178,10 @@ class ParallelDriving(ParallelEnv):
     def infos(self, agents: Sequence[str]) -> Infos:
         """Return what there is to say besides, also of agents that have left."""
         return {agent: self._drive.info(agent) for agent in agents}
+
+    def check_masks(self) -> None:
+        """Refuse to give masks where there are none."""
+        if not isinstance(next(iter(self.action_spaces.values())), Discrete):
+            raise EpisodeError(
+                "continuous actions have no masks; leave out actions='continuous', or a learner with masks"
+            )

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 from math import isfinite
 from typing import Any
 
-from codriving.datatypes import Action, VehicleState
+from codriving.datatypes import Action, ControlInput, VehicleState, beside
 from codriving.errors import ConfigError
 
 
@@ -40,8 +40,15 @@ class CavStep:
 
     before: VehicleState
     after: VehicleState | None  # Its state now; None if it has arrived and left the road
-    action: Action
+    action: Action | ControlInput
     failed: bool
+
+    @property
+    def changes_lanes(self) -> bool:
+        """Whether it begins a lane change; by a command it does so when it is nearer to the lane beside."""
+        if isinstance(self.action, Action):
+            return self.action in (Action.LANE_LEFT, Action.LANE_RIGHT)
+        return self.after is not None and beside(self.before.lane, self.after.lane)
 
 
 def reward_weights(given: RewardWeights | Mapping[str, Any] | None) -> RewardWeights:
@@ -77,7 +84,7 @@ def _reward(weights: RewardWeights, one: CavStep, duration: float, top_speed: fl
     value = duration * (
         weights.time + weights.speed * (start + end) / 2 / top_speed + weights.comfort * acceleration * acceleration
     )
-    if one.action in (Action.LANE_LEFT, Action.LANE_RIGHT):
+    if one.changes_lanes:
         value += weights.lane_change
     if one.failed:
         value += weights.collision
