@@ -41,7 +41,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[Any]]):
         numbers = np.asarray(action).tolist()
         if not isinstance(numbers, list) or len(numbers) != len(agents):
             raise EpisodeError(f"one action for each of {', '.join(agents)} is needed, got {action!r}")
-        _, rewards, _, truncated, _ = self.parallel.step(dict(zip(agents, numbers, strict=True)))
+        rewards, _, truncated = self.parallel.advance(dict(zip(agents, numbers, strict=True)))
         late = any(truncated.values())
         # A CAV that has arrived is rewarded no more, so that the return is the mean of the returns of the CAVs.
         reward = sum(rewards.values()) / len(agents)

@@ -14,7 +14,7 @@ from codriving.datatypes import Action, WorldState
 from codriving.errors import ConfigError, EpisodeError
 from codriving.gym.actions import action_type, check_seed, draw_seed
 from codriving.gym.configured import configured
-from codriving.gym.episode import AgentEpisode, Info
+from codriving.gym.episode import AgentEpisode, Info, StepResult
 from codriving.gym.observation import CdaObserver, FloatArray, Layout
 from codriving.gym.reward import RewardWeights, reward_weights
 
@@ -136,9 +136,12 @@ class ParallelDriving(ParallelEnv):
         Raises:
             EpisodeError: If no episode is going on, or an action is missing, unknown, or of no CAV.
         """
-        driving = self.agents
-        result = self._drive.step(actions)
+        driving, result = self.agents, self.advance(actions)
         return self._drive.observations(driving), *result, self.infos(driving)
+
+    def advance(self, actions: Mapping[str, Any]) -> StepResult:
+        """Do what `step` does, without observations and infos."""
+        return self._drive.step(actions)
 
     def state(self) -> FloatArray:
         """Return the observations of all CAVs in the order of ``possible_agents``; zeros for those that have left.
