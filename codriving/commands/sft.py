@@ -7,7 +7,7 @@ from typing import Any
 from codriving.commands.memory_build import TABLE_SEEDS
 from codriving.datatypes import EpisodeRecord
 from codriving.errors import RunFolderError
-from codriving.exam import FIRST, LAST, of_decisions, of_transcript
+from codriving.exam import FIRST, LAST, SEEDS, of_decisions, of_transcript
 from codriving.experiment import StoredEpisode
 from codriving.runs import read_decisions, read_transcript
 
@@ -23,6 +23,7 @@ def refuse_measured(episodes: Sequence[StoredEpisode]) -> None:
     for seeds, what in (
         *((seeds, "tables are made with") for seeds in TABLE_SEEDS),
         (range(FIRST, LAST + 1), "the exam is of"),
+        (SEEDS, "the judged moments are of"),
     ):
         if found := [episode.seed for episode in episodes if episode.seed in seeds]:
             raise RunFolderError(

@@ -8,15 +8,29 @@ if TYPE_CHECKING:
     from codriving.exam.chats import of_decisions, of_transcript
     from codriving.exam.file import OURS, read_exam
     from codriving.exam.marks import mark
+    from codriving.exam.moments import SEEDS
     from codriving.exam.sitting import Answered, sit, some
 
-__all__ = ["FIRST", "LAST", "OURS", "Answered", "mark", "of_decisions", "of_transcript", "read_exam", "sit", "some"]
+__all__ = [
+    "FIRST",
+    "LAST",
+    "OURS",
+    "SEEDS",
+    "Answered",
+    "mark",
+    "of_decisions",
+    "of_transcript",
+    "read_exam",
+    "sit",
+    "some",
+]
 
 _FILES = {
     "building": ("FIRST", "LAST"),
     "chats": ("of_decisions", "of_transcript"),
     "file": ("OURS", "read_exam"),
     "marks": ("mark",),
+    "moments": ("SEEDS",),
     "sitting": ("Answered", "sit", "some"),
 }
 

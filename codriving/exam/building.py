@@ -15,7 +15,6 @@ from codriving.config import compose, members
 from codriving.datatypes import Method, Situation, WorldState
 from codriving.environment import Environment
 from codriving.exam.driving_on import DRAWS, HELD, HORIZON, Copied
-from codriving.exam.humans import lets_pass
 from codriving.exam.observed import Posed, notebook_of
 from codriving.exam.plain import plain, restored
 from codriving.exam.stored import Consequence, ExamNegotiation, ExamSituation, Origin, PairInQuestion, StoredExam
@@ -129,7 +128,7 @@ def _situations(
     if not _differ(judged.values()):
         return
     mine = [c for c in contests(moment) if c.cav == ego][:DRIVERS]
-    truths = [(contest, passed) for contest in mine if (passed := lets_pass(copied, contest)) is not None]
+    truths = [(contest, passed) for contest in mine if (passed := copied.lets_pass(contest)) is not None]
     name = f"{origin.world}-{origin.seed}-{origin.step}-{ego}"
     told, yields = tuple(contest for contest, _ in truths), tuple(passed for _, passed in truths)
     yield ExamSituation(name, replace(origin, ego=ego), situation, judged, told, yields)

@@ -10,8 +10,9 @@ import numpy as np
 
 from codriving.datatypes import BLOCKER, Action, Kind, Method, Pair, Situation, Track, Trajectory, WorldState
 from codriving.environment import Environment
-from codriving.exam.observed import notebook_of
+from codriving.exam.observed import Examined, notebook_of
 from codriving.exam.stored import NEAR_MISS, Consequence
+from codriving.judgement import Contest, lets_pass
 from codriving.metrics import post_encroachment_times
 
 HELD = 2  # Decisions for which an action is kept, if it can be
@@ -111,6 +112,12 @@ class Copied:
             ]
         )
         return first, second
+
+    def lets_pass(self, contest: Contest) -> bool | None:
+        """Let a CAV go on by the first continuation, the driver being who it is; None if neither comes there."""
+        environment, method = self.copy(self.continuations[0])
+        assert isinstance(method, Examined)
+        return lets_pass(environment, method.act, method.act(self.world), contest)
 
     def _drives(self, who: tuple[str, ...], choose: Chosen, forced: Mapping[Pair, str], quick: bool) -> list[_Drive]:
         pets = {name: self._pets_of(name, self.environment.trajectory()) for name in who}

@@ -3,8 +3,7 @@
 import hashlib
 import json
 import lzma
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,8 @@ OURS = Path(__file__).parent / "exam.jsonl.xz"
 
 FORMAT = 1  # Of the file; another one cannot be read
 
+BUILDER = "docs/exam/build.py"
+
 _KINDS = {"situation": ExamSituation, "negotiation": ExamNegotiation}
 
 
@@ -24,9 +25,7 @@ def written_exam(exam: StoredExam) -> bytes:
     """Write an exam; the same exam is the same bytes."""
     lines = [{"situation": plain(one)} for one in exam.situations]
     lines += [{"negotiation": plain(one)} for one in exam.negotiations]
-    text = "".join(f"{_json(line)}\n" for line in [dict(exam.about), *lines])
-    head = _json({"exam": FORMAT, "sha256": _hash(text)})
-    return lzma.compress(f"{head}\n{text}".encode(), preset=9 | lzma.PRESET_EXTREME)
+    return written_lines("exam", exam.about, lines)
 
 
 @lru_cache(maxsize=2)
@@ -36,30 +35,52 @@ def read_exam(file: Path = OURS) -> StoredExam:
     Raises:
         ConfigError: If the file cannot be read, is of another format, or is not as it was written.
     """
+    about, made, found = read_lines("exam", file, _KINDS, BUILDER)
+    situations = tuple(one for one in made if isinstance(one, ExamSituation))
+    negotiations = tuple(one for one in made if isinstance(one, ExamNegotiation))
+    return StoredExam(situations, negotiations, about, found)
+
+
+def written_lines(what: str, about: Mapping[str, str], lines: Sequence[Mapping[str, Any]]) -> bytes:
+    """Write lines, compressed, under a line that says what the file is, and its hash."""
+    text = "".join(f"{_json(line)}\n" for line in [dict(about), *lines])
+    head = _json({what: FORMAT, "sha256": _hash(text)})
+    return lzma.compress(f"{head}\n{text}".encode(), preset=9 | lzma.PRESET_EXTREME)
+
+
+def read_lines(
+    what: str, file: Path, kinds: Mapping[str, type], builder: str
+) -> tuple[Mapping[str, str], list[Any], str]:
+    """Read what ``written_lines`` has written: about it, the objects of its lines, and its hash.
+
+    Args:
+        kinds: The type of each kind of line.
+        builder: The script that builds such a file.
+
+    Raises:
+        ConfigError: If the file cannot be read, is of another format, or is not as it was written.
+    """
     try:
         whole = lzma.decompress(file.read_bytes()).decode()
     except (OSError, lzma.LZMAError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{file} cannot be read as an exam ({error}); name a file of docs/exam/build.py") from error
+        raise ConfigError(f"{file} cannot be read ({error}); name a file of {builder}") from error
     first, _, text = whole.partition("\n")
     head = _mapping(first)
-    if head.get("exam") != FORMAT:
-        raise ConfigError(f"{file} is no exam of format {FORMAT}; build it again with docs/exam/build.py")
+    if head.get(what) != FORMAT:
+        raise ConfigError(f"{file} holds no {what} of format {FORMAT}; build it again with {builder}")
     if head.get("sha256") != (found := _hash(text)):
         raise ConfigError(
             f"{file} is not as it was built: its SHA-256 is {found[:12]}, and {str(head.get('sha256'))[:12]} is "
-            "written in it; install it again, or build it with docs/exam/build.py"
+            f"written in it; restore it, or build it with {builder}"
         )
     about, *lines = text.splitlines()
     try:
-        made = [restored(_KINDS[kind], data) for line in lines for kind, data in json.loads(line).items()]
+        made = [restored(kinds[kind], data) for line in lines for kind, data in json.loads(line).items()]
     except (ValueError, TypeError, KeyError) as error:
         raise ConfigError(
-            f"{file} holds a question that this version cannot read ({error!r:.100}); build it again with "
-            "docs/exam/build.py"
+            f"{file} holds a line that this version cannot read ({error!r:.100}); build it again with {builder}"
         ) from error
-    situations = tuple(one for one in made if isinstance(one, ExamSituation))
-    negotiations = tuple(one for one in made if isinstance(one, ExamNegotiation))
-    return replace(StoredExam(situations, negotiations, json.loads(about)), sha256=found)
+    return json.loads(about), made, found
 
 
 def _mapping(line: str) -> Mapping[str, Any]:

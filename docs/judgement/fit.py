@@ -11,107 +11,25 @@ takes the file to write, and of each suite the first seed and the number of seed
 import json
 import sys
 from collections.abc import Sequence
-from copy import deepcopy
 from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 
-from codriving.config import build, compose
-from codriving.datatypes import (
-    Action,
-    CaseMemory,
-    Judgements,
-    Method,
-    Model,
-    Role,
-    RuleModel,
-    Simulator,
-    WorldState,
-)
-from codriving.geometry import progress
-from codriving.judgement.contests import FEATURES, Contest
-from codriving.judgement.hindsight import entries, let_pass
-from codriving.judgement.judge import Judge
+from codriving.exam.moments import judged_moments
+from codriving.judgement.contests import FEATURES
 from codriving.judgement.learned import fit
-from codriving.methods import CoDriving
 
 FIRST = 1_000_000  # Seeds below are for tuning and for tables
 SHARE = 0.5  # Of the open pairs of each step, how many are asked about
-LONGEST = 12.0  # How long the CAV goes on in a copy [s]
-CLEARS = 2.0  # How long after it has come to the zone a collision says that it was not let pass [s]
-ROOM = (4.0, 1.5)  # Distance [m] and time [s] to the vehicle ahead below which it does as the rules do
-
-
-class Noting(Judge):
-    """Keeps what is asked, and leaves the answer to the rules of the road."""
-
-    name = "noting"
-
-    def __init__(self) -> None:
-        self.asked: list[Contest] = []
-
-    def judge(self, asked: Sequence[Contest]) -> Judgements:
-        self.asked = list(asked)
-        return {}
 
 
 def moments(suite: str, seed: int) -> list[tuple[dict[str, float], bool]]:
     """Drive one episode; return the numbers of some open pairs, and whether the driver lets the CAV pass."""
     if seed < FIRST:
         raise SystemExit(f"seeds of a training begin at {FIRST:,}, got {seed}")
-    config = compose([f"suite={suite}", "method=codriving"])
-    environment = build(config["environment"], Simulator, "environment")
-    method = build(config["method"], Method, "method", given={Model: RuleModel(), CaseMemory: None})
-    assert isinstance(method, CoDriving)
-    judge, rng, found = Noting(), np.random.default_rng(seed), []
-    method.rely_on(judge)
-    world = environment.reset(seed)
-    method.reset(environment.road_map, environment.driving_model, seed)
-    shared = {id(part): part for part in (environment.road_map, environment.driving_model, environment.scenario)}
-    while environment.outcome is None:
-        judge.asked = []
-        before = deepcopy(method, dict(shared))
-        actions = method.act(world).actions
-        for contest in judge.asked:
-            if rng.random() < SHARE:
-                copied = deepcopy((environment, before), dict(shared))
-                truth = lets_pass(*copied, world, contest)
-                if truth is not None:
-                    found.append((dict(contest.numbers), truth))
-        world = environment.step(actions)
-    return found
-
-
-def lets_pass(environment: Simulator, method: CoDriving, world: WorldState, contest: Contest) -> bool | None:
-    """Let a CAV go on, and see who of both comes first; None if neither comes to their zone."""
-    began, first, passed = world.time, None, 0.0
-    while environment.outcome is None and world.time < began + LONGEST:
-        deliberation = method.act(world)
-        actions = deliberation.actions
-        scene = next((s.scene for s in deliberation.situations if s.scene.ego.id == contest.cav), None)
-        ahead = scene.next_in(Role.LEADING) if scene is not None else None
-        if scene is not None and (ahead is None or (ahead.gap or 0.0) > ROOM[0] + ROOM[1] * scene.ego.speed):
-            actions = {**actions, contest.cav: Action.FASTER}
-        world = environment.step(actions)
-        if first is None:
-            first, passed = came_first(environment, contest, began), world.time
-        if first is False or scene is None or (first and world.time > passed + CLEARS):
-            break
-    outcome = environment.outcome
-    if outcome is not None and {contest.cav, contest.human} <= set(outcome.failed):
-        return False  # It did not let it pass
-    return first
-
-
-def came_first(environment: Simulator, contest: Contest, began: float) -> bool | None:
-    """Whether the CAV was at their next zone before the driver; None if neither was yet, True if they do not meet."""
-    trajectory, road_map = environment.trajectory(), environment.road_map
-    tracks = {track.id: track for track in trajectory.tracks if track.id in (contest.cav, contest.human)}
-    places = {name: progress(road_map.paths[t.route], t.x, t.y, t.heading) for name, t in tracks.items()}
-    pair = tracks[contest.cav], tracks[contest.human]
-    entered = entries(*pair, places, road_map, trajectory.step)
-    return let_pass(entered, began) if any(min(both) > began for both in entered) else True
+    found = judged_moments(suite, [f"suite={suite}"], seed, SHARE)
+    return [(dict(one.contest.numbers), one.yields) for one in found]
 
 
 def main(file: Path, told: Sequence[str]) -> None:

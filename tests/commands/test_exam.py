@@ -67,7 +67,7 @@ def test_some_questions_and_no_controls(file: Path, tmp_path: Path) -> None:
         (["epochs=0"], "epochs must be a whole number of 1 to 100"),
         (["controls=maybe"], "controls must be true or false"),
         (["--most", "0"], "--most must be 1 or more, got 0"),
-        (["--file", "none.xz"], "none.xz cannot be read as an exam"),
+        (["--file", "none.xz"], "none.xz cannot be read ("),
         (["llm=vllm", "llm.api_base=http://127.0.0.1:9/v1", "llm.attempts=1"], "127.0.0.1:9"),
     ],
 )

@@ -42,19 +42,19 @@ def test_a_changed_question_is_noticed(file: Path) -> None:
 
 def test_another_format_is_refused(file: Path) -> None:
     changed(file, '"exam":1', '"exam":2')
-    with pytest.raises(ConfigError, match="is no exam of format 1; build it again"):
+    with pytest.raises(ConfigError, match="holds no exam of format 1; build it again"):
         read_exam(file)
 
 
 @pytest.mark.parametrize("content", [b"", b"no xz", lzma.compress(b"[1]\n"), lzma.compress(b"\xff\n")])
 def test_what_is_no_exam_is_refused(content: bytes, tmp_path: Path) -> None:
     (path := tmp_path / "strange").write_bytes(content)
-    with pytest.raises(ConfigError, match=r"strange (cannot be read as an exam|is no exam of format 1)"):
+    with pytest.raises(ConfigError, match=r"strange (cannot be read|holds no exam of format 1)"):
         read_exam(path)
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"none.xz cannot be read as an exam .*No such file"):
+    with pytest.raises(ConfigError, match=r"none.xz cannot be read .*No such file"):
         read_exam(tmp_path / "none.xz")
 
 

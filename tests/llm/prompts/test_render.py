@@ -142,6 +142,25 @@ def test_memories_are_told_before_the_actions(highway: Junction) -> None:
         assert "Memories:\n- Keep your distance. (95% alike, once)\nAllowed actions:" in text
 
 
+@pytest.mark.parametrize(
+    ("why", "told"),
+    [
+        ("", "; by rule you give way to it; to stop"),
+        (
+            "the CAV is in the junction already",
+            "; by rule you give way to it, but it is expected to let you pass; to stop",
+        ),
+    ],
+)
+def test_who_waits_against_its_right_of_way_is_said_to(why: str, told: str, junction: Junction) -> None:
+    made = reasoned(junction, sensible, ask_plain=True)
+    situation = made.method.act(junction.world(*WORLDS["intersection"])).situations[0]
+    assert situation.outlook is not None
+    humans = tuple(replace(h, first_by_rule="it", gives_way=why) for h in situation.outlook.humans)
+    view = decision_view(replace(situation, outlook=replace(situation.outlook, humans=humans)))
+    assert told in Prompts("informed").messages("decide", view)[1].content
+
+
 @pytest.mark.parametrize("name", FILES)
 def test_template_can_be_replaced_alone(name: str, tmp_path: Path) -> None:
     (tmp_path / name).write_text("Only this.")
