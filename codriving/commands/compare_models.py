@@ -175,10 +175,11 @@ def _answers(folder: Path, cell: str, seed: int) -> Iterator[tuple[str, str]]:
 
 
 def chosen(value: Mapping[str, Any]) -> dict[str, Any]:
-    """Reduce an answer to what it decides: an action, or who goes first in each pair; reasons are left out."""
+    """Reduce an answer to what it decides: an action, who goes first in each pair, or how likely drivers let pass."""
     if "action" in value:
         return {"action": value["action"]}
-    return {name: pair["first"] for name, pair in value.items() if isinstance(pair, dict) and "first" in pair}
+    firsts = {name: pair["first"] for name, pair in value.items() if isinstance(pair, dict) and "first" in pair}
+    return firsts or {name: chance for name, chance in value.items() if isinstance(chance, float)}
 
 
 def _served(driven: Driven) -> list[str]:

@@ -34,7 +34,7 @@ RULES = "rules"
 
 CONTROLS_NOTE = (
     "Control: no language model; its answers are made from the form of each question and read as a model's are. Its "
-    "tokens are estimated, 4 bytes each."
+    "tokens are estimated, 4 bytes each, and are not summed up with a model's."
 )
 RULES_NOTE = "rules (llm=offline): the built-in rules and no language model; they are asked nothing."
 SAME_NOTE = (
@@ -58,6 +58,11 @@ class Repetition:
     def decisions(self) -> float | None:
         """Share of the same decisions."""
         return share(self.answered, self.asked)
+
+    @property
+    def text(self) -> str:
+        """The same in words: a share of few questions says little."""
+        return f"{percent(self.decisions) or '-'} of {self.asked:,}"
 
     @property
     def outcomes(self) -> float | None:
@@ -197,7 +202,8 @@ def _same_columns(rows: Sequence[ModelRow]) -> list[Column[Any]]:
         return []
     return [
         Column("epochs", lambda r: r.same.times if r.same else 1),
-        Column("same_decisions", lambda r: r.same.decisions if r.same else None, "same decisions", _dash, rank=2),
+        Column("same_decisions", lambda r: r.same.decisions if r.same else None),
+        Column("same_text", lambda r: r.same.text if r.same else "-", "same decisions", rank=2, csv=False),
         Column("same_outcomes", lambda r: r.same.outcomes if r.same else None, "same outcomes", _dash, rank=3),
         Column("asked_again", lambda r: r.same.asked if r.same else None),
     ]
@@ -234,7 +240,7 @@ def print_models(
         *([RULES_NOTE] if any(cell.first.reasoner == RULES for cell in cells) else []),
         *stand_in_notes((cell.first.method, cell.first.reasoner) for cell in cells),
         *remarks(cells),
-        *model_notes(everything),
+        *model_notes([cell for cell in everything if cell.asked and not cell.is_control] or everything),
         *further,
     ]
     blocks = [(row.cell.first.scenario, tuple(row.swept.items()), row.cell.is_control) for row in rows]

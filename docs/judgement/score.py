@@ -28,8 +28,6 @@ USUAL = (
     "oracle",
 )
 
-AGAINST = "rules_noted"  # Whose Brier score the others are compared with, moment by moment
-
 Group = Callable[[JudgedMoment], str]
 
 GROUPS: Mapping[str, Group] = {
@@ -58,54 +56,59 @@ def digits(found: Rate, sign: str = "") -> str:
     return f"{found.mean:{sign}.3f}{ends}"
 
 
-def scores(moments: Sequence[JudgedMoment], said: Mapping[str, Said]) -> list[str]:
+def scores(moments: Sequence[JudgedMoment], said: Mapping[str, Said], against: str) -> list[str]:
     """Make the table of all moments."""
     lines = [
         "| `judgement` | by the rules [%] | right [%] (95 %) | yields, but goes [%] | goes, but yields [%] "
-        f"| Brier (95 %) | Brier against `{AGAINST}` (95 %) |",
+        f"| Brier (95 %) | Brier against `{against}` (95 %) |",
         "|---|---|---|---|---|---|---|",
     ]
-    base = said.get(AGAINST)
+    base = said.get(against)
     for name, one in said.items():
         told = list(zip(moments, one.judgements, strict=True))
         relied = [is_relied_on(moment, judged) for moment, judged in told]
         errors = [squared(moment, judged) for moment, judged in told]
-        against = "-"
+        difference = "-"
         if base is not None and one is not base:
             others = [squared(moment, judged) for moment, judged in zip(moments, base.judgements, strict=True)]
-            against = digits(rate(moments, [a - b for a, b in zip(errors, others, strict=True)]), "+")
+            difference = (
+                "0"
+                if errors == others
+                else digits(rate(moments, [a - b for a, b in zip(errors, others, strict=True)]), "+")
+            )
         lines.append(
             f"| {shown(name)} | {sum(map(is_open, one.judgements)) / len(moments):.0%} ".replace("%", "")
             + f"| {percent(rate(moments, [r is m.yields for r, m in zip(relied, moments, strict=True)]))} "
             + f"| {percent(rate(moments, [r and not m.yields for r, m in zip(relied, moments, strict=True)]))} "
             + f"| {percent(rate(moments, [m.yields and not r for r, m in zip(relied, moments, strict=True)]))} "
-            + f"| {digits(rate(moments, errors))} | {against} |"
+            + f"| {digits(rate(moments, errors))} | {difference} |"
         )
     return lines
 
 
 def parted(moments: Sequence[JudgedMoment], said: Mapping[str, Said], what: str) -> list[str]:
-    """Make a table of shares that are right, a row for each group of moments."""
+    """Make a table with a row for each group of moments: which share is right [%], and the Brier score."""
     lines = [
-        f"| {what} | moments | yield [%] | {' | '.join(f'{shown(name)}, right [%]' for name in said)} |",
+        f"| {what} | moments | yield [%] | {' | '.join(map(shown, said))} |",
         "|---" * (len(said) + 3) + "|",
     ]
-    for group in dict.fromkeys(map(GROUPS[what], moments)):
+    for group in sorted(set(map(GROUPS[what], moments))):
         rows = [k for k, moment in enumerate(moments) if GROUPS[what](moment) == group]
+        cells = []
+        for one in said.values():
+            told = [(moments[k], one.judgements[k]) for k in rows]
+            right = sum(is_relied_on(moment, judged) is moment.yields for moment, judged in told) / len(rows)
+            cells.append(f"{100 * right:.0f}, {sum(squared(*pair) for pair in told) / len(rows):.3f}")
         yielding = sum(moments[k].yields for k in rows) / len(rows)
-        right = [
-            sum(is_relied_on(moments[k], one.judgements[k]) is moments[k].yields for k in rows) / len(rows)
-            for one in said.values()
-        ]
-        cells = " | ".join(f"{number:.0%}".replace("%", "") for number in (yielding, *right))
-        lines.append(f"| {group} | {len(rows)} | {cells} |")
+        lines.append(f"| {group} | {len(rows)} | {100 * yielding:.0f} | {' | '.join(cells)} |")
     return lines
 
 
 def shown(name: str) -> str:
-    """Write the settings of a judge as code."""
-    judge, _, settings = name.partition(" ")
-    return f"`{judge}`" + (f" with `{settings.replace('judgement.', '')}`" if settings else "")
+    """Write a judge with its settings as code; where a memory or a server is, is left out."""
+    judge, *settings = name.split()
+    kept = [text.removeprefix("judgement.") for text in settings if text.startswith(("judgement.", "llm.model="))]
+    return f"`{judge}`" + (f" with `{' '.join(kept)}`" if kept else "")
 
 
 def main() -> None:
@@ -113,6 +116,7 @@ def main() -> None:
     asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     asked.add_argument("judges", nargs="*", default=USUAL)
     asked.add_argument("--file", type=Path, default=OURS)
+    asked.add_argument("--against", default="learned", help="whose Brier score the others are compared with")
     given = asked.parse_args()
     stored = read_moments(given.file)
     moments, roads = stored.moments, roads_of(WORLDS, compose)
@@ -123,13 +127,11 @@ def main() -> None:
     episodes, share = len({one.seed for one in moments}), sum(one.yields for one in moments) / len(moments)
     met = [one for one in moments if one.came is not None]
     print(f"{stored.sha256[:12]}: {len(moments)} moments of {episodes} episodes, seeds {stored.about['seeds']}.")
-    print(
-        f"The driver lets the CAV pass in {share:.0%}; one who says so of all has a Brier of {share * (1 - share):.3f}."
-    )
+    print(f"The driver lets the CAV pass in {share:.0%}; one who says that has a Brier of {share * (1 - share):.3f}.")
     print(f"As the rules drove, {sum(one.came is one.yields for one in met)} of {len(met)} drivers did the same.")
-    print("\n".join(["", *scores(moments, said)]))
+    print("\n".join(["", *scores(moments, said, given.against)]))
     for what in GROUPS:
-        print("\n".join(["", *parted(moments, said, what)]))
+        print("\n".join(["", f"Right [%] and Brier, by {what}:", "", *parted(moments, said, what)]))
     for name, one in said.items():
         if one.counts:
             print(f"\n{name}: {dict(sorted(one.counts.items()))}")

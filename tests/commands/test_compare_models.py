@@ -153,4 +153,5 @@ def test_what_an_answer_decides() -> None:
     assert chosen({"reason": "so", "action": "IDLE"}) == {"action": "IDLE"}
     pairs = {"reason": "", "p1": {"first": "CAV1", "reason": "early"}, "p2": None}
     assert chosen(pairs) == {"p1": "CAV1"}
+    assert chosen({"reason": "it brakes", "p1": 0.9, "p2": 0.25}) == {"p1": 0.9, "p2": 0.25}
     assert not chosen({"lesson": "wait"})

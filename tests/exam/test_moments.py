@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from source import REPOSITORY
 
 from codriving.config.compose import compose
 from codriving.errors import ConfigError
@@ -56,6 +57,21 @@ def test_moments_come_back_from_their_file(moments: list[JudgedMoment], tmp_path
     file.write_bytes(b"")
     with pytest.raises(ConfigError, match=r"m.xz cannot be read .*docs/judgement/moments.py"):
         read_moments(file)
+
+
+def test_ours_are_of_seeds_of_their_own_and_come_out_of_the_world_again() -> None:
+    ours = read_moments(REPOSITORY / "docs" / "judgement" / "moments.jsonl.xz")
+    page = (REPOSITORY / "docs" / "judgement.md").read_text(encoding="utf-8")
+    assert ours.sha256[:12] in page
+    assert f"holds {len(ours.moments)} of them" in page
+    assert len(ours.moments) >= 400
+    part, names = len(SEEDS) // len(WORLDS), list(WORLDS)
+    assert all(one.seed in SEEDS and names[(one.seed - SEEDS.start) // part] == one.world for one in ours.moments)
+    pairs = [(one.seed, one.contest.cav, one.contest.human) for one in ours.moments]
+    assert len(set(pairs)) == len(pairs)
+    seed = next(one.seed for one in ours.moments if one.world == "merge, mixed")
+    again = judged_moments("merge, mixed", WORLDS["merge, mixed"], seed, 0.15, once=True)
+    assert plain(again) == plain([one for one in ours.moments if one.seed == seed])
 
 
 def test_each_world_has_seeds_of_its_own() -> None:
