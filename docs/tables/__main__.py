@@ -123,11 +123,15 @@ def joined(
 
 
 def rows_of(run: str) -> Numbers:
-    """Read the rows of a run; after a blank may stand what they are to have, for instance ``hard suite=crowd``."""
+    """Read the rows of a run; after a blank may stand what they are to have, or not: ``hard suite=crowd method!=ppo``."""
     name, *wanted = run.split()
     numbers = Numbers.read(HERE / f"{name}.csv")
     pairs = [text.partition("=")[::2] for text in wanted]
-    return replace(numbers, rows=tuple(r for r in numbers.rows if all(str(r.get(k)) == v for k, v in pairs)))
+    return replace(numbers, rows=tuple(r for r in numbers.rows if all(_has(r, k, v) for k, v in pairs)))
+
+
+def _has(row: Mapping[str, Value], key: str, value: str) -> bool:
+    return (str(row.get(key.removesuffix("!"))) == value) != key.endswith("!")
 
 
 def markdown(name: str, spec: Mapping[str, Any]) -> str:

@@ -57,6 +57,19 @@ From
 <!-- end of table one -->"""
 
 
+@pytest.mark.parametrize(
+    ("run", "methods"),
+    [
+        ("old", ["codriving", "fcfs", "fcfs"]),
+        ("old scenario=intersection", ["codriving", "fcfs"]),
+        ("old method!=codriving", ["fcfs", "fcfs"]),
+        ("old scenario=intersection method!=codriving", ["fcfs"]),
+    ],
+)
+def test_some_rows_of_a_run_are_taken(made: Path, run: str, methods: list[str]) -> None:
+    assert [row["method"] for row in PROGRAM["rows_of"](run).rows] == methods
+
+
 def test_rows_of_several_runs_stand_side_by_side_with_what_made_them(made: Path) -> None:
     assert PROGRAM["markdown"]("one", SPEC) == TABLE
 
