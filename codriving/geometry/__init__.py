@@ -5,6 +5,7 @@ from codriving.geometry.clearance import (
     Array,
     Flags,
     Steps,
+    covered_after,
     first_overlap,
     first_true,
     halts_behind,
@@ -25,6 +26,6 @@ from codriving.geometry.zone import ConflictZone, FollowingBand
 __all__ = [
     "PLANNING", "TRUE", "Along", "Array", "ConflictZone", "Flags", "FloatArray", "FollowingBand", "Footprint",
     "Path", "RoadMap", "Search", "SearchedDrive", "SpeedProfile", "Steps", "accelerated", "collision_set",
-    "corners", "driven", "first_overlap", "first_true", "halts_behind", "lane_path", "lane_starts", "limited",
-    "overlap", "overlaps", "progress", "reacts", "road_map", "separation", "stays_ahead", "stays_behind",
+    "corners", "covered_after", "driven", "first_overlap", "first_true", "halts_behind", "lane_path", "lane_starts",
+    "limited", "overlap", "overlaps", "progress", "reacts", "road_map", "separation", "stays_ahead", "stays_behind",
 ]  # fmt: skip

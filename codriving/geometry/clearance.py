@@ -1,5 +1,9 @@
 """Do two predicted motions keep out of each other's way in a conflict zone?"""
 
+from bisect import bisect_left
+from collections.abc import Sequence
+from math import inf
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +14,8 @@ CALM = 3.0  # Braking with which a plan may come to a stop past the horizon [m/s
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Steps = NDArray[np.int64]
+
+MANY = 32  # Motions of which it pays to leave out the steps before they come to a zone
 
 REACTION = 1.0  # Time after which a driver brakes for a vehicle that is in the way [s]
 
@@ -28,13 +34,25 @@ def stays_behind(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: fl
         One flag a plan (plans,).
     """
     # Where the other one was before now is not known; it must have left by now if the ego vehicle enters that soon.
-    earlier = np.concatenate([np.full(lag, other[0]), other[: ego.shape[1] - lag]])
-    return np.asarray((earlier > zone.over_i.highest(ego) + pad).all(axis=1))
+    earlier = np.empty(ego.shape[1])
+    earlier[:lag], earlier[lag:] = other[0], other[: ego.shape[1] - lag]
+    # Before any motion comes to the zone there is nothing to look up; of few motions the look is not worth it.
+    first = _reached(zone, ego) if len(ego) > MANY and zone.over_i.begin > -inf else 0
+    ends = zone.over_i.highest(ego[:, first:])
+    ends += pad
+    return np.asarray((ends < earlier[first:]).all(axis=1))
+
+
+def _reached(zone: ConflictZone, ego: Array) -> int:
+    """Return the first step at which any of several motions may be in a zone."""
+    near = ego.max(axis=0) >= zone.over_i.begin
+    return int(near.argmax()) if near.any() else ego.shape[1]
 
 
 def stays_ahead(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: float) -> Flags:
     """Whether the ego vehicle has left a zone before the other one can enter it."""
-    earlier = np.concatenate([np.repeat(ego[:, :1], lag, axis=1), ego[:, : ego.shape[1] - lag]], axis=1)
+    earlier = np.empty(ego.shape)
+    earlier[:, :lag], earlier[:, lag:] = ego[:, :1], ego[:, : ego.shape[1] - lag]
     return np.asarray((earlier > zone.front(other) + pad).all(axis=1))
 
 
@@ -53,8 +71,22 @@ def _halt(places: Array, sample: float) -> Array:
 
 
 def reacts(zone: ConflictZone, ego: Array, other: Array, sample: float) -> Array:
-    """Let a driver brake, after a reaction time, once the ego vehicle is in a zone ahead of it."""
-    sees = int(np.searchsorted(ego, zone.entry_i)) + round(REACTION / sample)
+    """Let a driver brake, after a reaction time, once the ego vehicle is in a zone ahead of it.
+
+    Args:
+        ego: Several motions of the ego vehicle (plans, n) [m].
+
+    Returns:
+        Motions of the driver, one a plan (plans, n), or one alone where they are all the same (n,) [m].
+    """
+    reaction = round(REACTION / sample)
+    sees = [int(motion.searchsorted(zone.entry_i)) + reaction for motion in ego]
+    each = {since: _brakes(other, since, sample) for since in dict.fromkeys(sees)}
+    return np.array([each[since] for since in sees]) if len(each) > 1 else each[sees[0]]
+
+
+def _brakes(other: Array, sees: int, sample: float) -> Array:
+    """Let a driver brake from a step on."""
     if sees >= len(other) - 1:
         return other
     pace = (other[sees + 1] - other[sees]) / sample
@@ -71,3 +103,29 @@ def first_overlap(zone: ConflictZone, ego: Array, other: Array) -> Steps:
     """Step at which two motions first overlap in a zone."""
     begin, end = zone.blocked(other)
     return first_true((ego >= begin) & (ego <= end))
+
+
+def covered_after(
+    distances: Sequence[float], travel: Sequence[float], times: Sequence[float], sample: float
+) -> tuple[float, ...]:
+    """Return when a motion has covered distances [m], in plain numbers.
+
+    Args:
+        travel: Distance travelled [m] at each time.
+        times: The times [s], `sample` apart.
+
+    Returns:
+        Times from now, going on at the last speed past the horizon; inf if the vehicle stands then [s].
+    """
+    found = []
+    for distance in distances:
+        index = bisect_left(travel, distance)
+        if distance <= 0:
+            found.append(0.0)
+        elif index < len(travel):
+            pace = (travel[index] - travel[index - 1]) / sample
+            found.append(times[index] - (travel[index] - distance) / pace if pace else -inf)
+        else:
+            pace = (travel[-1] - travel[-2]) / sample
+            found.append(times[-1] + (distance - travel[-1]) / pace if pace > 0.05 else inf)
+    return tuple(found)

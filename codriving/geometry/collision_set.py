@@ -1,6 +1,7 @@
 """Which places on two paths cannot be taken at the same time (the collision set)."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,13 +29,16 @@ class Cells:
         """Return the cells for which a mask (n,) is true."""
         return Cells(self.i[mask], self.j[mask])
 
+    def ordered(self, count: int) -> "Cells":
+        """Return the cells ordered by j and then by i; the first path has `count` points."""
+        j, i = np.divmod(np.sort(self.j * count + self.i), count)
+        return Cells(i, j)
+
 
 def collision_set(path_i: Path, path_j: Path, footprint: Footprint) -> Cells:
     """Return all pairs of path points at which two footprints overlap, ordered by j and then by i."""
     near = _near_cells(path_i.points, path_j.points, float(np.hypot(footprint.length, footprint.width)))
-    found = near.only(cell_separation(path_i, path_j, near, footprint) < -TOUCH)
-    order = np.lexsort((found.i, found.j))
-    return Cells(found.i[order], found.j[order])
+    return near.only(cell_separation(path_i, path_j, near, footprint) < -TOUCH).ordered(len(path_i.points))
 
 
 def cell_separation(path_i: Path, path_j: Path, cells: Cells, footprint: Footprint) -> FloatArray:
@@ -60,6 +64,9 @@ def components(cells: Cells) -> IntArray:
 
 def _join_runs(rows: list[int], starts: list[int], ends: list[int]) -> list[int]:
     """Return for each run of cells in a row the first run that it is connected with."""
+    runs = zip(pairwise(rows), pairwise(starts), pairwise(ends), strict=True)
+    if all(r[1] == r[0] + 1 and s[1] <= e[0] + 1 and e[1] >= s[0] - 1 for r, s, e in runs):
+        return [0] * len(rows)
     parent = list(range(len(rows)))
 
     def root(k: int) -> int:
@@ -87,14 +94,21 @@ def _near_cells(points_i: FloatArray, points_j: FloatArray, reach: float) -> Cel
     centres_j, radii_j = _discs(points_j)
     between = np.hypot(*(centres_i[:, None] - centres_j[None]).transpose(2, 0, 1))
     blocks_i, blocks_j = np.nonzero(between <= radii_i[:, None] + radii_j[None] + reach)
-    inside = np.arange(_BLOCK)
-    i = (blocks_i[:, None, None] * _BLOCK + inside[None, :, None]).repeat(_BLOCK, axis=2).ravel()
-    j = (blocks_j[:, None, None] * _BLOCK + inside[None, None, :]).repeat(_BLOCK, axis=1).ravel()
-    exists = (i < len(points_i)) & (j < len(points_j))
-    i, j = i[exists], j[exists]
-    offset = points_i[i] - points_j[j]
-    near = np.einsum("nc,nc->n", offset, offset) <= reach**2
-    return Cells(i[near], j[near])
+    # Block by block, so that only what is near is ever numbered.
+    square = np.zeros((len(blocks_i), _BLOCK, _BLOCK))
+    for x_i, x_j in zip(_blocks(points_i), _blocks(points_j), strict=True):
+        offset = x_i[blocks_i][:, :, None] - x_j[blocks_j][:, None, :]
+        offset *= offset
+        square += offset
+    block, i, j = np.nonzero(square <= reach**2)
+    return Cells(blocks_i[block] * _BLOCK + i, blocks_j[block] * _BLOCK + j)
+
+
+def _blocks(points: FloatArray) -> FloatArray:
+    """Return both coordinates of all points, block by block (2, m, block); where there is no point, not a number."""
+    padded = np.full((-(-len(points) // _BLOCK) * _BLOCK, 2), np.nan)
+    padded[: len(points)] = points
+    return padded.T.reshape(2, -1, _BLOCK)
 
 
 def _discs(points: FloatArray) -> tuple[FloatArray, FloatArray]:

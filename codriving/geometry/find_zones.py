@@ -49,8 +49,7 @@ def find_zones(path_i: Path, path_j: Path, footprint: Footprint) -> tuple[Confli
 
 def _zone(path_i: Path, path_j: Path, cells: Cells, footprint: Footprint) -> ConflictZone:
     over_j = _band(path_i, path_j, cells, footprint)
-    order = np.lexsort((cells.j, cells.i))
-    over_i = _band(path_j, path_i, Cells(cells.j[order], cells.i[order]), footprint)
+    over_i = _band(path_j, path_i, Cells(cells.j, cells.i).ordered(len(path_j.points)), footprint)
     offset = path_i.points[cells.i] - path_j.points[cells.j]
     nearest = int(np.einsum("nc,nc->n", offset, offset).argmin())
     coincidence = classify(path_i, path_j, cells)

@@ -20,27 +20,30 @@ class _Tables:
         profiles = list({id(profile): profile for profile, _ in along}.values())
         starts = np.cumsum([0, *(len(profile.base) for profile in profiles)])
         first = {id(profile): start for profile, start in zip(profiles, starts.tolist(), strict=False)}
-        self.base = np.concatenate([profile.base for profile in profiles]) * scale
-        self.slopes = np.concatenate([profile.slopes for profile in profiles]) * scale
-        column = (len(along), *(1,) * (len(shape) - 1))
-        self.rows = np.array([1 / profile.spacing for profile, _ in along]).reshape(column)
-        self.now = np.array([max(s, 0.0) / profile.spacing for profile, s in along]).reshape(column)
-        self.first = np.array([first[id(profile)] for profile, _ in along], dtype=np.intp).reshape(column)
-        # A hundred steps write to the same places.
+        # As one number of two parts, base and slope are looked up in one go.
+        lines = np.empty(starts[-1], dtype=np.complex128)
+        lines.real = np.concatenate([profile.base for profile in profiles]) * scale
+        lines.imag = np.concatenate([profile.slopes for profile in profiles]) * scale
+        self.lines = lines
+        # A hundred steps write to the same places, with arrays of one shape, which is twice as fast as with columns.
         shape = (len(along), *shape[1:])
-        self._x, self._slope, self._base, self._k = *(np.empty(shape) for _ in range(3)), np.empty(shape, dtype=np.intp)
+        self.rows, self.now, self.first = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.intp)
+        self.rows.T[...] = [1 / profile.spacing for profile, _ in along]
+        self.now.T[...] = [max(s, 0.0) / profile.spacing for profile, s in along]
+        self.first.T[...] = [first[id(profile)] for profile, _ in along]
+        self._x, self._k, self._found = np.empty(shape), np.empty(shape, dtype=np.intp), np.empty(shape, np.complex128)
+        self._base, self._slope = self._found.real, self._found.imag
 
     def reference(self, travelled: Array) -> Array:
         """Return the reference speed after some distance [m], in m/s times the scale; good until the next call."""
-        x, k, found = self._x, self._k, self._slope
-        np.multiply(travelled, self.rows, out=x)
-        x += self.now
-        np.copyto(k, x, casting="unsafe")
-        k += self.first
-        self.slopes.take(k, out=found, mode="clip")
-        found *= x
-        found += self.base.take(k, out=self._base, mode="clip")
-        return found
+        x, k = self._x, self._k
+        np.multiply(travelled, self.rows, x)
+        np.add(x, self.now, x)
+        k[...] = x
+        np.add(k, self.first, k)
+        self.lines.take(k, None, self._found, "clip")
+        np.multiply(self._slope, x, x)
+        return np.add(x, self._base, x)
 
 
 def limited(
@@ -80,26 +83,28 @@ def limited(
     holding = [bool(row.any()) for row in holds]
     shape = (len(speeds),) if paired else (len(speeds), changes.shape[1])
     # Speeds are counted in metres a step, which saves two operations out of ten.
-    step, gain = model.step, model.speed_gain * model.step
-    hardest, slowest = limits.acceleration * step**2, -limits.braking * step**2
+    step = model.step
     v, goal, s, pedal = np.empty(shape), np.empty(shape), np.zeros(shape), np.empty(shape)
     v.T[...], goal.T[...] = np.multiply(speeds, step), np.multiply(targets, step)
+    # Numpy takes two arrays of one shape in half the time of an array and a number.
+    hardest, slowest = np.full(shape, limits.acceleration * step**2), np.full(shape, -limits.braking * step**2)
+    gains = np.full(shape, model.speed_gain * model.step)
     tables = _Tables(along, shape, step) if along else None
     here = s[: len(along)]
-    samples = steps // stride
+    samples, substeps = steps // stride, model.substeps
     distances, reached = np.zeros((samples + 1, *shape)), np.empty((samples + 1, *shape))
     reached[0] = v
     for n in range(samples * stride):
-        if n % model.substeps == 0:
-            change = changes[n // model.substeps]
+        if n % substeps == 0:
+            change = changes[n // substeps]
             # Halfway between two target speeds rounding decides, so speeds that are given are taken as they are.
             speed = v / step if n else np.broadcast_to(np.reshape(speeds, (-1, *(1,) * (len(shape) - 1))), shape)
             index = np.minimum(np.maximum(np.rint((speed - low) / span * top), 0), top) + change
             stepped = (low + span / top * np.minimum(np.maximum(index, 0), top)) * step
             kept = goal
             goal = np.where(change == 0, kept, stepped)
-            if holding[n // model.substeps]:
-                np.copyto(goal, v, where=holds[n // model.substeps])
+            if holding[n // substeps]:
+                np.copyto(goal, v, where=holds[n // substeps])
             if bounds:
                 goal[:, -2] = np.minimum(kept[:, -2], stepped[:, -2])
                 goal[:, -1] = np.maximum(kept[:, -1], stepped[:, -1])
@@ -107,12 +112,12 @@ def limited(
             told = aim[: len(along)]
         if tables is not None:
             np.minimum(wanted, tables.reference(here), out=told)
-        np.subtract(aim, v, out=pedal)
-        pedal *= gain
+        np.subtract(aim, v, pedal)
+        np.multiply(pedal, gains, pedal)
         np.minimum(pedal, hardest, out=pedal)
         np.maximum(pedal, slowest, out=pedal)
-        s += v
-        v += pedal
+        np.add(s, v, s)
+        np.add(v, pedal, v)
         if (n + 1) % stride == 0:
             distances[(n + 1) // stride], reached[(n + 1) // stride] = s, v
     reached /= step

@@ -1,5 +1,6 @@
 """A conflict zone: where two routes meet, and what one vehicle at a place blocks for the other."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -28,6 +29,11 @@ class Band:
     low: FloatArray  # Start of the stretch that is blocked for the other at each row (n,) [m]
     high: FloatArray  # End of that stretch at each row (n,) [m]
 
+    @property
+    def begin(self) -> float:
+        """A place before which nothing is blocked [m]; a little early, for rounding."""
+        return self.start - 1.01 * self.spacing
+
     def highest(self, s: ArrayLike) -> FloatArray:
         """Return the end of the blocked stretch [m] while one is at s [m]; -inf outside the zone."""
         return np.asarray(self._high.take(self._where(s)))
@@ -54,10 +60,18 @@ class Band:
 
     def _where(self, s: ArrayLike) -> NDArray[np.intp]:
         """Return the place of each s in the tables: the numbers of the rows before and after it, added up."""
-        row = np.subtract(s, self.start, dtype=np.float64) / self.spacing
         # Outside the zone every row is as good as the padding; numpy's clip costs more than these two.
-        row = np.minimum(np.maximum(row, -1), len(self.high))
-        return (np.floor(row) + np.ceil(row)).astype(np.intp)
+        row = np.asarray(np.subtract(s, self.start, dtype=np.float64))
+        row /= self.spacing
+        if row.ndim == 0:
+            place = min(max(float(row), -1), len(self.high))
+            return np.asarray(math.floor(place) + math.ceil(place))
+        np.maximum(row, -1, out=row)
+        np.minimum(row, len(self.high), out=row)
+        before = np.floor(row)
+        np.ceil(row, out=row)
+        row += before
+        return row.astype(np.intp)
 
 
 def _table(rows: FloatArray, between: FloatArray) -> FloatArray:
@@ -72,6 +86,11 @@ class FollowingBand:
     """The band of two vehicles on one route: a body length [m] ahead and behind, everywhere."""
 
     body: float
+
+    @property
+    def begin(self) -> float:
+        """A place before which nothing is blocked [m]."""
+        return -np.inf
 
     def highest(self, s: ArrayLike) -> FloatArray:
         """Return the place of the leader [m] whose tail touches one's nose at s [m]."""

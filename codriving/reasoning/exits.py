@@ -43,6 +43,8 @@ def full_exit(moment: Moment, vehicles: Mapping[str, TrackedVehicle], cav: Track
         None if there is room, and for a CAV that is in the junction or can no longer stop before it.
     """
     road_map, forecast = moment.road_map, moment.forecast
+    if all(v.speed >= STANDS or v.id == cav.id for v in vehicles.values()):
+        return None
     route, place = cav.routes[0]
     begin, end = next((box for box in boxes(road_map, route) if place < box[1]), (place, place))
     if not forecast.model.steady or place >= begin:

@@ -1,11 +1,21 @@
 """Do two motions keep out of each other's way?"""
 
+import math
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Junction
 
-from codriving.geometry.clearance import first_overlap, halts_behind, reacts, stays_ahead, stays_behind
+from codriving.geometry.clearance import (
+    MANY,
+    covered_after,
+    first_overlap,
+    halts_behind,
+    reacts,
+    stays_ahead,
+    stays_behind,
+)
 
 TIMES = np.arange(51) * 0.2
 PLACES = st.floats(60.0, 125.0)
@@ -66,11 +76,35 @@ def test_a_motion_that_ends_behind_another_can_stop_there(junction: Junction) ->
 def test_a_driver_reacts_to_a_vehicle_in_the_zone_and_no_other(junction: Junction) -> None:
     (zone,) = junction.road_map.zones("south-north", "west-east")
     theirs = 40.0 + 8.0 * TIMES
-    slowed = reacts(zone, 100.0 + 5.0 * TIMES, theirs, 0.2)
+    slowed = reacts(zone, (100.0 + 5.0 * TIMES)[None], theirs, 0.2)
     assert np.array_equal(slowed[:5], theirs[:5])
     assert slowed[-1] < theirs[-1]
     assert (np.diff(slowed) >= -1e-9).all()
-    assert np.array_equal(reacts(zone, 20.0 + 1.0 * TIMES, theirs, 0.2), theirs)
+    assert np.array_equal(reacts(zone, (20.0 + 1.0 * TIMES)[None], theirs, 0.2), theirs)
+    both = reacts(zone, np.array([100.0 + 5.0 * TIMES, 20.0 + 1.0 * TIMES]), theirs, 0.2)
+    assert np.array_equal(both, [slowed, theirs])
+
+
+@settings(deadline=None)
+@given(OTHERS, PLACES, SPEEDS, st.integers(0, 5))
+def test_of_many_motions_the_steps_before_the_zone_may_be_left_out(
+    junction: Junction, other: str, t: float, w: float, lag: int
+) -> None:
+    mine = np.array([place + v * TIMES for place in (20.0, 60.0, 85.0, 110.0) for v in np.linspace(0.0, 9.0, 13)])
+    assert len(mine) > MANY
+    for zone in junction.road_map.zones("south-north", other):
+        each = [stays_behind(zone, one[None], t + w * TIMES, lag, 0.5)[0] for one in mine]
+        assert stays_behind(zone, mine, t + w * TIMES, lag, 0.5).tolist() == each
+        late = mine[: MANY + 1] - 200.0
+        assert stays_behind(zone, late, t + w * TIMES, lag, 0.5).all()
+
+
+def test_when_a_distance_is_covered() -> None:
+    travel, times = [0.0, 1.0, 3.0], [0.0, 0.5, 1.0]
+    assert covered_after((-1.0, 0.0, 0.5, 1.0, 2.0, 5.0), travel, times, 0.5) == (0.0, 0.0, 0.25, 0.5, 0.75, 1.5)
+    assert covered_after((1.0,), [0.0, 0.0, 0.0], times, 0.5) == (math.inf,)
+    # A vehicle that is taken to be a little ahead has covered less than that already.
+    assert covered_after((0.5,), [1.0, 1.0, 1.0], times, 0.5) == (-math.inf,)
 
 
 @settings(deadline=None)

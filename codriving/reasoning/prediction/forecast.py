@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codriving.datatypes import Action, DrivingModel, TrackedVehicle
-from codriving.geometry import Along, Array, RoadMap, accelerated, driven
+from codriving.geometry import Along, Array, RoadMap, accelerated, covered_after, driven
 from codriving.reasoning.prediction.rollout import Plan, canonical, travelled
 
 HORIZON = 10.0  # How far ahead each vehicle is predicted [s]; a stop from top speed and a crossing both fit in
@@ -77,6 +77,7 @@ class Forecast:
         self.sample = self._stride * model.step
         self.steps = round(HORIZON / self.sample)
         self.times: Array = np.arange(self.steps + 1, dtype=np.float64) * self.sample
+        self._clock: list[float] = self.times.tolist()
         self._profiles = {} if road_map is None else road_map.speed_profiles(model)
         self._legal = {} if road_map is None else {route: road_map.speed_limit(route) for route in road_map.routes}
         self._limited = bool(self._profiles)
@@ -289,14 +290,11 @@ class Forecast:
         Returns:
             Time from now, going on at the last speed past the horizon; inf if the vehicle stands then [s].
         """
-        if distance <= 0:
-            return 0.0
-        index = int(np.searchsorted(travel, distance))
-        if index <= self.steps:
-            pace = (travel[index] - travel[index - 1]) / self.sample
-            return float(self.times[index] - (travel[index] - distance) / pace)
-        pace = (travel[-1] - travel[-2]) / self.sample
-        return float(self.times[-1] + (distance - travel[-1]) / pace) if pace > 0.05 else float("inf")
+        return self.times_to((distance,), travel)[0]
+
+    def times_to(self, distances: Sequence[float], travel: Array) -> tuple[float, ...]:
+        """Return `time_to` of several distances for one motion."""
+        return covered_after(distances, travel.tolist(), self._clock, self.sample)
 
 
 def likely_distances(steady: Array, times: Array) -> tuple[Array, Array]:

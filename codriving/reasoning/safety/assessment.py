@@ -75,8 +75,7 @@ def _assessments(
 
 def arrivals(given: SafetyInput, k: int) -> tuple[float, ...]:
     """Return when each conflict zone is reached at the earliest after an action."""
-    travelled = given.goes[k] - given.scene.place
-    return tuple(given.forecast.time_to(c.distances[0], travelled) for c in given.conflicts)
+    return given.forecast.times_to([c.distances[0] for c in given.conflicts], given.goes[k] - given.scene.place)
 
 
 def progress(given: SafetyInput, action: Action) -> float | None:

@@ -129,7 +129,7 @@ def passes_and_stops(given: SafetyInput, c: Conflict) -> tuple[Flags, Flags]:
         late = np.flatnonzero(~goes)
         if len(late):
             most, after = place + reach.most, given.goes[late]
-            reacting = np.array([reacts(zone, motion, most, given.forecast.sample) for motion in after])
+            reacting = reacts(zone, after, most, given.forecast.sample)
             goes[late] = stays_ahead(zone, after, reacting, round(AHEAD_LAG / given.forecast.sample), PAD)
     return goes, stops
 
