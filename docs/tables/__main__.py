@@ -123,7 +123,7 @@ def joined(
 
 
 def rows_of(run: str) -> Numbers:
-    """Read the rows of a run; after a blank may stand what they are to have, or not: ``hard suite=crowd method!=ppo``."""
+    """Read the rows of a run; after a blank may stand what they have, or have not: ``hard suite=crowd method!=ppo``."""
     name, *wanted = run.split()
     numbers = Numbers.read(HERE / f"{name}.csv")
     pairs = [text.partition("=")[::2] for text in wanted]
