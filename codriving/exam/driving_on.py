@@ -10,7 +10,7 @@ import numpy as np
 
 from codriving.datatypes import BLOCKER, Action, Kind, Method, Pair, Situation, Track, Trajectory, WorldState
 from codriving.environment import Environment
-from codriving.exam.observed import Examined, notebook_of
+from codriving.exam.observed import notebook_of
 from codriving.exam.stored import NEAR_MISS, Consequence
 from codriving.judgement import Contest, lets_pass
 from codriving.metrics import post_encroachment_times
@@ -30,6 +30,13 @@ class _Drive:
     collided: bool
     near_miss: bool
     lost: float  # [s]
+
+
+@dataclass(frozen=True, slots=True)
+class _NotedStep:
+    time: float
+    actions: Mapping[str, Action]
+    situations: Sequence[Situation]
 
 
 class _WorldWriter(pickle.Pickler):
@@ -116,8 +123,15 @@ class Copied:
     def lets_pass(self, contest: Contest) -> bool | None:
         """Let a CAV go on by the first continuation, the driver being who it is; None if neither comes there."""
         environment, method = self.copy(self.continuations[0])
-        assert isinstance(method, Examined)
-        return lets_pass(environment, method.act, method.act(self.world), contest)
+        notebook = notebook_of(method)
+
+        def act(world: WorldState) -> _NotedStep:
+            notebook.empty()
+            return _NotedStep(
+                world.time, method.act(world).actions, [situation for situation, _ in notebook.situations]
+            )
+
+        return lets_pass(environment, act, act(self.world), contest)
 
     def _drives(self, who: tuple[str, ...], choose: Chosen, forced: Mapping[Pair, str], quick: bool) -> list[_Drive]:
         pets = {name: self._pets_of(name, self.environment.trajectory()) for name in who}

@@ -1,8 +1,9 @@
 """Whether a human driver lets a CAV pass that goes on: a copy of the world is driven on, and seen."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol
 
-from codriving.datatypes import Action, ReasonedDeliberation, Role, Simulator, WorldState
+from codriving.datatypes import Action, Role, Simulator, Situation, WorldState
 from codriving.geometry import progress
 from codriving.judgement.contests import Contest
 from codriving.judgement.hindsight import entries, let_pass
@@ -12,11 +13,24 @@ CLEARS = 2.0  # How long after it has come to the zone a collision says that it 
 ROOM = (4.0, 1.5)  # Distance [m] and time [s] to the vehicle ahead below which it does as the method does
 
 
+class DecidedStep(Protocol):
+    """What a method does for all CAVs, and the situations in which it decided; none of a CAV while it thinks."""
+
+    @property
+    def time(self) -> float:
+        """When [s]."""
+
+    @property
+    def actions(self) -> Mapping[str, Action]:
+        """The action of each CAV on the road."""
+
+    @property
+    def situations(self) -> Sequence[Situation]:
+        """What was decided about."""
+
+
 def lets_pass(
-    copied: Simulator,
-    act: Callable[[WorldState], ReasonedDeliberation],
-    deliberation: ReasonedDeliberation,
-    contest: Contest,
+    copied: Simulator, act: Callable[[WorldState], DecidedStep], deliberation: DecidedStep, contest: Contest
 ) -> bool | None:
     """Let the CAV of a pair go on, and see who of both comes first in their next zone.
 
@@ -33,14 +47,15 @@ def lets_pass(
         actions = deliberation.actions
         scene = next((s.scene for s in deliberation.situations if s.scene.ego.id == contest.cav), None)
         ahead = scene.next_in(Role.LEADING) if scene is not None else None
-        if scene is not None and (ahead is None or (ahead.gap or 0.0) > ROOM[0] + ROOM[1] * scene.ego.speed):
+        near = scene is not None and ahead is not None and (ahead.gap or 0.0) <= ROOM[0] + ROOM[1] * scene.ego.speed
+        if contest.cav in actions and not near:
             actions = {**actions, contest.cav: Action.FASTER}
         world = copied.step(actions)
         if first is None:
             times, passed = entered(copied, contest), world.time
             # Where there is no zone before them any more, they do not meet.
             first = let_pass(times, began) if any(min(both) > began for both in times) else True
-        seen = first is False or scene is None or (first and world.time > passed + CLEARS)
+        seen = first is False or contest.cav not in actions or (first and world.time > passed + CLEARS)
         if seen or copied.outcome is not None or world.time >= began + LONGEST:
             break
         deliberation = act(world)

@@ -1,5 +1,7 @@
 """What comes of an answer: times that are lost, drivers drawn anew, and copies that leave the world as it is."""
 
+from copy import deepcopy
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,8 @@ from codriving.datatypes.world import Action, Kind
 from codriving.exam.building import _objects, worlds
 from codriving.exam.driving_on import Copied, lost
 from codriving.exam.observed import notebook_of
+from codriving.judgement.contests import contests
+from codriving.reasoning.perception import Moment
 
 
 def track(x: list[float], speed: float, arrived: float | None = None, style: str = "") -> Track:
@@ -57,3 +61,22 @@ def test_a_copy_is_driven_on_and_the_world_stays(monkeypatch: pytest.MonkeyPatch
     assert sorted(one.loss for one in both)[0] == 0.0
     assert notebook.forced == {}
     assert [len(t.x) for t in environment.trajectory().tracks] == [len(t.x) for t in before.tracks]
+
+
+@pytest.mark.parametrize("name", ["poor_radio", "slow_mind"])
+def test_drivers_are_asked_where_a_method_shares_or_thinks(name: str) -> None:
+    environment, methods = _objects(worlds()[name])
+    world = environment.reset(20_000)
+    for method in methods:
+        method.reset(environment.road_map, environment.driving_model, 1)
+    notebook = notebook_of(methods[0])
+    notebook.closed = False
+    moments: list[Moment] = []
+    while not moments or not contests(moments[-1]):
+        copied = Copied(environment, deepcopy(methods, {id(part): part for part in environment.lasting}), world, 1)
+        notebook.empty()
+        actions = methods[0].act(world).actions
+        moments = [moment for _, moment in notebook.situations if moment is not None]
+        world = environment.step(actions) if not moments or not contests(moments[-1]) else world
+    assert copied.lets_pass(contests(moments[-1])[0]) in (True, False, None)
+    assert environment.trajectory().tracks[0].x.size == round(world.time / environment.trajectory().step) + 1

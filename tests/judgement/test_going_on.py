@@ -59,11 +59,11 @@ def asked(junction: Junction) -> Contest:
     return contest
 
 
-def deliberation(time: float, gap: float | None = None, drives: bool = True) -> Any:
+def deliberation(time: float, gap: float | None = None, drives: bool = True, thinks: bool = False) -> Any:
     ahead = None if gap is None else SimpleNamespace(gap=gap)
     scene = SimpleNamespace(ego=SimpleNamespace(id="CAV1", speed=8.0), next_in=lambda role: ahead)
-    actions = {"CAV1": Action.SLOWER, "CAV2": Action.IDLE}
-    return SimpleNamespace(time=time, actions=actions, situations=[SimpleNamespace(scene=scene)] * drives)
+    actions = {"CAV2": Action.IDLE} | ({"CAV1": Action.SLOWER} if drives else {})
+    return SimpleNamespace(time=time, actions=actions, situations=[SimpleNamespace(scene=scene)] * (not thinks))
 
 
 def answered(world: Driven, contest: Contest, **told: Any) -> bool | None:
@@ -105,3 +105,9 @@ def test_a_cav_that_does_not_drive_any_more_ends_it(junction: Junction) -> None:
     world = Driven(junction, {"CAV1": ("east-west", 80.0, 8.0), "HDV1": ("south-north", 60.0, 8.0)})
     assert answered(world, asked(junction), drives=False) is None
     assert len(world.actions) == 1
+
+
+def test_a_cav_whose_method_still_thinks_goes_on(junction: Junction) -> None:
+    world = Driven(junction, {"CAV1": ("east-west", 80.0, 8.0), "HDV1": ("south-north", 60.0, 8.0)})
+    assert answered(world, asked(junction), gap=1.0, thinks=True) is True
+    assert {a["CAV1"] for a in world.actions} == {Action.FASTER}
