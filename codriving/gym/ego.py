@@ -4,24 +4,23 @@ from collections.abc import Sequence
 from inspect import signature
 from typing import Any
 
-import gymnasium
 import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
 from codriving.errors import ConfigError, EpisodeError
-from codriving.gym.actions import check_seed, draw_seed
 from codriving.gym.configured import configured_method
 from codriving.gym.episode import Info
 from codriving.gym.observation import FloatArray
-from codriving.gym.parallel import METADATA, ParallelDriving
+from codriving.gym.one_agent import OverParallel
+from codriving.gym.parallel import ParallelDriving
 
 WORDS = frozenset(signature(ParallelDriving).parameters)  # All other settings are keys of the scenario
 
 DRAW = 3  # Key of the random numbers of the method, apart from those of the scene and of the drivers
 
 
-class EgoDriving(gymnasium.Env[FloatArray, Any]):
+class EgoDriving(OverParallel):
     """One agent that drives one CAV; a method decides for all other CAVs.
 
     Args:
@@ -31,8 +30,6 @@ class EgoDriving(gymnasium.Env[FloatArray, Any]):
     Raises:
         ConfigError: If a setting cannot be used.
     """
-
-    metadata = METADATA
 
     def __init__(
         self,
@@ -44,8 +41,7 @@ class EgoDriving(gymnasium.Env[FloatArray, Any]):
         **settings: Any,  # noqa: ANN401 - as for ``codriving.parallel_env``
     ) -> None:
         world = (f"suite={suite}", *overrides)
-        self.parallel = ParallelDriving(name, *world, **settings)
-        self.render_mode, self.metadata = self.parallel.render_mode, self.parallel.metadata
+        super().__init__(ParallelDriving(name, *world, **settings))
         if ego not in self.parallel.possible_agents:
             raise ConfigError(f"ego must be one of {', '.join(self.parallel.possible_agents)}, got {ego!r}")
         environment = self.parallel.environment
@@ -62,9 +58,7 @@ class EgoDriving(gymnasium.Env[FloatArray, Any]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[FloatArray, Info]:
         """Begin an episode; a seed means the same vehicles as in `codriving run`."""
-        given = None if seed is None else check_seed(seed)
-        super().reset(seed=given)
-        chosen = draw_seed(self.np_random) if given is None else given
+        chosen = self.seed_of(seed)
         observations, infos = self.parallel.reset(chosen)
         environment = self.parallel.environment
         draws = np.random.SeedSequence(entropy=chosen, spawn_key=(DRAW,))
@@ -87,14 +81,6 @@ class EgoDriving(gymnasium.Env[FloatArray, Any]):
         observations, rewards, terminated, truncated, infos = turn
         self._over = terminated[ego] or truncated[ego]
         return observations[ego], rewards[ego], terminated[ego], truncated[ego], infos[ego]
-
-    def render(self) -> NDArray[np.uint8] | None:
-        """Draw the world as it is now."""
-        return self.parallel.render()
-
-    def close(self) -> None:
-        """Let go of the picture; there is nothing else to close."""
-        self.parallel.close()
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return the mask of the ego vehicle, as MaskablePPO of sb3-contrib wants it.

@@ -3,26 +3,22 @@
 from collections.abc import Sequence
 from typing import Any
 
-import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Discrete, MultiDiscrete
 from numpy.typing import NDArray
 
 from codriving.errors import EpisodeError
-from codriving.gym.actions import check_seed, draw_seed
 from codriving.gym.episode import Info
 from codriving.gym.observation import FloatArray
-from codriving.gym.parallel import METADATA, ParallelDriving
+from codriving.gym.one_agent import OverParallel
+from codriving.gym.parallel import ParallelDriving
 
 
-class JointDriving(gymnasium.Env[FloatArray, NDArray[Any]]):
+class JointDriving(OverParallel):
     """One agent that decides for all CAVs: observations and actions are the products of theirs (paper Section II)."""
 
-    metadata = METADATA
-
     def __init__(self, name: str, overrides: Sequence[str] = (), suite: str = "default", **settings: Any) -> None:  # noqa: ANN401
-        self.parallel = ParallelDriving(name, f"suite={suite}", *overrides, **settings)
-        self.render_mode, self.metadata = self.parallel.render_mode, self.parallel.metadata
+        super().__init__(ParallelDriving(name, f"suite={suite}", *overrides, **settings))
         self.observation_space = self.parallel.state_space
         spaces = list(self.parallel.action_spaces.values())
         discrete = [int(space.n) for space in spaces if isinstance(space, Discrete)]
@@ -30,9 +26,7 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[Any]]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[FloatArray, Info]:
         """Begin an episode."""
-        given = None if seed is None else check_seed(seed)
-        super().reset(seed=given)
-        self.parallel.reset(draw_seed(self.np_random) if given is None else given)
+        self.parallel.reset(self.seed_of(seed))
         return self.parallel.state(), self._info()
 
     def step(self, action: NDArray[Any]) -> tuple[FloatArray, float, bool, bool, Info]:
@@ -46,14 +40,6 @@ class JointDriving(gymnasium.Env[FloatArray, NDArray[Any]]):
         # A CAV that has arrived is rewarded no more, so that the return is the mean of the returns of the CAVs.
         reward = sum(rewards.values()) / len(agents)
         return self.parallel.state(), reward, not late and not self.parallel.agents, late, self._info()
-
-    def render(self) -> NDArray[np.uint8] | None:
-        """Draw the world as it is now."""
-        return self.parallel.render()
-
-    def close(self) -> None:
-        """Let go of the picture; there is nothing else to close."""
-        self.parallel.close()
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return the masks of all CAVs one after another, as MaskablePPO of sb3-contrib wants them.

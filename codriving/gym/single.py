@@ -4,16 +4,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeAlias
 
-import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Discrete
 
 from codriving.datatypes import Action, Kind, Road, Scenario, Scene
 from codriving.environment import Environment
-from codriving.gym.actions import ACTIONS, check_seed, draw_seed
+from codriving.gym.actions import ACTIONS
 from codriving.gym.configured import configured
 from codriving.gym.episode import AgentEpisode, Info
 from codriving.gym.observation import FloatArray, Observer
+from codriving.gym.one_agent import OneAgent
 from codriving.gym.reward import RewardWeights, reward_weights
 
 DRAW = 2  # Key of the random numbers that choose the CAV, apart from those of the scene and of the drivers
@@ -44,7 +44,7 @@ class OneCav(Scenario):
 ObserverFactory: TypeAlias = Callable[[Environment], Observer]  # Makes the observer of an environment
 
 
-class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
+class SingleDriving(OneAgent):
     """One agent that drives one CAV; all others are human drivers.
 
     Args:
@@ -88,9 +88,7 @@ class SingleDriving(gymnasium.Env[FloatArray, np.int64]):
             EpisodeError: If the seed is not a whole number of at least 0.
             ScenarioError: If the vehicles cannot be placed.
         """
-        given = None if seed is None else check_seed(seed)
-        super().reset(seed=given)
-        self._drive.begin(draw_seed(self.np_random) if given is None else given)
+        self._drive.begin(self.seed_of(seed))
         return self._observation(), self._drive.info(self._cav)
 
     def step(self, action: np.int64) -> tuple[FloatArray, float, bool, bool, Info]:

@@ -74,7 +74,7 @@ class JointActions(Executor):
     """The joint action that costs least, by risk, loss of speed and acceleration, whatever the order."""
 
     name, orders = "fuzzy_coalition", False
-    library = LIBRARY
+    own_plans = LIBRARY
 
     def __init__(
         self, gap: float, participation: float, weights: Weights, hold: float, horizon: float, shares: bool

@@ -42,7 +42,7 @@ class Executor(OrderExecutor, ABC):
     margin: float  # The same for motions, and for the gap test of lane changes [s]
     orders: bool = True  # Whether CAVs drive by the order at all
     by_zone: bool = False  # Whether a CAV may pass a zone before one that precedes it in the order
-    library: tuple[Plan, ...] = ()  # Plans that it uses besides those that all methods predict
+    own_plans: tuple[Plan, ...] = ()  # Those that it uses besides those that all methods predict
 
     def reset(self) -> None:
         """Begin an episode; nothing is remembered from the one before."""
