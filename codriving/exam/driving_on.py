@@ -1,15 +1,14 @@
 """What comes of an answer: the world is copied, and driven on with it."""
 
 import hashlib
-import pickle
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from io import BytesIO
 
 import numpy as np
 
 from codriving.datatypes import BLOCKER, Action, Kind, Method, Pair, Situation, Track, Trajectory, WorldState
 from codriving.environment import Environment
+from codriving.exam.copies import Copies
 from codriving.exam.observed import notebook_of
 from codriving.exam.stored import NEAR_MISS, Consequence
 from codriving.judgement import Contest, lets_pass
@@ -39,54 +38,28 @@ class _NotedStep:
     situations: Sequence[Situation]
 
 
-class _WorldWriter(pickle.Pickler):
-    """Writes down all but some parts, which copies share."""
-
-    shared: Mapping[int, object]
-
-    def persistent_id(self, part: object) -> int | None:
-        """Name a part that is not written."""
-        return id(part) if id(part) in self.shared else None
-
-
-class _WorldReader(pickle.Unpickler):
-    """Makes a copy of what was written."""
-
-    shared: Mapping[int, object]
-
-    def persistent_load(self, name: int) -> object:
-        """Return a part that was not written."""
-        return self.shared[name]
-
-
 class Copied:
     """A world at one moment, with the methods that may drive it on, written down once for all copies."""
 
     def __init__(self, environment: Environment, continuations: Sequence[Method], world: WorldState, seed: int) -> None:
         self.environment, self.continuations, self.world, self.seed = environment, continuations, world, seed
-        notebooks = [notebook_of(method) for method in continuations]
-        self._shared = {id(part): part for part in (*environment.lasting, *notebooks)}
-        self._written: dict[int, bytes] = {}
+        self._copies: dict[int, Copies] = {}
 
     def copy(self, method: Method) -> tuple[Environment, Method]:
         """Copy the world and one that drives it on, both as they were when the first copy was made."""
-        if id(method) not in self._written:
-            self._written[id(method)] = self._write(method)
-        reader = _WorldReader(BytesIO(self._written[id(method)]))
-        reader.shared = self._shared
-        environment, copied = reader.load()
+        if id(method) not in self._copies:
+            self._copies[id(method)] = self._written(method)
+        environment, copied = self._copies[id(method)].another()
         return environment, copied
 
-    def _write(self, method: Method) -> bytes:
-        notebook_of(method).closed = True
+    def _written(self, method: Method) -> Copies:
+        notebook = notebook_of(method)
+        notebook.closed = True
         observer, self.environment.observer = self.environment.observer, method.observer
         try:
-            writer = _WorldWriter(out := BytesIO(), pickle.HIGHEST_PROTOCOL)
-            writer.shared = self._shared
-            writer.dump((self.environment, method))
+            return Copies((self.environment, method), (*self.environment.lasting, notebook))
         finally:
             self.environment.observer = observer
-        return out.getvalue()
 
     def of_actions(self, situation: Situation, quick: bool = False) -> dict[Action, Consequence]:
         """Let a CAV do each action that is allowed; `quick` takes one continuation and one draw."""

@@ -84,16 +84,16 @@ def _ask(ready: tuple[Judge, Ledger | None], moment: JudgedMoment) -> Judgement 
     return judged if judged is not None and is_valid(judged) else None
 
 
-def is_relied_on(moment: JudgedMoment, judged: Judgement | None) -> bool:
-    """Whether the CAV would rely on the driver: by the answer, and by the rules of the road where it is open."""
-    if judged is None or judged.answer not in (YIELDS, GOES):
-        return bool(moment.contest.rule)
-    return judged.answer == YIELDS
-
-
 def is_open(judged: Judgement | None) -> bool:
     """Whether the rules of the road hold, since it was answered ``unclear`` or not at all."""
     return judged is None or judged.answer not in (YIELDS, GOES)
+
+
+def is_relied_on(moment: JudgedMoment, judged: Judgement | None) -> bool:
+    """Whether the CAV would rely on the driver: by the answer, and by the rules of the road where it is open."""
+    if judged is None or is_open(judged):
+        return bool(moment.contest.rule)
+    return judged.answer == YIELDS
 
 
 def squared(moment: JudgedMoment, judged: Judgement | None) -> float:

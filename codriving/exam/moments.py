@@ -1,7 +1,6 @@
 """Moments in which it is open whether a human driver lets a CAV pass, each with what the driver then did."""
 
 from collections.abc import Mapping, Sequence
-from copy import deepcopy
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,6 +9,7 @@ import numpy as np
 from codriving.config import build, compose
 from codriving.datatypes import CaseMemory, Judgements, Manner, Method, Model, RuleModel
 from codriving.environment import Environment
+from codriving.exam.copies import Copies
 from codriving.exam.file import read_lines, written_lines
 from codriving.exam.plain import plain
 from codriving.judgement import Contest, Judge, entered, let_pass, lets_pass
@@ -82,7 +82,6 @@ def judged_moments(
     method.rely_on(judge)
     state = environment.reset(seed)
     method.reset(environment.road_map, environment.driving_model, seed)
-    shared = {id(part): part for part in environment.lasting}
     found: list[JudgedMoment] = []
     taken: set[tuple[str, str]] = set()
     while environment.outcome is None:
@@ -92,7 +91,7 @@ def judged_moments(
             pair = contest.cav, contest.human
             if rng.random() >= share or (once and pair in taken):
                 continue
-            copied, rules = deepcopy((environment, method), dict(shared))
+            copied, rules = Copies((environment, method), environment.lasting).another()
             if (yields := lets_pass(copied, rules.act, deliberation, contest)) is not None:
                 style = next(t.style for t in environment.trajectory().tracks if t.id == contest.human)
                 manner = environment.manners()[contest.human]
