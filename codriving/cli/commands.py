@@ -46,7 +46,7 @@ def compare(
         str | None,
         typer.Argument(
             metavar="TABLE",
-            help="Which table: baselines, single-vehicle, all, load, orders, filters or models.",
+            help="Which table: baselines, single-vehicle, all, methods, load, orders, filters or models.",
             autocompletion=complete_table,
         ),
     ] = None,
@@ -60,11 +60,11 @@ def compare(
     """Drive every method of the paper on the same seeds, into one table beside the paper's.
 
     baselines: each method against codriving. single-vehicle: those by which each CAV is on its own. all: both.
-    load: baselines with 4, 6, 8 and 12 CAVs. orders: codriving with each passing order. filters: each method with and
-    without the safety check behind it. models: codriving with each model that llm=NAME,NAME names, and with
-    controls and rules in its place; epochs=N drives each seed N times.
+    methods: those that method=NAME,NAME names. load: baselines with 4, 6, 8 and 12 CAVs. orders: codriving with each
+    passing order. filters: each method with and without the safety check behind it. models: codriving with each model
+    that llm=NAME,NAME names, and with controls and rules in its place; epochs=N drives each seed N times.
 
-    method=NAME adds a method of your own; controls=false leaves controls out.
+    To other tables method=NAME adds a method of your own; controls=false leaves controls out.
     """
     from codriving.commands import comparison_command, run_command
 

@@ -60,6 +60,7 @@ from codriving.reports import (
 
 BASELINES, SINGLE_VEHICLE, ALL = "baselines", "single-vehicle", "all"
 LOAD, ORDERS, FILTERS, MODELS = "load", "orders", "filters", "models"
+NAMED = "methods"  # The table of those that method= names
 
 CAVS = "scenario.cavs"  # The key that the load is
 
@@ -117,13 +118,16 @@ def comparison(
     spec = spec or file_of(table)
     if table == MODELS:
         return points_of(spec, written([*spec.words, *overrides]), config_dir, make=partial(model_points, ()))
-    usual = table not in (LOAD, ORDERS, FILTERS)
+    usual = table not in (LOAD, ORDERS, FILTERS, NAMED)
     controlled, overrides = split_controls(written([*spec.words, *overrides]), usual)
     keys = [parse(token).key_or_group for token in overrides]
     added = [token for token, key in zip(overrides, keys, strict=True) if key == "method"]
     others = [token for token, key in zip(overrides, keys, strict=True) if key != "method"]
     methods = _methods_of(spec) or _having_place(table, config_dir)
-    methods += [*_named(added, config_dir), *(taking_part(CONTROLS) if controlled else ())]
+    methods += _named(added, config_dir)
+    if table == NAMED:
+        methods = _against_reference(methods)
+    methods += taking_part(CONTROLS) if controlled else ()
     methods = list(dict.fromkeys(methods))
     if table in (ORDERS, FILTERS):
         make = order_points if table == ORDERS else filter_points
@@ -139,6 +143,16 @@ def _having_place(table: str, config_dir: Path | None) -> list[str]:
     """The methods of a table that exist."""
     known = choices("method", config_dir)
     return [name for name in taking_part(ALL if table == FILTERS else table) if name in known]
+
+
+def _against_reference(methods: Sequence[str]) -> list[str]:
+    """The methods that were named, and the one that each is set against."""
+    if set(methods) <= {REFERENCE}:
+        raise ConfigError(
+            f"compare {NAMED} needs the methods that are set against {REFERENCE}; write for instance codriving compare "
+            f"{NAMED} method=fcfs,madqn, and codriving list methods shows them"
+        )
+    return [*(name for name in methods if name != REFERENCE), REFERENCE]
 
 
 def _named(added: Sequence[str], config_dir: Path | None) -> list[str]:

@@ -29,6 +29,7 @@ TABLES = {
     "baselines": "The methods of the paper's comparison, each against codriving.",
     "single-vehicle": "The methods for a single vehicle, each against codriving.",
     "all": "The methods of both tables, each against codriving.",
+    "methods": "The methods that method= names, each against codriving.",
     "load": "The methods of the first table with 4, 6, 8 and 12 CAVs.",
     "orders": "The paper's method with each passing order, each against the order that is negotiated.",
     "filters": "The methods of both tables, each with and without the safety check of codriving.",

@@ -126,6 +126,15 @@ def test_controls_are_the_last_rows_unless_they_are_left_out(table: str, own: Pa
         comparison(table, ["controls=no"])
 
 
+def test_methods_are_those_that_are_named_and_the_reference(own: Path) -> None:
+    for named in ("fcfs,mine", "fcfs,mine,codriving", "codriving,fcfs,mine"):
+        points = comparison("methods", [f"method={named}", "scenario=merge"], own)
+        assert [point.swept["method"] for point in points] == ["fcfs", "mine", "codriving"]
+        assert points[0].overrides[:2] == ("experiment=compare-methods", "scenario=merge")
+    with_controls = comparison("methods", ["method=fcfs", "controls=true"])
+    assert [point.swept["method"] for point in with_controls] == ["fcfs", "codriving", *CONTROLS]
+
+
 def test_loads_have_controls_only_if_they_are_asked_for() -> None:
     assert "method=idm" not in {point.overrides[-1] for point in comparison("load", [])}
     asked = comparison("load", ["controls=true", "scenario=merge", "scenario.cavs=4"])
@@ -169,15 +178,18 @@ def test_the_experiment_is_the_users_if_named() -> None:
 @pytest.mark.parametrize(
     ("table", "tokens", "said"),
     [
-        ("baseline", [], "unknown table 'baseline'; .* tables: baselines, single-vehicle, all, load, orders, filters"),
+        ("baseline", [], "unknown table 'baseline'; .* tables: baselines, single-vehicle, all, methods, load, orders"),
         ("scenario=merge", [], "unknown table 'scenario=merge'; write codriving compare TABLE"),
         (
             None,
             [],
-            "compare needs the name of a table; .* tables: baselines, single-vehicle, all, load, orders, filters",
+            "compare needs the name of a table; .* tables: baselines, single-vehicle, all, methods, load, orders",
         ),
         ("single", [], "unknown table 'single'"),
         ("single-vehicle", ["method=typo"], "unknown method 'typo'; choices: "),
+        ("methods", [], "compare methods needs the methods that are set against codriving; write for instance"),
+        ("methods", ["method=codriving"], "compare methods needs the methods that are set against codriving"),
+        ("methods", ["method=typo"], "unknown method 'typo'; choices: "),
         ("all", ["episodes=3,4"], "episodes takes one value"),
         ("baselines", ["method=typo"], "unknown method 'typo'; choices: "),
         ("baselines", ["method=codriving,typo"], "unknown method 'typo'; choices: "),
