@@ -43,6 +43,11 @@ class Side:
         answer: dict[str, list[float]] = json.loads(self._process.stdout.readline())
         return answer
 
+    def memory(self) -> float:
+        """Memory that the process holds at present [MB]."""
+        pages = int(Path(f"/proc/{self._process.pid}/statm").read_text(encoding="ascii").split()[1])
+        return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
+
     def __enter__(self) -> Self:
         return self
 
