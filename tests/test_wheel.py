@@ -66,10 +66,8 @@ def test_wheel_holds_configs_and_experiments(wheel: Path) -> None:
     assert {f"codriving/llm/prompts/{name}/decide.user.md.j2" for name in ("informed", "planner")} <= names
     assert len([name for name in names if name.startswith("codriving/bound/envelopes/")]) == 4
     assert "codriving/_conf/train/madqn_junction.yaml" in names
-    for family in ("junction", "lanes"):
-        assert {
-            f"codriving/methods/learned/weights/madqn_{family}.{end}" for end in ("safetensors", "json", "csv")
-        } <= names
+    for name in ("default/madqn_junction", "paper/madqn_lanes", "paper/tell_junction"):
+        assert {f"codriving/methods/learned/weights/{name}.{end}" for end in ("safetensors", "json", "csv")} <= names
     assert not [name for name in names if name.startswith(("tests", "conf/", "docs"))]
 
 

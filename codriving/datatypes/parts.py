@@ -216,10 +216,13 @@ class Method(ABC):
         """
         return None
 
-    def files(self, road: Road) -> Mapping[str, Path]:
+    def files(self, road: Road, limited: bool) -> Mapping[str, Path]:
         """Return the files whose content decides what is driven on a road, by what they are.
 
         A run whose files have changed does not go on in its folder.
+
+        Args:
+            limited: Whether vehicles have limits.
         """
         return {}
 
@@ -287,8 +290,8 @@ class Wrapped(Method):
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
         self.method.check_road(road, target_speeds, decision_interval)
 
-    def files(self, road: Road) -> Mapping[str, Path]:
-        return self.method.files(road)
+    def files(self, road: Road, limited: bool) -> Mapping[str, Path]:
+        return self.method.files(road, limited)
 
     def remark(self, road: Road, world: Mapping[str, str]) -> str:
         return self.method.remark(road, world)

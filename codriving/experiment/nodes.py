@@ -130,7 +130,8 @@ def _files_named(config: Mapping[str, Any]) -> dict[str, str]:
     """SHA-256 of each file on which the episodes of a config depend, by what it is."""
     scenario = build(config["scenario"], Scenario, "scenario", config["plugins"])
     method = make_method(config, model_of(config), memory_of(config))
-    return {file.name: file.sha256 for file in contents(config, method.files(scenario.road))}
+    own = method.files(scenario.road, config["limits"] is not None)
+    return {file.name: file.sha256 for file in contents(config, own)}
 
 
 _PLACE = threading.local()  # The workers of a thread, since objects must not be shared by two that drive

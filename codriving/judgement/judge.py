@@ -152,8 +152,8 @@ class Judging(Method):
         values: dict[str, Any] = {field.name: getattr(perception, field.name) for field in fields(Perception)}
         return JudgedPerception(**values, judge=self.judge)
 
-    def files(self, road: Road) -> Mapping[str, Path]:
-        return {**super().files(road), **(self.judge.files() if self.judge is not None else {})}
+    def files(self, road: Road, limited: bool) -> Mapping[str, Path]:
+        return {**super().files(road, limited), **(self.judge.files() if self.judge is not None else {})}
 
     def be_told(self, manners: Mapping[str, Manner]) -> None:
         super().be_told(manners)

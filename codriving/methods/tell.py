@@ -18,6 +18,6 @@ class Tell(Learned):
 
     def __init__(self, weights: Path | None) -> None:
         super().__init__(weights)
-        file = shipped(self.name, JUNCTION) if weights is None else weights
+        file = shipped(self.name, JUNCTION, limited=True) if weights is None else weights
         teacher = str(load(file).purpose.training.get("teacher", "")) or "no teacher"
         self.variant = ", ".join(filter(None, [self.variant, f"taught by {teacher}"]))

@@ -113,6 +113,7 @@ def test_tables_of_compare() -> None:
         "baselines",
         "single-vehicle",
         "all",
+        "methods",
         "load",
         "orders",
         "filters",

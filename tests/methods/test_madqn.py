@@ -154,7 +154,7 @@ def test_roads_that_it_was_not_trained_for_are_refused_before_anything_is_driven
 
 
 def test_weights_of_ones_own(tmp_path: Path, junction: Junction, highway: Junction) -> None:
-    trained = load(shipped("madqn", "junction"))
+    trained = load(shipped("madqn", "junction", limited=False))
     file = tmp_path / "mine.safetensors"
     save(file, trained)
     made = madqn(junction, file)
@@ -173,7 +173,7 @@ def test_weights_of_ones_own(tmp_path: Path, junction: Junction, highway: Juncti
 @pytest.mark.parametrize("family", ["junction", "lanes"])
 def test_shipped_weights_in_numpy_and_torch_agree(family: str) -> None:
     torch = pytest.importorskip("torch")
-    network = load(shipped("madqn", family)).network
+    network = load(shipped("madqn", family, limited=True)).network
     rng = np.random.default_rng(0)
     observations = rng.uniform(-1, 1, (2000, network.weights[0].shape[0])).astype(np.float32)
     hidden = torch.from_numpy(observations)
@@ -188,10 +188,21 @@ def test_shipped_weights_in_numpy_and_torch_agree(family: str) -> None:
 @pytest.mark.parametrize("scenario", ["intersection", "merge"])
 def test_weights_of_another_world_are_marked(scenario: str, configured: Make) -> None:
     road = configured(f"scenario={scenario}").scenario.road
-    assert Madqn(None).remark(road, {"limits": "none", "drivers": "simulator"}) == ""
-    for other in ({"limits": "road", "drivers": "simulator"}, {"limits": "none", "drivers": "rough"}):
-        said = "madqn: its weights were trained in another world, limits=none drivers=simulator."
-        assert Madqn(None).remark(road, other) == said
+    for limits, drivers, others in (("none", "simulator", "rough"), ("road", "mixed", "attentive")):
+        assert Madqn(None).remark(road, {"limits": limits, "drivers": drivers}) == ""
+        said = f"madqn: its weights were trained in another world, limits={limits} drivers={drivers}."
+        assert Madqn(None).remark(road, {"limits": limits, "drivers": others}) == said
+
+
+def test_vehicles_without_limits_have_weights_of_their_own(configured: Make) -> None:
+    names = {}
+    for suite in ("paper", "default"):
+        environment, made = configured("scenario=intersection", f"suite={suite}"), Madqn(None)
+        names[suite] = made.files(environment.scenario.road, suite == "default")["weights"].parent.name
+        first = steps(environment, made, 10_001, 1)[0].values
+        assert first == steps(environment, Madqn(shipped("madqn", "junction", suite == "default")), 10_001, 1)[0].values
+        assert first != steps(environment, Madqn(shipped("madqn", "junction", suite == "paper")), 10_001, 1)[0].values
+    assert names == {"paper": "paper", "default": "default"}
 
 
 def test_every_scenario_has_weights_for_its_road_and_pace(configured: Make) -> None:

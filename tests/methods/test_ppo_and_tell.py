@@ -35,6 +35,9 @@ SCENARIOS = ("intersection", "roundabout", "highway", "merge")
 METHODS: dict[str, type[Learned]] = {"ppo": Ppo, "tell": Tell}
 DECISIONS = 14
 
+IN_PAPER = Path(__file__).parents[2] / "examples" / "madqn_paper_world" / "conf"
+"""What the weights of MADQN for vehicles without limits were trained with."""
+
 
 def made(name: str) -> Learned:
     return METHODS[name](None)
@@ -145,7 +148,7 @@ def test_roads_that_it_was_not_trained_for_are_refused_before_anything_is_driven
 
 
 def test_weights_of_ones_own_say_who_taught(tmp_path: Path, junction: Junction) -> None:
-    trained = load(shipped("tell", "junction"))
+    trained = load(shipped("tell", "junction", limited=False))
     file = tmp_path / "mine.safetensors"
     by_model = {**trained.purpose.training, "teacher": "ollama_chat/llama3.1:8b"}
     save(file, replace(trained, purpose=replace(trained.purpose, training=by_model)))
@@ -160,14 +163,17 @@ def test_weights_of_ones_own_say_who_taught(tmp_path: Path, junction: Junction) 
         Ppo(file)
 
 
+@pytest.mark.parametrize(
+    ("name", "limited", "configs"),
+    [("madqn", True, None), ("madqn", False, IN_PAPER), ("ppo", True, None), ("tell", True, None)],
+)
 @pytest.mark.parametrize("family", FAMILIES)
-@pytest.mark.parametrize("name", METHODS)
-def test_shipped_weights_say_how_they_were_trained(name: str, family: str) -> None:
-    file = shipped(name, family)
+def test_shipped_weights_say_how_they_were_trained(name: str, family: str, limited: bool, configs: Path | None) -> None:
+    file = shipped(name, family, limited)
     purpose = load(file).purpose
     assert (purpose.method, purpose.family) == (name, family)
     assert purpose.training["command"] == f"codriving train {name} --family {family}"
-    config = compose_training(f"{name}_{family}", (), smoke=False)
+    config = compose_training(f"{name}_{family}", (), smoke=False, config_dir=configs)
     assert purpose.training["config"] == fingerprint(config), "trained with the shipped config"
     assert purpose.training["validation"]["first_seed"] >= 10_000
     curve = file.with_suffix(".csv").read_text().splitlines()

@@ -60,7 +60,7 @@ def test_it_leaves_weights_a_curve_and_a_picture(finished: Path) -> None:
     assert trained.purpose.hidden == (8,)
     assert trained.purpose.target_speeds == ((0.0, 3.0, 6.0, 9.0),)
     assert trained.purpose.training["seed"] == 1
-    assert trained.purpose.world == {"limits": "none", "drivers": "simulator"}
+    assert trained.purpose.world == {"limits": "road", "drivers": "mixed"}
     rows = (finished / "curve.csv").read_text().splitlines()
     assert rows[0].startswith("decisions,episodes,updates,epsilon,loss,train_success,score,intersection_4.success")
     assert len(rows) >= 1 + 2, "once in the middle, and at the end"

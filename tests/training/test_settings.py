@@ -37,7 +37,8 @@ def test_every_training_builds_and_shows_all_of_its_settings(name: str, smoke: b
 
 
 @pytest.mark.parametrize(
-    ("world", "limits"), [((), False), (("world.suite=default",), True), (("world.limits=road",), True)]
+    ("world", "limits"),
+    [(("world.suite=paper",), False), (("world.suite=default",), True), (("world.limits=road",), True)],
 )
 def test_all_of_a_training_drives_in_its_world(world: tuple[str, ...], limits: bool) -> None:
     together = made(*world)
@@ -56,7 +57,8 @@ def test_all_of_a_training_drives_in_its_world(world: tuple[str, ...], limits: b
 
 
 def test_world_of_a_training_is_named_by_its_limits_and_drivers() -> None:
-    assert world_of(made().world) == {"limits": "none", "drivers": "simulator"}
+    assert world_of(made().world) == {"limits": "road", "drivers": "mixed"}
+    assert world_of({"suite": "paper"}) == {"limits": "none", "drivers": "simulator"}
     assert world_of({"drivers": "rough"}) == {"limits": "road", "drivers": "rough"}
 
 
@@ -139,6 +141,7 @@ def test_an_unknown_training_is_refused() -> None:
 
 
 def test_traffic_comes_in_when_its_time_has_come() -> None:
-    kinds = made("traffic.0.weight=1", "traffic.1.weight=1", "traffic.2.weight=2", "traffic.3.weight=4").traffic
-    assert shares(kinds, 0.0) == [0.25, 0.25, 0.5, 0.0]
-    assert shares(kinds, 0.5) == [0.125, 0.125, 0.25, 0.5]
+    kinds = made(*(f"traffic.{k}.weight={weight}" for k, weight in enumerate((1, 1, 2, 4, 1, 7)))).traffic
+    assert shares(kinds, 0.0) == [0.2, 0.2, 0.4, 0.0, 0.2, 0.0]
+    assert shares(kinds, 0.4) == [1 / 12, 1 / 12, 2 / 12, 0.0, 1 / 12, 7 / 12]
+    assert shares(kinds, 0.5) == [1 / 16, 1 / 16, 2 / 16, 4 / 16, 1 / 16, 7 / 16]

@@ -53,7 +53,7 @@ class Steady(Method):
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
         self.asked.append(("road", decision_interval))
 
-    def files(self, road: Road) -> Mapping[str, Path]:
+    def files(self, road: Road, limited: bool) -> Mapping[str, Path]:
         return {"weights": Path("mine")}
 
     def remark(self, road: Road, world: Mapping[str, str]) -> str:
@@ -123,7 +123,7 @@ def test_all_else_is_the_methods_own(junction: Junction) -> None:
     assert method.asked == [("road", 0.5), ("seed", 7), ("told", {})]
     assert (filtered.name, filtered.variant, filtered.reasoner) == ("steady", "of mine filtered", "rules")
     assert (filtered.remembers, filtered.most_cavs, filtered.knows_drivers) == ("some", 9, True)
-    assert (filtered.remark(road, {}), filtered.files(road)) == ("Mine.", {"weights": Path("mine")})
+    assert (filtered.remark(road, {}), filtered.files(road, True)) == ("Mine.", {"weights": Path("mine")})
     assert filtered.conclude(junction.world(*CARS), Outcome) == ({"learnt": 1}, [])  # type: ignore[arg-type]
     assert filtered.unfinished_step(1.0) == ({"paid": 1}, [])
     assert filtered.is_checked

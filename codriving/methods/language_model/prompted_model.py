@@ -71,7 +71,7 @@ class ModelMethod(Method):
         self.llm, self.memory, self.reasoner = llm, memory, llm.name
         self.remembers = memory.label if memory is not None else ""
 
-    def files(self, road: Road) -> Mapping[str, Path]:
+    def files(self, road: Road, limited: bool) -> Mapping[str, Path]:
         """Return the files of a model and the templates that it is asked with; none where the built-in rules reason."""
         if self.llm.chat() is None:
             return {}

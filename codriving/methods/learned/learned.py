@@ -68,7 +68,7 @@ class Learned(Method):
     def __init__(self, weights: Path | None) -> None:
         self.shares = Shares(states=self.shared, intents=self.shared)
         self._file = weights
-        self._trained: dict[str, Trained] = {}
+        self._trained: dict[Path, Trained] = {}
         self._own: str | None = None
         self.variant = ""
         if weights is not None:
@@ -76,28 +76,28 @@ class Learned(Method):
             if trained.purpose.method != self.name:
                 raise WeightsError(f"{weights} holds weights of {trained.purpose.method}, not of {self.name}")
             self._own, self.variant = trained.purpose.family, "own weights"
-            self._trained[self._own] = trained
+            self._trained[weights] = trained
 
     def check_road(self, road: Road, target_speeds: Sequence[float], decision_interval: float) -> None:
-        family = family_of(road)
-        self._weights(family).purpose.check(family, target_speeds, decision_interval)
+        for limited in (True, False):
+            self._weights(road, limited).purpose.check(family_of(road), target_speeds, decision_interval)
 
     def remark(self, road: Road, world: Mapping[str, str]) -> str:
-        trained = self._weights(family_of(road)).purpose.world
+        trained = self._weights(road, world.get("limits") != "none").purpose.world
         if all(world.get(group, name) == name for group, name in trained.items()):
             return ""
         names = " ".join(f"{group}={name}" for group, name in trained.items())
         return f"{self.name}: its weights were trained in another world, {names}."
 
-    def files(self, road: Road) -> Mapping[str, Path]:
-        file = shipped(self.name, family_of(road)) if self._file is None else self._file
+    def files(self, road: Road, limited: bool) -> Mapping[str, Path]:
+        file = self._file or shipped(self.name, family_of(road), limited)
         return {"weights": file, "weights, purpose": sidecar(file)}
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
         self.check_road(road_map.road, model.target_speeds, model.decision_interval)
         self._family = family_of(road_map.road)
-        self._network = self._weights(self._family).network
+        self._network = self._weights(road_map.road, model.limits is not None).network
         self._features = Features(road_map, model, self._family, self.shared)
 
     def act(self, world: WorldState) -> Judged:
@@ -118,10 +118,12 @@ class Learned(Method):
         routes = {name: world.intents[name].route for name in observations}
         return Judged(world.time, world.step, self._family, routes, observations, values, actions, {}, self.meaning)
 
-    def _weights(self, family: str) -> Trained:
-        if family not in self._trained:
-            if self._own is not None:
-                given = f"the weights that were given are for roads of the family {self._own}"
-                raise WeightsError(f"{given}, this road is one of {family}")
-            self._trained[family] = load(shipped(self.name, family))
-        return self._trained[family]
+    def _weights(self, road: Road, limited: bool) -> Trained:
+        family = family_of(road)
+        if self._own not in (None, family):
+            given = f"the weights that were given are for roads of the family {self._own}"
+            raise WeightsError(f"{given}, this road is one of {family}")
+        file = self._file or shipped(self.name, family, limited)
+        if file not in self._trained:
+            self._trained[file] = load(file)
+        return self._trained[file]

@@ -108,9 +108,14 @@ class Trained:
     purpose: Purpose
 
 
-def shipped(method: str, family: str) -> Path:
-    """Return the file of the weights that come with the package."""
-    return Path(__file__).parent / "weights" / f"{method}_{family}.safetensors"
+def shipped(method: str, family: str, limited: bool) -> Path:
+    """Return the file of the weights that come with the package, for vehicles with limits or for those of the paper.
+
+    Where none were trained with limits it is that of the paper's vehicles.
+    """
+    default, paper = (Path(__file__).parent / "weights" / name for name in ("default", "paper"))
+    file = default / f"{method}_{family}.safetensors"
+    return file if limited and file.is_file() else paper / file.name
 
 
 def sidecar(file: Path) -> Path:

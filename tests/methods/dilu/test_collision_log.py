@@ -147,5 +147,5 @@ def test_the_templates_of_reflection_count_where_a_memory_learns(junction: Junct
     road = junction.road_map.road
     learning, _ = modelled(junction, always("IDLE"), Notebook())
     forgetful, _ = modelled(junction, always("IDLE"))
-    assert any("dilu_reflect" in name for name in learning.files(road))
-    assert not any("reflect" in name for name in forgetful.files(road))
+    assert any("dilu_reflect" in name for name in learning.files(road, True))
+    assert not any("reflect" in name for name in forgetful.files(road, True))

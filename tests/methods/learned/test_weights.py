@@ -141,9 +141,10 @@ def test_grids_between_those_that_were_driven_with_are_accepted() -> None:
         several.check(JUNCTION, speeds, 0.5)
 
 
+@pytest.mark.parametrize("limited", [True, False])
 @pytest.mark.parametrize("family", FAMILIES)
-def test_shipped_weights_say_how_they_were_trained(family: str) -> None:
-    file = shipped("madqn", family)
+def test_shipped_weights_are_small_and_were_validated(family: str, limited: bool) -> None:
+    file = shipped("madqn", family, limited)
     purpose = load(file).purpose
     assert purpose.family == family
     assert purpose.training["command"].startswith("codriving train madqn")
