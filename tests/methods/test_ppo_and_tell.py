@@ -35,8 +35,8 @@ SCENARIOS = ("intersection", "roundabout", "highway", "merge")
 METHODS: dict[str, type[Learned]] = {"ppo": Ppo, "tell": Tell}
 DECISIONS = 14
 
-IN_PAPER = Path(__file__).parents[2] / "examples" / "madqn_paper_world" / "conf"
-"""What the weights of MADQN for vehicles without limits were trained with."""
+IN_PAPER = Path(__file__).parents[2] / "examples" / "paper_world" / "conf"
+"""What the weights of MADQN and PPO for vehicles without limits were trained with."""
 
 
 def made(name: str) -> Learned:
@@ -165,7 +165,13 @@ def test_weights_of_ones_own_say_who_taught(tmp_path: Path, junction: Junction) 
 
 @pytest.mark.parametrize(
     ("name", "limited", "configs"),
-    [("madqn", True, None), ("madqn", False, IN_PAPER), ("ppo", True, None), ("tell", True, None)],
+    [
+        ("madqn", True, None),
+        ("madqn", False, IN_PAPER),
+        ("ppo", True, None),
+        ("ppo", False, IN_PAPER),
+        ("tell", True, None),
+    ],
 )
 @pytest.mark.parametrize("family", FAMILIES)
 def test_shipped_weights_say_how_they_were_trained(name: str, family: str, limited: bool, configs: Path | None) -> None:
