@@ -37,9 +37,10 @@ def test_filters_are_a_table(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(import_module("codriving.commands.compare"), "taking_part", lambda _: ("ppo", "codriving"))
-    # Long enough for a collision: the learned method has one on the first of these seeds.
+    # Long enough for a collision: the learned method has one on the first of these seeds, in the world of the paper.
     asked = [
         "launcher=serial",
+        "suite=paper",
         "scenario.cavs=4",
         "seed=10000",
         "episodes=3",

@@ -113,7 +113,7 @@ def make_cell(
             raise ConfigError(f"method: the attribute {name!r} of {type(method).__name__} must be of type str")
     labels = Labels(scenario.name, method.name, method.variant, method.reasoner, method.remembers)
     swept = swept_values(point.swept, resolved) if point else {}
-    files, chosen = contents(resolved, method.files(scenario.road, resolved["limits"] is not None)), choices or {}
+    files, chosen = contents(resolved, method.files(scenario.road, resolved.get("limits") is not None)), choices or {}
     remark = method.remark(scenario.road, {group: chosen[group] for group in ("limits", "drivers") if group in chosen})
     if method.knows_drivers and not remark.endswith(KNOWS):
         # Whatever a method says of itself.

@@ -130,7 +130,7 @@ def _files_named(config: Mapping[str, Any]) -> dict[str, str]:
     """SHA-256 of each file on which the episodes of a config depend, by what it is."""
     scenario = build(config["scenario"], Scenario, "scenario", config["plugins"])
     method = make_method(config, model_of(config), memory_of(config))
-    own = method.files(scenario.road, config["limits"] is not None)
+    own = method.files(scenario.road, config.get("limits") is not None)
     return {file.name: file.sha256 for file in contents(config, own)}
 
 

@@ -205,7 +205,8 @@ def make_files(folder: Path) -> None:
         shutil.copy(file, folder / "prompts")
     for suffix in (".safetensors", ".json"):
         shutil.copy(
-            package / "methods" / "learned" / "weights" / f"madqn_junction{suffix}", folder / f"weights{suffix}"
+            package / "methods" / "learned" / "weights" / "default" / f"madqn_junction{suffix}",
+            folder / f"weights{suffix}",
         )
     with closing(open_to_write(folder / "answers.sqlite")) as connection:
         connection.execute("INSERT INTO answers VALUES ('a', '{}')")
