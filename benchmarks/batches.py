@@ -82,7 +82,7 @@ def memory(episodes: int) -> Iterator[Row]:
     with Side(THIS, SCENE[:1]) as side:
         for k in range(episodes):
             side.drive(FIRST_SEED + k)
-            if k + 1 == episodes // EARLIER:
+            if k + 1 == max(episodes // EARLIER, 1):
                 before = side.memory()
         yield Row(f"memory after {episodes} episodes", side.memory(), before, "MB", GROWTH)
 

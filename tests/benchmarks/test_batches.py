@@ -67,3 +67,5 @@ def test_memory_is_compared_with_a_tenth_of_the_episodes(monkeypatch: pytest.Mon
     monkeypatch.setattr(batches, "Side", lambda *_: Growing())
     (row,) = rows()
     assert (row.ours, row.other, row.reached) == (130.0, 103.0, False)
+    Growing.driven = 0
+    assert [row.other for row in batches.memory(4)] == [101.0], "fewer than ten"
