@@ -177,3 +177,12 @@ def test_what_asks_in_any_way_stays_on_this_machine(tmp_path: Path, monkeypatch:
         ("here", ["merge-codriving-full-control_random_informed_"]),
         ("elsewhere", ["merge-codriving-full-rules"]),
     ]
+
+
+@pytest.mark.parametrize("suite", ["paper", "default"])
+def test_a_cell_and_a_node_are_told_by_the_weights_of_their_world(suite: str) -> None:
+    (cell,) = make_plan(expand(["method=madqn", f"suite={suite}", "launcher=serial"])).cells
+    told = {file.name: file for file in cell.files}
+    assert Path(told["weights"].path).parent.name == suite
+    task = NodeJob(job(compose(["method=madqn", f"suite={suite}"]))).task(UNIT)
+    assert task.files == {name: file.sha256 for name, file in told.items()}
