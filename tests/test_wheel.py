@@ -66,7 +66,7 @@ def test_wheel_holds_configs_and_experiments(wheel: Path) -> None:
     assert {f"codriving/llm/prompts/{name}/decide.user.md.j2" for name in ("informed", "planner")} <= names
     assert len([name for name in names if name.startswith("codriving/bound/envelopes/")]) == 4
     assert "codriving/_conf/train/madqn_junction.yaml" in names
-    for name in ("default/madqn_junction", "paper/madqn_lanes", "default/ppo_lanes", "paper/tell_junction"):
+    for name in ("default/madqn_junction", "paper/madqn_lanes", "default/tell_lanes", "paper/ppo_lanes"):
         assert {f"codriving/methods/learned/weights/{name}.{end}" for end in ("safetensors", "json", "csv")} <= names
     assert not [name for name in names if name.startswith(("tests", "conf/", "docs"))]
 

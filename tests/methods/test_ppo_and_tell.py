@@ -36,7 +36,7 @@ METHODS: dict[str, type[Learned]] = {"ppo": Ppo, "tell": Tell}
 DECISIONS = 14
 
 IN_PAPER = Path(__file__).parents[2] / "examples" / "paper_world" / "conf"
-"""What the weights of MADQN and PPO for vehicles without limits were trained with."""
+"""What the weights for vehicles without limits were trained with."""
 
 
 def made(name: str) -> Learned:
@@ -171,6 +171,7 @@ def test_weights_of_ones_own_say_who_taught(tmp_path: Path, junction: Junction) 
         ("ppo", True, None),
         ("ppo", False, IN_PAPER),
         ("tell", True, None),
+        ("tell", False, IN_PAPER),
     ],
 )
 @pytest.mark.parametrize("family", FAMILIES)

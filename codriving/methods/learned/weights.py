@@ -109,13 +109,8 @@ class Trained:
 
 
 def shipped(method: str, family: str, limited: bool) -> Path:
-    """Return the file of the weights that come with the package, for vehicles with limits or for those of the paper.
-
-    Where none were trained with limits it is that of the paper's vehicles.
-    """
-    default, paper = (Path(__file__).parent / "weights" / name for name in ("default", "paper"))
-    file = default / f"{method}_{family}.safetensors"
-    return file if limited and file.is_file() else paper / file.name
+    """Return the file of the weights that come with the package, for vehicles with limits or for those of the paper."""
+    return Path(__file__).parent / "weights" / ("default" if limited else "paper") / f"{method}_{family}.safetensors"
 
 
 def sidecar(file: Path) -> Path:
