@@ -2,7 +2,8 @@
 
 `tables.yaml` names for each table the commands that drive its episodes and what its columns show. The commands are run
 (what is driven already is not driven again), the `summary.csv` of each run folder, `comparison.csv` or `stress.csv`, is
-kept beside this file, with the command and the versions that made it, and the pages are written from these files alone.
+kept beside this file, with the command and the versions that made it, and pages and figures are made from these files
+alone.
 """
 
 import argparse
@@ -151,6 +152,15 @@ def markdown(name: str, spec: Mapping[str, Any]) -> str:
     return re.sub(" +[|]", " |", text)
 
 
+def draw(name: str, spec: Mapping[str, Any], file: Path) -> None:
+    """Draw the figure of a table from the rows that it shows."""
+    from figure import drawn  # Beside this file
+
+    worlds = {world: [rows_of(run) for run in runs] for world, runs in spec["runs"].items()}
+    rows = list(joined(worlds, spec.get("only", {}), spec.get("by", KEYS)))
+    file.write_bytes(drawn(rows, list(worlds)))
+
+
 def _sentences(made: Sequence[str]) -> list[str]:
     return [f"From {made[0]}."] if len(made) == 1 else ["From", "", *(f"- {one}" for one in made)]
 
@@ -247,6 +257,8 @@ def main(arguments: Sequence[str]) -> int:
                 stale.append(page)
                 if not chosen.check:
                     (ROOT / page).write_text(text, encoding="utf-8", newline="\n")
+        for name, file in spec.get("figures", {}).items() if not chosen.check else ():
+            draw(name, spec["tables"][name], ROOT / file)
     except TableError as error:
         print(error, file=sys.stderr)
         return 1
