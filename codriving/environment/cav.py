@@ -38,7 +38,12 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
     def take(self, decision: Action | ControlInput) -> None:
         """Take a decision."""
         self.command = decision if isinstance(decision, ControlInput) else None
-        self.act(None if self.command is not None else str(decision))
+        if self.command is not None or decision in (Action.LANE_LEFT, Action.LANE_RIGHT):
+            self.act(None if self.command is not None else str(decision))
+            return
+        # How it steers for that is worked out in the simulation step that follows.
+        self._aim(str(decision))
+        self.enter_next_lane()
 
     def act(self, action: str | None = None) -> None:
         """Take an action, or go on with the last decision."""
@@ -55,7 +60,12 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
             self.reckoned = self.s
             return
         if action is not None:
-            self.reckoned = self.s
+            self._aim(action)
+        self.action = {"steering": self.keep_lane(), "acceleration": self.speed_control(self.target_speed)}
+
+    def _aim(self, action: str) -> None:
+        """Choose the target speed by an action."""
+        self.reckoned = self.s
         if action in (Action.FASTER, Action.SLOWER):
             # From the speed at which it drives, not from the target that it had; so does highway-env's MDPVehicle.
             self.speed_index = self.speed_to_index(self.speed) + (1 if action == Action.FASTER else -1)
@@ -63,15 +73,19 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
             self.target_speed = float(self.target_speeds[self.speed_index])
         elif action == Action.HOLD:
             self.target_speed = self.speed
-        self.action = {"steering": self.keep_lane(), "acceleration": self.speed_control(self.target_speed)}
 
-    def step(self, dt: float) -> None:
-        """Move by one simulation step [s]; with a command, past what is planned for curves and off its lane."""
+    def before_step(self, dt: float) -> None:
+        """Keep what was commanded within the limits; with a command, past what is planned for curves."""
         if self.command is None:
-            super().step(dt)
+            super().before_step(dt)
+        else:
+            self.hold(math.inf, dt)
+
+    def after_step(self) -> None:
+        """Correct what the dynamics made of it; with a command, also where it is off its lane."""
+        if self.command is None:
+            super().after_step()
             return
-        self.hold(math.inf, dt)
-        self.move(dt)
         if self.corrections.no_reverse:
             self.speed = max(self.speed, 0.0)
         self.target_speed = self.speed
@@ -79,6 +93,10 @@ class ConnectedVehicle(RouteFollower, MDPVehicle):
             self.target_lane_index = self.lane_index
             if self.corrections.route_lane:
                 self.follow_target_lane()
+
+    def keeps_lane(self) -> bool:
+        """Whether it steers by `keep_lane` when it goes on with its decision."""
+        return self.command is None
 
     def odometer(self, dt: float) -> float:
         """Return its place on the route, reckoned from the last decision on: so it is predicted exactly [m]."""

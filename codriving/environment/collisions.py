@@ -1,13 +1,15 @@
 """Collisions by the true footprints, and which of the two vehicles is responsible."""
 
 import math
-from itertools import combinations
+from itertools import islice
 
 from highway_env.vehicle.objects import RoadObject
 
 from codriving.datatypes import Collision
 from codriving.environment.traffic.route_following import RouteFollower
 from codriving.geometry import FloatArray, corners, overlap
+
+PLAINLY = 1e-6  # A gap of more than this is one, however it is rounded [m]
 
 PUSHED = 3.0  # How far highway-env pushes two crashed cars apart at most [m]
 
@@ -17,17 +19,42 @@ def find_collisions(
 ) -> list[tuple[tuple[RouteFollower, ...], Collision]]:
     """Find every pair of vehicles that have collided."""
     found: list[tuple[tuple[RouteFollower, ...], Collision]] = []
-    pushed = 0.0 if by_footprint else PUSHED
-    placed = [(vehicle, *vehicle.position.tolist(), float(vehicle.diagonal) / 2) for vehicle in vehicles]
-    for (one, x, y, half), (other, x2, y2, half2) in combinations(placed, 2):
-        dx, dy, reach = x - x2, y - y2, half + half2 + pushed
-        if dx * dx + dy * dy > reach * reach:
-            continue
-        if _overlap(one, other) if by_footprint else one.crashed and other.crashed:
+    for one, other in _near_pairs(vehicles, 0.0 if by_footprint else PUSHED):
+        if by_footprint:
+            collided = not (_beside(one, other) or _beside(other, one)) and _overlap(one, other)
+        else:
+            collided = one.crashed and other.crashed
+        if collided:
             striker, struck = responsibility(one, other, dt)
             pair = "-".join(sorted((one.kind, other.kind)))
             found.append(((striker, struck), Collision(time, striker.id, struck.id, pair)))
     return found
+
+
+def _near_pairs(vehicles: list[RouteFollower], pushed: float) -> list[tuple[RouteFollower, RouteFollower]]:
+    """Return the pairs of vehicles that may touch, in their order."""
+    placed = [(*v.position.tolist(), float(v.diagonal) / 2, k) for k, v in enumerate(vehicles)]
+    placed.sort()
+    longest, pairs = max((half for _, _, half, _ in placed), default=0.0), []
+    for place, (x, y, half, k) in enumerate(placed, start=1):
+        for x2, y2, half2, k2 in islice(placed, place, None):
+            dx, dy, reach = x2 - x, y2 - y, half + half2 + pushed
+            if dx > half + longest + pushed:
+                break
+            if dx * dx + dy * dy <= reach * reach:
+                pairs.append((min(k, k2), max(k, k2)))
+    return [(vehicles[k], vehicles[k2]) for k, k2 in sorted(pairs)]
+
+
+def _beside(one: RouteFollower, other: RouteFollower) -> bool:
+    """Whether a vehicle is plainly beside the other one, ahead of it or behind, by more than rounding can change."""
+    (x, y), (x2, y2) = one.position.tolist(), other.position.tolist()
+    (cos, sin), (cos2, sin2), dx, dy = one.facing(), other.facing(), x2 - x, y2 - y
+    c, s = abs(cos * cos2 + sin * sin2), abs(sin * cos2 - cos * sin2)
+    long, wide = other.LENGTH / 2, other.WIDTH / 2
+    across = abs(dy * cos - dx * sin) - one.WIDTH / 2 - (s * long + c * wide)
+    along = abs(dx * cos + dy * sin) - one.LENGTH / 2 - (c * long + s * wide)
+    return bool(max(across, along) > PLAINLY)
 
 
 def find_block_collisions(

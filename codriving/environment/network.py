@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from highway_env.road.lane import AbstractLane, CircularLane, LineType, SineLane, StraightLane
@@ -35,7 +36,8 @@ def build_lane(lane: Lane) -> AbstractLane:
     start, end = np.array(shape.start), np.array(shape.end)
     if isinstance(shape, Sine):
         return SineLane(start, end, shape.amplitude, shape.pulsation, shape.phase, **common)
-    return PlainStraightLane(start, end, **common)
+    aligned = 0.0 in (end - start)
+    return (AlignedLane if aligned else PlainStraightLane)(start, end, **common)
 
 
 def build_network(road: Road) -> RoadNetwork:
@@ -55,11 +57,33 @@ def build_network(road: Road) -> RoadNetwork:
 class PlainStraightLane(StraightLane):
     """A straight lane."""
 
+    def __init__(self, start: NDArray[np.float64], end: NDArray[np.float64], **settings: Any) -> None:  # noqa: ANN401
+        super().__init__(start, end, **settings)
+        self.heading: float = float(self.heading)
+        self.length: float = float(self.length)
+
     def local_coordinates(self, position: NDArray[np.float64]) -> tuple[float, float]:
         """Return arc length and lateral offset of a place (2,) [m]."""
         delta = position - self.start
         # The method, since plain products may be rounded differently from numpy's fused ones.
         return float(delta.dot(self.direction)), float(delta.dot(self.direction_lateral))
+
+
+class AlignedLane(PlainStraightLane):
+    """A straight lane along an axis of the map; products with 0, 1 and -1 are exact, so that no rounding can differ."""
+
+    def __init__(self, start: NDArray[np.float64], end: NDArray[np.float64], **settings: Any) -> None:  # noqa: ANN401
+        super().__init__(start, end, **settings)
+        self._x, self._y = self.start.tolist()
+        self._cos, self._sin = self.direction.tolist()
+
+    def local_coordinates(self, position: NDArray[np.float64]) -> tuple[float, float]:
+        """Return arc length and lateral offset of a place (2,) [m]."""
+        x, y = position.tolist()
+        x -= self._x
+        y -= self._y
+        # No zero of a dot product is negative.
+        return x * self._cos + y * self._sin + 0.0, y * self._cos - x * self._sin + 0.0
 
 
 class PlainCircularLane(CircularLane):

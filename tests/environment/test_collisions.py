@@ -1,13 +1,18 @@
 """Who struck whom, in collisions made by hand."""
 
 import math
+from collections.abc import Callable
+from itertools import combinations
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from codriving.environment.collisions import responsibility
+from codriving.datatypes.world import Kind, Start
+from codriving.environment.collisions import find_collisions, responsibility
+from codriving.environment.environment import Environment
+from codriving.geometry.box import corners, overlap
 
 EAST, SOUTH, WEST = 0.0, math.pi / 2, math.pi
 
@@ -40,3 +45,22 @@ def test_striker_is_a(case: str, swapped: bool) -> None:
 def test_cars_that_have_overlapped_all_the_time() -> None:
     one, other = car("A", 0.0, 0.0, EAST, 0.0), car("B", 1.0, 0.0, EAST, 0.0)
     assert {v.id for v in responsibility(one, other, 0.1)} == {"A", "B"}
+
+
+def test_all_pairs_that_overlap_are_found_in_the_order_of_the_vehicles(by_hand: Callable[..., Environment]) -> None:
+    starts = [Start(f"CAV{k}", Kind.CAV, "south-north", 10.0 * k, 5.0) for k in range(1, 9)]
+    env, rng, hit = by_hand(starts=starts), np.random.default_rng(0), 0
+    env.reset(0)
+    vehicles = env._traffic.vehicles
+    for _ in range(60):
+        for vehicle in vehicles:
+            vehicle.position[:], vehicle.heading = rng.uniform(-12, 12, 2), float(rng.uniform(-4, 4))
+        boxes = [corners(*v.position, v.heading, v.LENGTH, v.WIDTH) for v in vehicles]
+        pairs = [
+            {one.id, other.id}
+            for (one, box), (other, box2) in combinations(zip(vehicles, boxes, strict=True), 2)
+            if overlap(box, box2)
+        ]
+        assert [{c.striker, c.struck} for _, c in find_collisions(vehicles, 0.0, 0.1, by_footprint=True)] == pairs
+        hit += len(pairs)
+    assert 100 < hit < 1000

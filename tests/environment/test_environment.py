@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from codriving.datatypes.world import Action, Kind, Start, WorldState
+from codriving.environment.drivers.body import body
 from codriving.environment.environment import Environment
 from codriving.environment.settings import DriverProfile
 from codriving.environment.traffic.human_driver import body_ahead
@@ -185,21 +186,45 @@ def test_body_ahead_is_the_nearest_one_in_the_way(intersection: Build, by_hand: 
         s, aside, turn = rng.uniform(60, 148), rng.uniform(-8, 8), rng.uniform(-3, 3)
         (x, y), heading = path.position(s), float(path.heading(s))
         place = np.array([x - aside * np.sin(heading), y + aside * np.cos(heading)])
-        body = SimpleNamespace(position=place, heading=heading + turn, LENGTH=5.0, WIDTH=2.0, solid=True)
+        box = SimpleNamespace(LENGTH=5.0, WIDTH=2.0, solid=True)
         reach = abs(np.cos(turn)) * 2.5 + abs(np.sin(turn))
         side = abs(np.sin(turn)) * 2.5 + abs(np.cos(turn))
         distance = float(np.hypot(*(place - driver.position)))
         if abs(abs(aside) - (1 + BODY_MARGIN + side)) < 0.3 or abs(s - 80.0) < 1.0 or abs(distance - 70.0) < 1.0:
             continue  # on the edge, where a path of straight pieces may decide either way
-        body_seen, gap = body_ahead(driver, [driver, body], 70.0)
+        one = (box, *place.tolist(), heading + turn, 0.0)
+        body_seen, gap = body_ahead(driver, [body(driver), one], 70.0)
         if abs(aside) < 1 + BODY_MARGIN + side and s > 80.0 and distance < 70.0:
             found += 1
-            assert body_seen is body
+            assert body_seen is one
             assert gap == pytest.approx(s - 80.0 - reach - 2.5, abs=0.4)
         else:
             assert body_seen is None
             assert gap == np.inf
     assert found > 50
+
+
+@pytest.mark.parametrize("aside", [0.0, 3.0])
+def test_on_a_straight_route_the_same_body_is_found(aside: float, configured: Callable[..., Environment]) -> None:
+    env = configured("scenario=highway")
+    env.reset(0)
+    driver = next(v for v in env._traffic.vehicles if v.kind is Kind.HDV)
+    assert driver.route_path.is_straight
+    driver.position[1] += aside
+    driver.on_state_update()
+    quick, rng, found = driver.route_path, np.random.default_rng(2), 0
+    for _ in range(400):
+        around = rng.uniform((-40, -9), (140, 9), (5, 2)) + driver.position
+        bodies = [
+            (SimpleNamespace(LENGTH=float(rng.uniform(2, 9)), WIDTH=2.0, solid=True), *place, float(turn), 0.0)
+            for place, turn in zip(around.tolist(), rng.normal(0, rng.choice([0.02, 1.0]), 5), strict=True)
+        ]
+        driver.route_path = quick
+        sooner = body_ahead(driver, bodies, 100.0)
+        driver.route_path = replace(quick, is_straight=False)
+        assert sooner == body_ahead(driver, bodies, 100.0)
+        found += sooner[0] is not None
+    assert 200 < found < 400
 
 
 def test_drivers_are_drawn_anew_where_they_are(configured: Callable[..., Environment]) -> None:

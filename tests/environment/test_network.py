@@ -37,6 +37,10 @@ def test_network_equals_that_of_highway_env_lane_by_lane(intersection: Callable[
 
 SHAPES: list[tuple[LaneShape, AbstractLane]] = [
     (Straight((1.0, 2.0), (40.0, -7.0)), StraightLane([1.0, 2.0], [40.0, -7.0])),
+    (Straight((1.1, 2.3), (40.7, 2.3)), StraightLane([1.1, 2.3], [40.7, 2.3])),
+    (Straight((1.1, 2.3), (-40.7, 2.3)), StraightLane([1.1, 2.3], [-40.7, 2.3])),
+    (Straight((1.1, 2.3), (1.1, 40.7)), StraightLane([1.1, 2.3], [1.1, 40.7])),
+    (Straight((1.1, 2.3), (1.1, -40.7)), StraightLane([1.1, 2.3], [1.1, -40.7])),
     (Arc((3.0, -2.0), 9.0, 0.3, 1.9), CircularLane([3.0, -2.0], 9.0, 0.3, 1.9)),
     (Arc((3.0, -2.0), 13.0, 1.9, 0.3, clockwise=False), CircularLane([3.0, -2.0], 13.0, 1.9, 0.3, clockwise=False)),
     (Sine((0.0, 0.0), (80.0, 0.0), 2.0, 0.1, 0.5), SineLane([0.0, 0.0], [80.0, 0.0], 2.0, 0.1, 0.5)),

@@ -5,9 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from highway_env.vehicle.objects import RoadObject
-from numpy.typing import NDArray
 
+from codriving.environment.drivers.body import Body, body
 from codriving.environment.drivers.style import DriverTraits
 from codriving.environment.traffic.hidden import Hidden
 from codriving.environment.traffic.right_of_way import (
@@ -33,45 +32,47 @@ TIMES = np.arange(0.25, 6.01, 0.25)  # Times at which a driver looks whether it 
 LONGEST = 3.0  # Reactions take no longer [s]
 
 
-class DelayedVehicle:
-    """A vehicle as it was seen some time ago, where it would be if it had gone straight on at that speed."""
-
-    __slots__ = ("LENGTH", "WIDTH", "heading", "position", "speed")
-    solid = True
-
-    def __init__(self, vehicle: RoadObject, x: float, y: float, heading: float, speed: float, age: float) -> None:
-        way = speed * age
-        self.position: NDArray[np.float64] = np.array((x + way * np.cos(heading), y + way * np.sin(heading)))
-        self.heading, self.speed, self.LENGTH, self.WIDTH = heading, speed, vehicle.LENGTH, vehicle.WIDTH
+# Where a vehicle was [m, m], its heading [rad] with cosine and sine, and its speed [m/s].
+_Place = tuple[float, float, float, float, float, float]
 
 
 class Past:
     """Where all vehicles were in the last seconds."""
 
     def __init__(self) -> None:
-        self._steps: deque[tuple[dict[RouteFollower, tuple[float, float, float, float]], Hidden]] = deque()
+        self._steps: deque[tuple[dict[RouteFollower, _Place], Hidden]] = deque()
         self._dt = 1.0
 
     def note(self, vehicles: Sequence[RouteFollower], dt: float, hidden: Hidden) -> None:
         """Remember where they are and who sees whom, before a simulation step [s]."""
         self._dt = dt
-        places = {v: (*v.position.tolist(), float(v.heading), float(v.speed)) for v in vehicles}
+        places = {v: (*v.position.tolist(), float(v.heading), *v.facing(), float(v.speed)) for v in vehicles}
         self._steps.append((places, hidden))
         while len(self._steps) * dt > LONGEST:
             self._steps.popleft()
 
     def seen(
         self, driver: RouteFollower, vehicles: Sequence[RouteFollower], reaction: float, hidden: Hidden
-    ) -> list[RoadObject]:
-        """Return the others as a driver sees them, whose reaction takes some time [s]; `hidden` is as it is now."""
+    ) -> list[Body]:
+        """Return the others as a driver sees them, whose reaction takes some time [s]; `hidden` is as it is now.
+
+        Each is where it would be if it had gone straight on at its speed since.
+        """
         ago = min(round(reaction / self._dt), len(self._steps))
         then, hidden = self._steps[-ago] if ago else ({}, hidden)
-        unseen = hidden.get(driver, frozenset())
-        return [
-            DelayedVehicle(v, *then[v], ago * self._dt) if v in then and v is not driver else v
-            for v in vehicles
-            if v not in unseen
-        ]
+        unseen, age = hidden.get(driver, frozenset()), ago * self._dt
+        found: list[Body] = []
+        for vehicle in vehicles:
+            if vehicle is driver or vehicle in unseen:
+                continue
+            place = then.get(vehicle)
+            if place is None:
+                found.append(body(vehicle))
+                continue
+            x, y, heading, cos, sin, speed = place
+            way = speed * age
+            found.append((vehicle, x + way * cos, y + way * sin, heading, speed))
+        return found
 
 
 @dataclass(frozen=True, slots=True)

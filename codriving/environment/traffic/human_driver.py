@@ -7,10 +7,12 @@ from typing import Self
 import numpy as np
 from highway_env.road.road import Road
 from highway_env.vehicle.behavior import IDMVehicle
+from highway_env.vehicle.kinematics import Vehicle
 from highway_env.vehicle.objects import Obstacle, RoadObject
 
 from codriving.datatypes import BLOCKER, LaneId, Manner, Start
 from codriving.environment.drivers.attention import DriverJudgement
+from codriving.environment.drivers.body import Body, facing
 from codriving.environment.drivers.style import DriverMix, DriverTraits
 from codriving.environment.motion import STANDSTILL, clip
 from codriving.environment.settings import Corrections, DriverProfile
@@ -100,21 +102,25 @@ class HumanDriver(RouteFollower, IDMVehicle):
                 self.follow_target_lane()
         self.action = {"steering": steering, "acceleration": clip(self.following_acceleration(), self.ACC_MAX)}
 
-    def step(self, dt: float) -> None:
-        """Move by one simulation step [s]."""
+    def keeps_lane(self) -> bool:
+        """Whether it steers by `keep_lane` when it acts."""
+        return self.stands <= 1e-9 and self.corrections.route_leader and not self.crashed
+
+    def before_step(self, dt: float) -> None:
+        """Note that time passes [s], and keep what was commanded within the limits."""
         self.timer += dt
         self.stands = max(self.stands - dt, 0.0)
         if self.judgement is not None:
             self.judgement.watch(self, dt)
-        super().step(dt)
+        super().before_step(dt)
 
     def following_acceleration(self) -> float:
         """Return IDM's acceleration to the nearest body on the route and the line to wait at, unclipped [m/s2]."""
-        vehicles = self.road.seen_by(self, None if self.traits is None else self.traits.reaction)
-        leader, gap = body_ahead(self, vehicles + self.road.objects, self.sight)
+        bodies = self.road.seen_by(self, None if self.traits is None else self.traits.reaction)
+        leader, gap = body_ahead(self, bodies, self.sight)
         changing = self.lane_index != self.target_lane_index
         wanted = [0.0]
-        if leader is not None and not (changing and self._leaves(leader)):
+        if leader is not None and not (changing and self._leaves(leader[0])):
             # IDM counts from centre to centre; a body that crosses is met at its near side.
             wanted.append(self.gap_behind(leader) / max(gap + self.LENGTH, 0.01))
         lane_end = self.route_path.lane_end - (0.0 if self.traits is None else ROOM)
@@ -128,16 +134,50 @@ class HumanDriver(RouteFollower, IDMVehicle):
             acceleration = min(acceleration, float(self.acceleration(ego_vehicle=self, front_vehicle=ahead)))
         return acceleration
 
-    def gap_behind(self, leader: RoadObject) -> float:
+    def gap_behind(self, leader: Body) -> float:
         """Return the gap that the driver wants behind a body, by how fast it is coming closer [m]."""
-        cos, sin = float(np.cos(self.heading)), float(np.sin(self.heading))
-        x = self.speed * cos - leader.speed * float(np.cos(leader.heading))
-        return self._gap_at(x * cos + (self.speed * sin - leader.speed * float(np.sin(leader.heading))) * sin)
+        thing, _, _, heading, speed = leader
+        cos, sin = self.facing()
+        ahead, aside = facing(thing, heading)
+        x = self.speed * cos - speed * ahead
+        return self._gap_at(x * cos + (self.speed * sin - speed * aside) * sin)
 
     def _gap_at(self, closing: float) -> float:
         """IDM's desired gap [m] at a closing speed [m/s]."""
         comfort = 2 * math.sqrt(-self.COMFORT_ACC_MAX * self.COMFORT_ACC_MIN)
         return float(self.DISTANCE_WANTED + self.speed * self.TIME_WANTED + self.speed * closing / comfort)
+
+    def desired_gap(self, ego_vehicle: Vehicle, front_vehicle: RoadObject, projected: bool = True) -> float:
+        """Return IDM's desired gap [m], as highway-env works it out."""
+        if not projected:
+            return float(super().desired_gap(ego_vehicle, front_vehicle, projected))
+        # The dot product of numpy, since plain products may be rounded differently from its fused ones.
+        direction = ego_vehicle.direction
+        closing = float((ego_vehicle.speed * direction - front_vehicle.velocity).dot(direction))
+        speed, comfort = ego_vehicle.speed, 2 * math.sqrt(-self.COMFORT_ACC_MAX * self.COMFORT_ACC_MIN)
+        return float(self.DISTANCE_WANTED + speed * self.TIME_WANTED + speed * closing / comfort)
+
+    def acceleration(
+        self,
+        ego_vehicle: Vehicle | None,
+        front_vehicle: RoadObject | None = None,
+        rear_vehicle: RoadObject | None = None,
+    ) -> float:
+        """Return the acceleration that IDM expects of a vehicle behind another one [m/s2], as highway-env does."""
+        if not isinstance(ego_vehicle, RouteFollower):
+            return float(super().acceleration(ego_vehicle, front_vehicle, rear_vehicle))
+        wish, limit = ego_vehicle.target_speed, ego_vehicle.lane.speed_limit
+        if limit is not None:
+            wish = min(max(wish, 0), limit)
+        pace = max(ego_vehicle.speed, 0) / max(abs(wish), STANDSTILL)
+        acceleration = float(self.COMFORT_ACC_MAX * (1 - np.power(pace, self.DELTA)))
+        if front_vehicle is not None:
+            gap = ego_vehicle.lane_distance_to(front_vehicle)
+            if abs(gap) <= STANDSTILL:
+                gap = STANDSTILL if gap >= 0 else -STANDSTILL
+            share = self.desired_gap(ego_vehicle, front_vehicle) / gap
+            acceleration -= float(self.COMFORT_ACC_MAX * np.power(share, 2))
+        return acceleration
 
     def free_acceleration(self) -> float:
         """Return IDM's acceleration on a free road [m/s2]: a (1 - (v / v_0)^delta)."""
@@ -166,10 +206,12 @@ class HumanDriver(RouteFollower, IDMVehicle):
 
 BODY_MARGIN = 0.6  # Lateral room that a driver wants beside a body before it counts as out of the way [m]
 
+ROUNDING = 1e-6  # More than what the place of a body on a straight line may be rounded by [m]
+
 LARGE = 8.0  # Longer bodies may be in the way even if their centre is not near it [m]
 
 
-def body_ahead(driver: RouteFollower, others: Sequence[RoadObject], sight: float) -> tuple[RoadObject | None, float]:
+def body_ahead(driver: RouteFollower, bodies: Sequence[Body], sight: float) -> tuple[Body | None, float]:
     """Find the nearest body on the route of a driver."""
     route_path, end = driver.route_path, len(driver.route_path.points) - 2
     first = _row((driver.s - driver.LENGTH) / route_path.spacing, end)
@@ -179,39 +221,72 @@ def body_ahead(driver: RouteFollower, others: Sequence[RoadObject], sight: float
     plain = abs(driver.shift) < 0.5 and last < end
     x, y = driver.position.tolist()
     seen = []
-    for other in others:
-        if other is not driver and other.solid:
-            px, py = other.position.tolist()
-            if math.hypot(px - x, py - y) < sight and (route_path.is_near(px, py) or not plain or other.LENGTH > LARGE):
-                seen.append((other, px, py))
-    best: tuple[RoadObject | None, float] = (None, math.inf)
+    for one in bodies:
+        thing, px, py, _, _ = one
+        if thing is driver or not thing.solid or math.hypot(px - x, py - y) >= sight:
+            continue
+        if not plain or thing.LENGTH > LARGE or route_path.is_near(px, py):
+            seen.append(one)
+    best: tuple[Body | None, float] = (None, math.inf)
     if not seen:
         return best
+    if route_path.is_straight:
+        return _ahead_on_straight(driver, seen, first, last, end)
     rows = slice(first, last + 2)
-    places = np.array([(px, py) for _, px, py in seen])
+    places = np.array([one[1:3] for one in seen])
     dx, dy = route_path.x[rows] - places[:, :1], route_path.y[rows] - places[:, 1:]
-    for (other, px, py), k in zip(seen, (dx**2 + dy**2).argmin(axis=1).tolist(), strict=True):
+    for one, k in zip(seen, (dx * dx + dy * dy).argmin(axis=1).tolist(), strict=True):
         if 0 < k == last + 1 - first and last < end:
             continue
-        gap = _gap(driver, other, px, py, first + k)
+        gap = _gap(driver, one, first + k)
         if gap < best[1]:
-            best = (other, gap)
+            best = (one, gap)
     return best
 
 
-def _gap(driver: RouteFollower, other: RoadObject, x: float, y: float, k: int) -> float:
+def _ahead_on_straight(
+    driver: RouteFollower, seen: Sequence[Body], first: int, last: int, end: int
+) -> tuple[Body | None, float]:
+    """Find the nearest body on a straight route, between two of its points; where each is tells which need a look."""
+    route_path = driver.route_path
+    (x, y), (cos, sin), heading = route_path.points[0], route_path.directions[0], route_path.headings[0]
+    near = []
+    for number, one in enumerate(seen):
+        thing, px, py, turned, _ = one
+        dx, dy = px - x, py - y
+        along = dx * cos + dy * sin
+        half, side = thing.LENGTH / 2, thing.WIDTH / 2
+        # No box reaches farther to the side than this: the sine of an angle is no more than the angle.
+        reach = driver.WIDTH / 2 + min(abs(turned - heading), 1.0) * half + side + BODY_MARGIN
+        if along > driver.s - ROUNDING and abs(dy * cos - dx * sin - driver.shift) <= reach + ROUNDING:
+            near.append((along - half - side, number, along))
+    best, ahead, found = math.inf, -1, None
+    for least, number, along in sorted(near):
+        if least - driver.s - driver.LENGTH / 2 > best + ROUNDING:
+            break
+        one = seen[number]
+        k = route_path.nearest_on_straight(one[1], one[2], along, first, last + 1)
+        if first < k == last + 1 and last < end:
+            continue
+        gap = _gap(driver, one, k)
+        if gap < best or (gap == best < math.inf and number < ahead):
+            best, ahead, found = gap, number, one
+    return found, best
+
+
+def _gap(driver: RouteFollower, one: Body, k: int) -> float:
     """Free distance to a body closest to the k-th point of the route [m]; inf if it isn't ahead and in the way."""
     route_path = driver.route_path
+    thing, x, y, turned, _ = one
     dx, dy = x - route_path.points[k][0], y - route_path.points[k][1]
-    heading = route_path.headings[k]
-    cos, sin = float(np.cos(heading)), float(np.sin(heading))
+    heading, (cos, sin) = route_path.headings[k], route_path.directions[k]
     across = abs(dy * cos - dx * sin - driver.shift)
     ahead = k * route_path.spacing + (dx * cos + dy * sin) - driver.s
-    half, side = other.LENGTH / 2, other.WIDTH / 2
+    half, side = thing.LENGTH / 2, thing.WIDTH / 2
     # However the body is turned, farther to the side than this it could not be in the way.
     if ahead <= 0 or across > driver.WIDTH / 2 + half + side + BODY_MARGIN:
         return math.inf
-    turn = other.heading - heading
+    turn = turned - heading
     c, s = abs(float(np.cos(turn))), abs(float(np.sin(turn)))
     if across > driver.WIDTH / 2 + (s * half + c * side) + BODY_MARGIN:
         return math.inf

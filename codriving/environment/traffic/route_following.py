@@ -14,7 +14,7 @@ from highway_env.vehicle.objects import RoadObject
 from numpy.typing import NDArray
 
 from codriving.datatypes import Kind, LaneId, Route, Start, beside
-from codriving.environment.motion import PlainMotion
+from codriving.environment.motion import PlainMotion, move
 from codriving.environment.settings import Corrections
 from codriving.errors import ScenarioError
 from codriving.geometry import Path, RoadMap, SpeedProfile
@@ -22,6 +22,8 @@ from codriving.geometry import Path, RoadMap, SpeedProfile
 SINK_MARGIN = 8.0  # A vehicle leaves the road this far before the end of its route [m]
 
 CELL = 8.0  # Side of the squares in which a route notes where it passes [m]
+
+STRAIGHT = 1e-7  # Points no farther from a straight line than this are on it [m]
 
 NEARBY = 10.0  # From a square that a route does not note, every point of it is farther than this [m]
 
@@ -39,6 +41,9 @@ class RoutePath:
     headings: tuple[float, ...]  # Heading at each point [rad]
     spacing: float  # Arc length between two points [m]
     cells: frozenset[tuple[int, int]]
+    directions: tuple[tuple[float, float], ...]  # Cosine and sine of the heading at each point
+    segments: tuple[tuple[float, float, float, float, float], ...]  # Begin, way [m] and squared length of each [m2]
+    is_straight: bool  # Whether the heading is the same everywhere
     lane_end: float = math.inf  # Arc length at which a lane ends that has to be left before [m]; inf if there is none
     ending: LaneId | None = None  # That lane, or None
     profile: SpeedProfile | None = None  # How fast it can be driven, or None if vehicles have no limits
@@ -66,6 +71,25 @@ class RoutePath:
         """Whether a point [m] may be within 10 m of the centre line; the answer is quick and errs towards yes."""
         return (x // CELL, y // CELL) in self.cells
 
+    def nearest_on_straight(self, x: float, y: float, near: float, first: int, last: int) -> int:
+        """Return which of some points is the nearest to a place, about so far along a straight route [m]."""
+        k = min(max(round(near / self.spacing), first), last)
+        here = square(self.points[k], x, y)
+        while k < last and (there := square(self.points[k + 1], x, y)) < here:
+            k, here = k + 1, there
+        # Of two that are as near the first one.
+        while k > first and (there := square(self.points[k - 1], x, y)) <= here:
+            k, here = k - 1, there
+        return k
+
+    def project(self, x: float, y: float) -> tuple[float, float]:
+        """Return what `path.project` does; on a straight route sooner."""
+        if not self.is_straight:
+            return self.path.project(x, y)
+        (x0, y0), (cos, sin) = self.points[0], self.directions[0]
+        along = (x - x0) * cos + (y - y0) * sin
+        return self.path.project_at(self.nearest_on_straight(x, y, along, 0, len(self.points) - 1), x, y)
+
     def follow(self, x: float, y: float, near: float) -> tuple[float, float]:
         """Return arc length and lateral offset [m] of a point that has moved on a little.
 
@@ -73,16 +97,35 @@ class RoutePath:
         """
         points, last = self.points, len(self.points) - 1
         k = min(max(round(near / self.spacing), 0), last)
-        here = _square(points[k], x, y)
+        here = square(points[k], x, y)
         for direction in (1, -1):
-            while 0 <= k + direction <= last and (there := _square(points[k + direction], x, y)) < here:
+            while 0 <= k + direction <= last and (there := square(points[k + direction], x, y)) < here:
                 k, here = k + direction, there
+        if k in (0, last):
+            return self.path.project_at(k, x, y)
+        # As `path.project_at` does, from what is known of the two segments.
+        before, t, side = _on_segment(self.segments[k - 1], x, y)
+        after, t_after, side_after = _on_segment(self.segments[k], x, y)
+        if before < after:
+            return (k - 1 + t) * self.spacing, math.copysign(math.sqrt(before), side)
+        if after < before:
+            return (k + t_after) * self.spacing, math.copysign(math.sqrt(after), side_after)
         return self.path.project_at(k, x, y)
 
 
-def _square(point: tuple[float, float], x: float, y: float) -> float:
+def square(point: tuple[float, float], x: float, y: float) -> float:
+    """Return the squared distance of a place from a point [m2]."""
     dx, dy = point[0] - x, point[1] - y
     return dx * dx + dy * dy
+
+
+def _on_segment(segment: tuple[float, float, float, float, float], x: float, y: float) -> tuple[float, float, float]:
+    """Return the squared distance from a segment [m2], the nearest place on it (0 to 1), and a sign for the side."""
+    x0, y0, dx, dy, length = segment
+    px, py = x - x0, y - y0
+    t = (px * dx + py * dy) / length
+    t = 0.0 if t < 0.0 else min(t, 1.0)
+    return (px - t * dx) ** 2 + (py - t * dy) ** 2, t, dx * py - dy * px
 
 
 def route_path(road_map: RoadMap, route: str, profile: SpeedProfile | None = None) -> RoutePath:
@@ -100,7 +143,22 @@ def route_path(road_map: RoadMap, route: str, profile: SpeedProfile | None = Non
     left: tuple[float, LaneId | None] = next(
         ((s + found.taper / 2, lane) for (lane, other), s in changes if beside(lane, other)), (math.inf, None)
     )
-    return RoutePath(found, path, starts, x, y, points, headings, path.spacing, _cells(x, y), left[0], left[1], profile)
+    directions = tuple(zip(np.cos(path.headings).tolist(), np.sin(path.headings).tolist(), strict=True))
+    segments = tuple(_segment(*pair) for pair in pairwise(points))
+    shape = points, headings, path.spacing, _cells(x, y), directions, segments, _is_straight(path)
+    return RoutePath(found, path, starts, x, y, *shape, left[0], left[1], profile)
+
+
+def _is_straight(path: Path) -> bool:
+    (x, y), (x0, y0), heading = path.points.T, path.points[0], path.headings[0]
+    along = np.arange(len(x)) * path.spacing
+    aside = np.hypot(x0 + along * np.cos(heading) - x, y0 + along * np.sin(heading) - y)
+    return bool((path.headings == heading).all() and aside.max() < STRAIGHT)
+
+
+def _segment(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float, float, float, float]:
+    dx, dy = other[0] - one[0], other[1] - one[1]
+    return (*one, dx, dy, dx * dx + dy * dy)
 
 
 def _cells(x: NDArray[np.float64], y: NDArray[np.float64]) -> frozenset[tuple[int, int]]:
@@ -195,10 +253,13 @@ class RouteFollower(PlainMotion):
             self._find_lane()
 
     def on_state_update(self) -> None:
-        """Update the lane after a step of the dynamics."""
+        """Update the lane after a change of the place."""
+        self.moved_to(*self.position.tolist())
+
+    def moved_to(self, x: float, y: float) -> None:
+        """Update place on the route and lane [m]."""
         if not self.corrections.route_lane:
             super().on_state_update()
-        x, y = self.position.tolist()
         self.s, self.offset = self.route_path.follow(x, y, self.s)
         if self.corrections.route_lane:
             self._find_lane()
@@ -208,17 +269,26 @@ class RouteFollower(PlainMotion):
         lanes = self.road.network.graph[start][end]
         self.shift = 0.0
         if len(lanes) > 1:
-            sides = [lane.local_coordinates(self.position) for lane in lanes]
-            index = min(range(len(lanes)), key=lambda i: abs(sides[i][1]))
-            self.shift = self.offset - sides[index][1]
+            sides = [lane.local_coordinates(self.position)[1] for lane in lanes]
+            aside = [abs(side) for side in sides]
+            index = aside.index(min(aside))
+            self.shift = self.offset - sides[index]
         self.lane_index = (start, end, index)
         self.lane = lanes[index]
 
     def step(self, dt: float) -> None:
         """Move by one simulation step [s], within the limits, and never backwards if that is corrected."""
+        self.before_step(dt)
+        move((self,), dt)
+        self.after_step()
+
+    def before_step(self, dt: float) -> None:
+        """Keep what was commanded within the limits."""
         if self.route_path.profile is not None:
             self.hold(self.route_path.profile.acceleration(self.odometer(dt), self.speed), dt)
-        self.move(dt)
+
+    def after_step(self) -> None:
+        """Correct what the dynamics made of it."""
         if self.corrections.no_reverse and self.speed < 0:
             self.speed = 0.0
 
@@ -230,5 +300,4 @@ class RouteFollower(PlainMotion):
         """Return the distance to another vehicle, positive if it is ahead [m]; along the route if corrected."""
         if other is None or lane is not None or not self.corrections.route_leader:
             return float(super().lane_distance_to(other, lane))
-        s, _ = self.route_path.path.project(float(other.position[0]), float(other.position[1]))
-        return s - self.s
+        return self.route_path.project(*other.position.tolist())[0] - self.s

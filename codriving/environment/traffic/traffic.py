@@ -13,6 +13,8 @@ from highway_env.vehicle.objects import Landmark, Obstacle, RoadObject
 
 from codriving.datatypes import Block
 from codriving.environment.drivers.attention import Past, look_round
+from codriving.environment.drivers.body import Body, body
+from codriving.environment.motion import face, move, steer
 from codriving.environment.network import connected
 from codriving.environment.settings import Corrections
 from codriving.environment.traffic.hidden import Hidden, hidden_vehicles
@@ -54,11 +56,20 @@ class Traffic(RegulatedRoad):
         self.vehicles[:] = vehicles
         self._hidden = None
 
-    def seen_by(self, driver: RouteFollower, reaction: float | None) -> list[RoadObject]:
-        """Return the vehicles that a driver sees, as they are or as they were a reaction time [s] ago."""
+    def seen_by(self, driver: RouteFollower, reaction: float | None) -> list[Body]:
+        """Return the bodies that a driver sees, vehicles as they are or as they were a reaction time [s] ago."""
         if reaction is not None and self.past is not None:
-            return self.past.seen(driver, self.vehicles, reaction, self.hidden)
-        return [v for v in self.vehicles if v not in self.hidden.get(driver, ())] if self.hidden else self.vehicles
+            seen = self.past.seen(driver, self.vehicles, reaction, self.hidden)
+        else:
+            unseen = self.hidden.get(driver, ())
+            seen = [body(v) for v in self.vehicles if v is not driver and v not in unseen]
+        return [*seen, *map(body, self.objects)] if self.objects else seen
+
+    def act(self) -> None:
+        """Let all vehicles decide what they do in the next simulation step."""
+        steer(self.vehicles)
+        face(self.vehicles)
+        super().act()
 
     def step(self, dt: float) -> None:
         """Move all vehicles by one simulation step [s]."""
@@ -77,7 +88,11 @@ class Traffic(RegulatedRoad):
         elif self.steps % every == 0:
             self.enforce_road_rules()
         for vehicle in self.vehicles:
-            vehicle.step(dt)
+            vehicle.before_step(dt)
+        move(self.vehicles, dt)
+        for vehicle in self.vehicles:
+            vehicle.after_step()
+        face(self.vehicles)
         self._hidden = None
 
     def enforce_road_rules(self) -> None:
@@ -137,14 +152,17 @@ class Traffic(RegulatedRoad):
             return super().neighbour_vehicles(vehicle, lane_index)  # type: ignore[no-any-return]
         lane = self.network.get_lane(index)
         own = lane.local_coordinates(vehicle.position)[0]
-        ahead: tuple[RoadObject | None, float] = (None, np.inf)
-        behind: tuple[RoadObject | None, float] = (None, -np.inf)
-        for other in self.vehicles + self.objects:
+        pieces = [(lane, 0.0), *self._connections(index, vehicle)]
+        ahead: tuple[RoadObject | None, float] = (None, math.inf)
+        behind: tuple[RoadObject | None, float] = (None, -math.inf)
+        for other in [*self.vehicles, *self.objects]:
             if other is vehicle or isinstance(other, Landmark):
                 continue
-            for piece, offset in [(lane, 0.0), *self._connections(index, vehicle)]:
+            for piece, offset in pieces:
                 s, lateral = piece.local_coordinates(other.position)
-                if not piece.on_lane(other.position, s, lateral, margin=1):
+                beyond = piece.VEHICLE_LENGTH
+                # As `on_lane` of highway-env, with a margin of a metre.
+                if not (abs(lateral) <= piece.width_at(s) / 2 + 1 and -beyond <= s < piece.length + beyond):
                     continue
                 distance = s + offset - own
                 if 0 <= distance <= ahead[1]:

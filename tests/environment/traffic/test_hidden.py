@@ -122,7 +122,7 @@ def test_what_is_seen_a_reaction_time_ago_is_what_was_in_sight_then(by_hand: Dri
     while len(since) < 2:
         world = env.step({"CAV1": Action.IDLE})
         driver, cav = env._traffic.vehicles
-        told = cav.id in [getattr(v, "id", cav.id) for v in env._traffic.seen_by(driver, 1.0) if v is not driver]
+        told = cav in [thing for thing, *_ in env._traffic.seen_by(driver, 1.0)]
         if not world.hidden and not since:
             since.append(world.time)
             assert not told
