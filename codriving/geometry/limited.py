@@ -1,12 +1,14 @@
 """The near future of vehicles that have limits: step by step, since the speed then depends on the place."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
 from codriving.datatypes import DrivingModel, VehicleLimits
 from codriving.geometry.clearance import Array
 from codriving.geometry.speed_profile import SpeedProfile
+from codriving.geometry.target_steps import TargetSteps
 
 Along = tuple[SpeedProfile, float]  # The speed profile of a route, and the arc length of a vehicle there [m]
 
@@ -17,33 +19,39 @@ class _Tables:
     """Speed profiles of several states, put one after another so that all are looked up at once."""
 
     def __init__(self, along: Sequence[Along], shape: tuple[int, ...], scale: float) -> None:
-        profiles = list({id(profile): profile for profile, _ in along}.values())
-        starts = np.cumsum([0, *(len(profile.base) for profile in profiles)])
-        first = {id(profile): start for profile, start in zip(profiles, starts.tolist(), strict=False)}
-        # As one number of two parts, base and slope are looked up in one go.
-        lines = np.empty(starts[-1], dtype=np.complex128)
-        lines.real = np.concatenate([profile.base for profile in profiles]) * scale
-        lines.imag = np.concatenate([profile.slopes for profile in profiles]) * scale
-        self.lines = lines
+        profiles = tuple(dict.fromkeys(profile for profile, _ in along))
+        starts, self._base, self._slopes = _lines(profiles, scale)
+        first = dict(zip(profiles, starts, strict=True))
+        self._several = len(profiles) > 1
         # A hundred steps write to the same places, with arrays of one shape, which is twice as fast as with columns.
         shape = (len(along), *shape[1:])
-        self.rows, self.now, self.first = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.intp)
-        self.rows.T[...] = [1 / profile.spacing for profile, _ in along]
-        self.now.T[...] = [max(s, 0.0) / profile.spacing for profile, s in along]
-        self.first.T[...] = [first[id(profile)] for profile, _ in along]
-        self._x, self._k, self._found = np.empty(shape), np.empty(shape, dtype=np.intp), np.empty(shape, np.complex128)
-        self._base, self._slope = self._found.real, self._found.imag
+        self._rows, self._now, self._first = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.intp)
+        self._rows.T[...] = [1 / profile.spacing for profile, _ in along]
+        self._now.T[...] = [max(s, 0.0) / profile.spacing for profile, s in along]
+        self._first.T[...] = [first[profile] for profile, _ in along]
+        self._x, self._k = np.empty(shape), np.empty(shape, dtype=np.intp)
+        self._start, self._slope = np.empty(shape), np.empty(shape)
 
     def reference(self, travelled: Array) -> Array:
         """Return the reference speed after some distance [m], in m/s times the scale; good until the next call."""
-        x, k = self._x, self._k
-        np.multiply(travelled, self.rows, x)
-        np.add(x, self.now, x)
+        x, k, slope = self._x, self._k, self._slope
+        np.multiply(travelled, self._rows, x)
+        np.add(x, self._now, x)
         k[...] = x
-        np.add(k, self.first, k)
-        self.lines.take(k, None, self._found, "clip")
-        np.multiply(self._slope, x, x)
-        return np.add(x, self._base, x)
+        if self._several:
+            np.add(k, self._first, k)
+        self._base.take(k, None, self._start, "clip")
+        self._slopes.take(k, None, slope, "clip")
+        np.multiply(slope, x, slope)
+        return np.add(slope, self._start, slope)
+
+
+@lru_cache(maxsize=32)
+def _lines(profiles: tuple[SpeedProfile, ...], scale: float) -> tuple[list[int], Array, Array]:
+    """Return where each profile begins, and base and slopes of all, one after another, times a scale."""
+    starts = np.cumsum([0, *(len(profile.base) for profile in profiles[:-1])]).tolist()
+    base = np.concatenate([profile.base for profile in profiles]) * scale
+    return starts, base, np.concatenate([profile.slopes for profile in profiles]) * scale
 
 
 def limited(
@@ -51,77 +59,63 @@ def limited(
     limits: VehicleLimits,
     speeds: Sequence[float],
     targets: Sequence[float],
-    changes: Array,
-    steps: int,
+    changes: TargetSteps,
     stride: int,
     along: Sequence[Along],
-    paired: bool = False,
-    bounds: bool = False,
-) -> tuple[Array, Array]:
+    places: Array,
+    reached: Array | None = None,
+) -> None:
     """Simulate states under changes of the target speed, as the environment moves them.
 
     Args:
         speeds: Speed of each state (n,) [m/s].
         targets: Target speed of each state (n,) [m/s].
-        changes: Steps of the target speed at each decision (decisions, plans); each for one state if paired. Not a
-            number where the speed that is driven becomes the target.
-        steps: Number of simulation steps.
         stride: Simulation steps between two samples.
         along: The way of each of the first states; curves make no difference to the others.
-        bounds: Whether two plans follow that no other can fall behind and outrun: the lowest and the highest of the
-            target that is kept and the one to which SLOWER and FASTER step.
-
-    Returns:
-        Distance [m] and speed [m/s], each (n, plans, samples + 1), or (n, samples + 1) if paired.
+        places: Where the distance at each sample is put (samples + 1, n, plans), or (samples + 1, n) if paired [m].
+        reached: Where the speed at each sample is put, in the same shape [m/s].
     """
-    low, top = model.target_speeds[0], len(model.target_speeds) - 1
-    span = model.target_speeds[-1] - low
-    if bounds:
-        extremes = np.tile([-1.0, 1.0], (len(changes), 1))
-        changes = np.concatenate((changes, extremes), axis=1)
-    holds = np.isnan(changes)
-    holding = [bool(row.any()) for row in holds]
-    shape = (len(speeds),) if paired else (len(speeds), changes.shape[1])
-    # Speeds are counted in metres a step, which saves two operations out of ten.
-    step = model.step
-    v, goal, s, pedal = np.empty(shape), np.empty(shape), np.zeros(shape), np.empty(shape)
-    v.T[...], goal.T[...] = np.multiply(speeds, step), np.multiply(targets, step)
-    # Numpy takes two arrays of one shape in half the time of an array and a number.
-    hardest, slowest = np.full(shape, limits.acceleration * step**2), np.full(shape, -limits.braking * step**2)
-    gains = np.full(shape, model.speed_gain * model.step)
-    tables = _Tables(along, shape, step) if along else None
-    here = s[: len(along)]
-    samples, substeps = steps // stride, model.substeps
-    distances, reached = np.zeros((samples + 1, *shape)), np.empty((samples + 1, *shape))
-    reached[0] = v
-    for n in range(samples * stride):
+    shape, here, substeps = changes.shape, len(along), model.substeps
+    # Speeds are counted in metres a step, which saves two operations out of ten. Numpy takes an array and a scalar that
+    # is an array, too, as fast as two arrays of one shape, and much faster than an array and a number.
+    step, gain = np.array(model.step), np.array(model.speed_gain * model.step)
+    hardest, slowest = np.array(limits.acceleration * model.step**2), np.array(-limits.braking * model.step**2)
+    v, goal, kept, s, pedal = np.empty(shape), np.empty(shape), np.empty(shape), np.zeros(shape), np.empty(shape)
+    v.T[...], goal.T[...] = np.multiply(speeds, model.step), np.multiply(targets, model.step)
+    tables = _Tables(along, shape, model.step) if along else None
+    aim, travelled = np.empty(shape), s[:here]
+    told = aim[:here]
+    places[0] = s
+    if reached is not None:
+        reached[0] = v
+    for n in range((len(places) - 1) * stride):
         if n % substeps == 0:
-            change = changes[n // substeps]
+            goal, kept = kept, goal
             # Halfway between two target speeds rounding decides, so speeds that are given are taken as they are.
-            speed = v / step if n else np.broadcast_to(np.reshape(speeds, (-1, *(1,) * (len(shape) - 1))), shape)
-            index = np.minimum(np.maximum(np.rint((speed - low) / span * top), 0), top) + change
-            stepped = (low + span / top * np.minimum(np.maximum(index, 0), top)) * step
-            kept = goal
-            goal = np.where(change == 0, kept, stepped)
-            if holding[n // substeps]:
-                np.copyto(goal, v, where=holds[n // substeps])
-            if bounds:
-                goal[:, -2] = np.minimum(kept[:, -2], stepped[:, -2])
-                goal[:, -1] = np.maximum(kept[:, -1], stepped[:, -1])
-            aim, wanted = goal.copy(), goal[: len(along)]
-            told = aim[: len(along)]
+            if n:
+                np.divide(v, step, goal)
+            else:
+                goal.T[...] = speeds
+            changes.apply(n // substeps, goal, goal, kept, v, step)
+            wanted = goal[:here]
+            if tables is None:
+                aim = goal
+            else:
+                aim[here:] = goal[here:]
         if tables is not None:
-            np.minimum(wanted, tables.reference(here), out=told)
+            np.minimum(wanted, tables.reference(travelled), out=told)
         np.subtract(aim, v, pedal)
-        np.multiply(pedal, gains, pedal)
+        np.multiply(pedal, gain, pedal)
         np.minimum(pedal, hardest, out=pedal)
         np.maximum(pedal, slowest, out=pedal)
         np.add(s, v, s)
         np.add(v, pedal, v)
         if (n + 1) % stride == 0:
-            distances[(n + 1) // stride], reached[(n + 1) // stride] = s, v
-    reached /= step
-    return np.ascontiguousarray(np.moveaxis(distances, 0, -1)), np.ascontiguousarray(np.moveaxis(reached, 0, -1))
+            places[(n + 1) // stride] = s
+            if reached is not None:
+                reached[(n + 1) // stride] = v
+    if reached is not None:
+        reached /= step
 
 
 def driven(along: Along, speed: float, most: float, pedal: float, times: Array) -> Array:

@@ -8,7 +8,7 @@ from math import nan
 import numpy as np
 
 from codriving.datatypes import Action, DrivingModel
-from codriving.geometry import Along, Array, limited
+from codriving.geometry import Along, Array, TargetSteps, limited
 
 Plan = tuple[Action, ...]  # Actions, one a decision; the last one is repeated for ever
 
@@ -77,6 +77,16 @@ def _changes(plans: tuple[Plan, ...], decisions: int) -> Array:
 _known_changes = lru_cache(maxsize=64)(_changes)  # The same for libraries, which are asked for at every step
 
 
+def _target_steps(
+    model: DrivingModel, plans: tuple[Plan, ...], decisions: int, states: int, paired: bool, bounds: bool
+) -> TargetSteps:
+    """What plans ask of so many states."""
+    return TargetSteps(model, _changes(plans, decisions), states, paired, bounds)
+
+
+_known_target_steps = lru_cache(maxsize=32)(_target_steps)  # Those of libraries, which are asked for at every step
+
+
 @dataclass(frozen=True, slots=True)
 class _Law:
     """The speed law between two decisions, and the allowed targets as numbers."""
@@ -123,8 +133,10 @@ def rollout(
         Distance travelled [m] and speed [m/s], each (n, len(plans), steps + 1), the first column being now.
     """
     if model.limits is not None:
-        changes = _known_changes(plans, -(-steps // model.substeps))
-        return limited(model, model.limits, speeds, targets, changes, steps, 1, along)
+        changes = _known_target_steps(model, plans, -(-steps // model.substeps), len(speeds), False, False)
+        places, paces = (np.empty((steps + 1, *changes.shape)) for _ in range(2))
+        limited(model, model.limits, speeds, targets, changes, 1, along, places, paces)
+        return _by_state(places), _by_state(paces)
     law = _law(model)
     shape = (len(speeds), len(plans))
     v = np.broadcast_to(np.array(speeds, dtype=np.float64)[:, None], shape)
@@ -156,48 +168,38 @@ def travelled(
 
     Where vehicles have limits and are not paired, the lowest and the highest bound of all plans follow as two more.
     """
-    law, substeps = _law(model), model.substeps
-    decisions = -(-samples * stride // substeps)
-    changes = _changes(plans, decisions) if paired else _known_changes(plans, decisions)
+    substeps, decisions = model.substeps, -(-samples * stride // model.substeps)
+    bounds = model.limits is not None and not paired
+    steps_of = _target_steps if paired else _known_target_steps
+    changes = steps_of(model, plans, decisions, len(speeds), paired, bounds)
+    found = np.empty((samples + 1, *changes.shape))
     if model.limits is not None:
-        return limited(
-            model, model.limits, speeds, targets, changes, samples * stride, stride, along, paired, not paired
-        )[0]
-    shape = (len(speeds),) if paired else (len(speeds), len(plans))
-    v, goals, excess = np.empty(shape), np.empty((decisions + 1, *shape)), np.empty((decisions, *shape))
-    v.T[...], goals[-1].T[...] = speeds, targets
-    # No plan steps beyond the highest or lowest target; where the target stays it is copied from the decision before.
-    least, most, stays = np.maximum(changes, 0), law.top + np.minimum(changes, 0), changes == 0
-    holds = np.isnan(changes)
-    holding = [bool(row.any()) for row in holds]
+        limited(model, model.limits, speeds, targets, changes, stride, along, found)
+        return _by_state(found)
+    law, shape = _law(model), changes.shape
+    v, place, goal, kept, part = (np.empty(shape) for _ in range(5))
+    v.T[...], goal.T[...], place[...], found[0] = speeds, targets, 0.0, 0.0
+    left, elapsed, summed = (np.array(each[-1]) for each in (law.left, law.elapsed, law.summed))
     for k in range(decisions):
-        goal, over = goals[k], excess[k]
-        np.subtract(v, law.low, out=goal)
-        goal /= law.span
-        goal *= law.top
-        np.rint(goal, out=goal)
-        goal += changes[k]
-        np.maximum(goal, least[k], out=goal)
-        np.minimum(goal, most[k], out=goal)
-        goal *= law.spacing
-        goal += law.low
-        np.copyto(goal, goals[k - 1], where=stays[k])
-        if holding[k]:
-            np.copyto(goal, v, where=holds[k])
-        np.subtract(v, goal, out=over)
-        np.multiply(over, law.left[-1], out=v)
-        v += goal
-    # Distances add up in the order of `rollout`: what the target gives, then what the excess gives, at each decision.
-    parts = np.zeros((2 * decisions + 1, *shape))
-    np.multiply(goals[:-1], law.elapsed[-1], out=parts[1::2])
-    np.multiply(excess, law.summed[-1], out=parts[2::2])
-    places = np.add.accumulate(parts, axis=0)[::2]
-    when = np.arange(1, samples + 1) * stride - 1
-    decision, since = when // substeps, when % substeps
-    found = np.zeros((*shape, samples + 1))
-    later = np.moveaxis(found, -1, 0)[1:]
-    factors = (len(when), *(1,) * len(shape))
-    moved = goals[decision] * law.elapsed[since].reshape(factors)
-    moved += places[decision]
-    np.add(moved, excess[decision] * law.summed[since].reshape(factors), out=later)
-    return found
+        goal, kept = kept, goal
+        changes.apply(k, v, goal, kept, v)
+        over = np.subtract(v, goal, v)
+        # Samples until the next decision, and the steps since this one at each of them.
+        first, last = k * substeps // stride, min((k + 1) * substeps // stride, samples)
+        since = (np.arange(first + 1, last + 1) * stride - 1 - k * substeps).reshape(-1, *(1,) * len(shape))
+        # Distances add up in the order of `rollout`: what the target gives, then what the excess gives.
+        moved = np.multiply(goal, law.elapsed[since], out=found[first + 1 : last + 1])
+        moved += place
+        moved += over * law.summed[since]
+        np.multiply(goal, elapsed, part)
+        np.add(place, part, place)
+        np.multiply(over, summed, part)
+        np.add(place, part, place)
+        np.multiply(over, left, v)
+        np.add(v, goal, v)
+    return _by_state(found)
+
+
+def _by_state(samples: Array) -> Array:
+    """Turn an array that has a row for each time into one with the times last."""
+    return np.ascontiguousarray(np.moveaxis(samples, 0, -1))
