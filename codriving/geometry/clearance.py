@@ -22,13 +22,16 @@ REACTION = 1.0  # Time after which a driver brakes for a vehicle that is in the 
 BRAKING = 4.0  # Braking that can be expected of a driver for a vehicle that is in the way [m/s2]
 
 
-def stays_behind(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: float) -> Flags:
+def stays_behind(
+    zone: ConflictZone, ego: Array, other: Array, lag: int, pad: float, farthest: Array | None = None
+) -> Flags:
     """Whether the ego vehicle enters a zone only after the other one has left the way.
 
     Args:
         ego: Arc length of the ego vehicle over time (plans, n) [m].
         other: Arc length of the other vehicle over time (n,), the least that it may reach [m].
         pad: Additional room along the route [m].
+        farthest: How far any of many motions has come (n,) [m]; worked out if it is not given.
 
     Returns:
         One flag a plan (plans,).
@@ -36,17 +39,24 @@ def stays_behind(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: fl
     # Where the other one was before now is not known; it must have left by now if the ego vehicle enters that soon.
     earlier = np.empty(ego.shape[1])
     earlier[:lag], earlier[lag:] = other[0], other[: ego.shape[1] - lag]
-    # Before any motion comes to the zone there is nothing to look up; of few motions the look is not worth it.
-    first = _reached(zone, ego) if len(ego) > MANY and zone.over_i.begin > -inf else 0
-    ends = zone.over_i.highest(ego[:, first:])
-    ends += pad
-    return np.asarray((ends < earlier[first:]).all(axis=1))
+    if len(ego) > MANY:
+        # Before any motion comes to the zone there is nothing to look up, and nothing after that if the other one is
+        # past it by then; of few motions the look is not worth it.
+        farthest = ego.max(axis=0) if farthest is None else farthest
+        first = _reached(zone, farthest)
+        ego, earlier = ego[:, first:], earlier[first:]
+        if (zone.over_i.most(farthest[first:]) + pad < earlier).all():
+            return np.ones(len(ego), dtype=np.bool_)
+    ends = zone.over_i.highest(ego)
+    if pad:
+        ends += pad
+    return np.asarray((ends < earlier).all(axis=1))
 
 
-def _reached(zone: ConflictZone, ego: Array) -> int:
+def _reached(zone: ConflictZone, farthest: Array) -> int:
     """Return the first step at which any of several motions may be in a zone."""
-    near = ego.max(axis=0) >= zone.over_i.begin
-    return int(near.argmax()) if near.any() else ego.shape[1]
+    near = farthest >= zone.over_i.begin
+    return int(near.argmax()) if near.any() else len(farthest)
 
 
 def stays_ahead(zone: ConflictZone, ego: Array, other: Array, lag: int, pad: float) -> Flags:

@@ -38,6 +38,10 @@ class Band:
         """Return the end of the blocked stretch [m] while one is at s [m]; -inf outside the zone."""
         return np.asarray(self._high.take(self._where(s)))
 
+    def most(self, s: FloatArray) -> FloatArray:
+        """Return what `highest` is at most [m] while one is no farther than at s [m]."""
+        return np.asarray(self._most)
+
     def lowest(self, s: ArrayLike) -> FloatArray:
         """Return the start of the blocked stretch [m] while one is at s [m]; +inf outside the zone."""
         return np.asarray(self._low.take(self._where(s)))
@@ -52,6 +56,10 @@ class Band:
     def _high(self) -> FloatArray:
         padded = np.concatenate(([-np.inf], self.high, [-np.inf]))
         return _table(padded, np.maximum(padded[:-1], padded[1:])) + _BULGE
+
+    @cached_property
+    def _most(self) -> float:
+        return float(self._high.max())
 
     @cached_property
     def _low(self) -> FloatArray:
@@ -95,6 +103,10 @@ class FollowingBand:
     def highest(self, s: ArrayLike) -> FloatArray:
         """Return the place of the leader [m] whose tail touches one's nose at s [m]."""
         return np.asarray(s, dtype=np.float64) + self.body
+
+    def most(self, s: FloatArray) -> FloatArray:
+        """Return what `highest` is at most [m] while one is no farther than at s [m]."""
+        return self.highest(s)
 
     def lowest(self, s: ArrayLike) -> FloatArray:
         """Return the place of the follower [m] whose nose touches one's tail at s [m]."""

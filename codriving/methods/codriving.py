@@ -138,7 +138,7 @@ class CoDriving(Judging, ModelMethod):
 
 def perception_at(cda: CdaLevel, road_map: RoadMap, model: DrivingModel, by_zone: bool = False) -> Perception:
     """Return what CAVs perceive that cooperate so far."""
-    forecast = Forecast(model, (*CONTINUATIONS, *plan_library(model)), road_map)
+    forecast = Forecast(model, (*plan_library(model), *CONTINUATIONS), road_map)
     states = SharedStates() if cda.state_sharing else SensedStates()
     intents = SHARED_INTENTS if cda.intent_sharing else HIDDEN_INTENTS
     return Perception(road_map, forecast, Tracking(road_map), states, intents, by_zone=by_zone)

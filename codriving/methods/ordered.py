@@ -54,7 +54,7 @@ class Ordered(Judging):
 
     def reset(self, road_map: RoadMap, model: DrivingModel, seed: int) -> None:
         """Begin an episode; nothing is remembered from the one before."""
-        forecast = Forecast(model, (*CONTINUATIONS, *plan_library(model), *self.executor.own_plans), road_map)
+        forecast = Forecast(model, (*plan_library(model), *CONTINUATIONS, *self.executor.own_plans), road_map)
         known = Tracking(road_map), SharedStates(), SHARED_INTENTS
         self._perception = self.judged(Perception(road_map, forecast, *known, by_zone=self.executor.by_zone))
         self._requests, self._lag = LaneRequests(), round(self.executor.margin / forecast.sample)

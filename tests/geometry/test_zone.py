@@ -201,3 +201,9 @@ def test_both_limits_in_one_go_are_those_one_by_one(band: Band | FollowingBand, 
     assert low.tobytes() == band.lowest(places).tobytes()
     assert high.tobytes() == band.highest(places).tobytes()
     assert low.shape == high.shape == places.shape
+
+
+@given(bands() | st.builds(FollowingBand, st.floats(1.0, 9.0)), arrays(np.float64, 6, elements=numbers), numbers)
+def test_no_place_that_is_no_farther_blocks_more(band: Band | FollowingBand, places: np.ndarray, end: float) -> None:
+    before = places[places <= end]
+    assert (band.highest(before) <= band.most(np.array([end]))).all()

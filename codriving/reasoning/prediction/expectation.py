@@ -206,8 +206,10 @@ def keeps_order(
 def _keeps(places: Array, bounds: Iterable[Bound]) -> Flags:
     """Whether motions stay behind others."""
     keeps: Flags = np.ones(len(places), dtype=np.bool_)
+    farthest: Array | None = None
     for zone, other, after, halts, leads in bounds:
-        behind = stays_behind(zone, places, other[: places.shape[1]], after, 0.0)
+        farthest = places.max(axis=0) if farthest is None else farthest
+        behind = stays_behind(zone, places, other[: places.shape[1]], after, 0.0, farthest)
         if leads and not behind.all():
             behind |= stays_ahead(zone, places, other[: places.shape[1]], after, 0.0)
         keeps &= behind

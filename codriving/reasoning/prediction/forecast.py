@@ -1,14 +1,14 @@
 """Bounds and expectations of how far each vehicle comes: the shared predictor of all reasoning."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from codriving.datatypes import Action, DrivingModel, TrackedVehicle
 from codriving.geometry import Along, Array, RoadMap, accelerated, covered_after, driven
-from codriving.reasoning.prediction.rollout import Plan, canonical, travelled
+from codriving.reasoning.prediction.rollout import Library, Plan, canonical, travelled
 
 HORIZON = 10.0  # How far ahead each vehicle is predicted [s]; a stop from top speed and a crossing both fit in
 
@@ -46,13 +46,26 @@ BRAKE: Plan = (Action.SLOWER,)
 GO: Plan = (Action.FASTER,)
 
 
-@dataclass(frozen=True, slots=True)
 class Reach:
-    """How far a vehicle may come from now on."""
+    """How far a vehicle may come from now on; each distance is worked out when it is first needed."""
 
-    least: Array  # Distance if it brakes as hard as it can (steps + 1,) [m]
-    steady: Array  # Distance if it keeps its speed (steps + 1,) [m]
-    most: Array  # Distance if it accelerates as hard as it can (steps + 1,) [m]
+    def __init__(self, least: Callable[[], Array], steady: Callable[[], Array], most: Callable[[], Array]) -> None:
+        self._least, self._steady, self._most = least, steady, most
+
+    @cached_property
+    def least(self) -> Array:
+        """Distance if it brakes as hard as it can (steps + 1,) [m]."""
+        return self._least()
+
+    @cached_property
+    def steady(self) -> Array:
+        """Distance if it keeps its speed (steps + 1,) [m]."""
+        return self._steady()
+
+    @cached_property
+    def most(self) -> Array:
+        """Distance if it accelerates as hard as it can (steps + 1,) [m]."""
+        return self._most()
 
 
 # Route and arc length of a vehicle [m]; where vehicles have no limits they make no difference.
@@ -78,6 +91,7 @@ class Forecast:
         self.steps = round(HORIZON / self.sample)
         self.times: Array = np.arange(self.steps + 1, dtype=np.float64) * self.sample
         self._clock: list[float] = self.times.tolist()
+        self._first: Array = np.minimum(self.times, 1.0)  # Time of each sample within the first second [s]
         self._profiles = {} if road_map is None else road_map.speed_profiles(model)
         self._legal = {} if road_map is None else {route: road_map.speed_limit(route) for route in road_map.routes}
         self._limited = bool(self._profiles)
@@ -89,11 +103,11 @@ class Forecast:
         known = (plan for plan in library if model.steady or Action.HOLD not in plan)
         asked = tuple(dict.fromkeys((*known, BRAKE, GO)))
         # Plans that mean the same, written differently, are worked out once.
-        self._library = tuple(dict.fromkeys(canonical(plan) for plan in asked))
+        self._library = Library(dict.fromkeys(canonical(plan) for plan in asked))
         rows = {plan: k for k, plan in enumerate(self._library)}
         self._index = {plan: rows[canonical(plan)] for plan in asked}
         self._asked: tuple[Plan, ...] = ()
-        self._rows: NDArray[np.intp] = np.empty(0, dtype=np.intp)
+        self._rows: NDArray[np.intp] | slice = slice(0)
         self._along: dict[tuple[float, Where], tuple[Along, ...]] = {}
         self._travel: dict[State, Array] = {}
         self._reach: dict[tuple[bool, float, Where], Reach] = {}
@@ -130,6 +144,7 @@ class Forecast:
             along = [(self._profiles[route], place) for *_, route, place in new if (route, place) != NOWHERE]
             speeds, targets, *_ = zip(*new, strict=True)
             distances = travelled(self.model, speeds, targets, self._library, self.steps, self._stride, along=along)
+            distances.setflags(write=False)
             self._travel.update(zip(new, distances, strict=True))
 
     def travel_each(self, states: Sequence[State], plans: Sequence[Plan]) -> Array:
@@ -150,7 +165,7 @@ class Forecast:
             target: Target speed now [m/s].
 
         Returns:
-            Distance travelled (len(plans), steps + 1) [m].
+            Distance travelled (len(plans), steps + 1) [m]; not to be written to, since others may be given the same.
         """
         return self._travels(speed, target, where)[self._rows_of(plans)]
 
@@ -161,14 +176,17 @@ class Forecast:
             self._predict([state])
         return self._travel[state]
 
-    def _rows_of(self, plans: Sequence[Plan]) -> NDArray[np.intp]:
+    def _rows_of(self, plans: Sequence[Plan]) -> NDArray[np.intp] | slice:
         """Rows of several plans in the library."""
         if plans is not self._asked:
             rows = np.array([self._index[plan] for plan in plans], dtype=np.intp)
             if not isinstance(plans, tuple) or len(plans) <= FEW:
                 return rows
-            # A long tuple is a library that is asked for again and again; looking at every plan of it takes long.
-            self._asked, self._rows = plans, rows
+            # A long tuple is a library that is asked for again and again; looking at every plan of it takes long. Rows
+            # that follow one another need not be copied.
+            first, last = int(rows[0]), int(rows[0]) + len(rows)
+            follow = bool((rows == np.arange(first, last)).all())
+            self._asked, self._rows = plans, slice(first, last) if follow else rows
         return self._rows
 
     def reach(self, speed: float, is_cav: bool, where: Where = NOWHERE) -> Reach:
@@ -196,14 +214,15 @@ class Forecast:
         # It may be past a curve that it is taken to be in.
         farther = self.reach(fast, is_cav, (where[0], where[1] + told.ahead)).most
         most = np.maximum(self.reach(fast, is_cav, where).most, farther) + told.ahead
-        return Reach(least, self.reach(speed, is_cav, where).steady, most)
+        steady = self.reach(speed, is_cav, where).steady
+        return Reach(lambda: least, lambda: steady, lambda: most)
 
     def fastest(self, is_cav: bool) -> float:
         """Return the highest speed that a vehicle is expected to have [m/s]."""
         return self.model.top_speed + (0.0 if is_cav else SPEEDING)
 
     def _bounds(self, speed: float, is_cav: bool, where: Where) -> Reach:
-        steady = self._steady(speed, where)
+        steady = partial(self._steady, speed, where)
         if is_cav:
             # Without limits neither depends on the present target, so that of any state with this speed will do.
             here = self._state(speed, speed, where)[2:]
@@ -211,19 +230,32 @@ class Forecast:
             travels = self._travels(speed, target, where)
             rows = (self._index[BRAKE], self._index[GO]) if self.model.limits is None else (-2, -1)
             least, most = travels[rows[0]], travels[rows[1]]
+            if self.model.limits is None:
+                return Reach(lambda: least, steady, lambda: most)
+            return Reach(lambda: self._astray(least), steady, lambda: self._ahead(most, where))
+        return Reach(partial(self._human_least, speed), steady, partial(self._human_most, speed, where))
+
+    def _human_least(self, speed: float) -> Array:
+        least = slowest(speed, self.times, self.model.human_braking)
+        return least if self.model.limits is None else self._astray(least)
+
+    def _human_most(self, speed: float, where: Where) -> Array:
+        pedal = self.model.human_acceleration
+        legal = self._legal[where[0]] if self._limited else self.model.top_speed + SPEEDING
+        if not self._limited:
+            most = accelerated(speed, self.times, legal, pedal)
         else:
-            pedal = self.model.human_acceleration
-            legal = self._legal[where[0]] if self._limited else self.model.top_speed + SPEEDING
-            least = slowest(speed, self.times, self.model.human_braking)
-            if self._limited:
-                most = driven((self._profiles[where[0]], where[1]), speed, legal, pedal, self.times)
-            else:
-                most = accelerated(speed, self.times, legal, pedal)
-        if self.model.limits is None:
-            return Reach(least, steady, most)
+            most = driven((self._profiles[where[0]], where[1]), speed, legal, pedal, self.times)
+        return most if self.model.limits is None else self._ahead(most, where)
+
+    def _astray(self, least: Array) -> Array:
+        """The least that a vehicle comes ahead on its route which drives so far at least."""
         astray = self._strays(least) + (self._across(least) if self._may_change else 0.0)
-        ahead = self._cutting(most, where) + STRAYS[1] * np.minimum(self.times, 1.0)
-        return Reach(np.maximum(least - astray, 0.0), steady, ahead)
+        return np.maximum(least - astray, 0.0)
+
+    def _ahead(self, most: Array, where: Where) -> Array:
+        """The most that a vehicle comes ahead on its route which drives so far at most."""
+        return self._cutting(most, where) + STRAYS[1] * self._first
 
     def _cutting(self, distance: Array, where: Where) -> Array:
         """Distance of a vehicle that cuts all corners: where it drives inside, it takes less time for the same way."""
@@ -237,7 +269,7 @@ class Forecast:
 
     def _strays(self, distance: Array) -> Array:
         share, each_second, at_most = STRAYS
-        return np.asarray(np.minimum(share * distance + each_second * np.minimum(self.times, 1.0), at_most))
+        return np.asarray(np.minimum(share * distance + each_second * self._first, at_most))
 
     def _across(self, distance: Array) -> Array:
         lateral, at_most, width = ACROSS

@@ -1,14 +1,13 @@
 """What CAVs do when they are given lists of actions: highway-env's rule, simulated exactly; the library of plans."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import nan
 
 import numpy as np
 
 from codriving.datatypes import Action, DrivingModel
-from codriving.geometry import Along, Array, TargetSteps, limited
+from codriving.geometry import Along, Array, TargetSteps, every_step, limited, unlimited
 
 Plan = tuple[Action, ...]  # Actions, one a decision; the last one is repeated for ever
 
@@ -40,13 +39,24 @@ def _after(first: Action) -> Iterator[Plan]:
     yield first, Action.SLOWER
 
 
+class Library(tuple[Plan, ...]):
+    """Plans that are looked up at every step; their hash, of a thousand actions, is worked out once."""
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        return super().__hash__()
+
+
 # Every plan: something now, then slowing down or rolling for a while or for good, then going or keeping the speed.
-HOLDING_PLANS: tuple[Plan, ...] = tuple(dict.fromkeys(plan for first in FIRST for plan in _after(first)))
+HOLDING_PLANS = Library(dict.fromkeys(plan for first in FIRST for plan in _after(first)))
 
-PLANS: tuple[Plan, ...] = tuple(plan for plan in HOLDING_PLANS if Action.HOLD not in plan)  # Those of five actions
+PLANS = Library(plan for plan in HOLDING_PLANS if Action.HOLD not in plan)  # Those of five actions
 
 
-def plan_library(model: DrivingModel) -> tuple[Plan, ...]:
+def plan_library(model: DrivingModel) -> Library:
     """Return every plan that a vehicle may follow."""
     return HOLDING_PLANS if model.steady else PLANS
 
@@ -87,30 +97,6 @@ def _target_steps(
 _known_target_steps = lru_cache(maxsize=32)(_target_steps)  # Those of libraries, which are asked for at every step
 
 
-@dataclass(frozen=True, slots=True)
-class _Law:
-    """The speed law between two decisions, and the allowed targets as numbers."""
-
-    low: float
-    span: float
-    top: int
-    spacing: float
-    elapsed: Array
-    summed: Array
-    left: Array
-
-
-@lru_cache(maxsize=64)
-def _law(model: DrivingModel) -> _Law:
-    low, top = model.target_speeds[0], len(model.target_speeds) - 1
-    span = model.target_speeds[-1] - low
-    counts = np.arange(1, model.substeps + 1)
-    left: Array = np.asarray((1 - model.speed_gain * model.step) ** counts, dtype=np.float64)
-    return _Law(
-        low, span, top, span / top, np.asarray(counts * model.step), np.asarray((1 - left) / model.speed_gain), left
-    )
-
-
 def rollout(
     model: DrivingModel,
     speeds: Sequence[float],
@@ -137,21 +123,7 @@ def rollout(
         places, paces = (np.empty((steps + 1, *changes.shape)) for _ in range(2))
         limited(model, model.limits, speeds, targets, changes, 1, along, places, paces)
         return _by_state(places), _by_state(paces)
-    law = _law(model)
-    shape = (len(speeds), len(plans))
-    v = np.broadcast_to(np.array(speeds, dtype=np.float64)[:, None], shape)
-    goal = np.broadcast_to(np.array(targets, dtype=np.float64)[:, None], shape)
-    s = np.zeros(shape)
-    distances, reached = [np.zeros((*shape, 1))], [v[..., None]]
-    for change in _known_changes(plans, -(-steps // model.substeps)):
-        index = np.minimum(np.maximum(np.rint((v - law.low) / law.span * law.top), 0), law.top)
-        goal = np.where(change != 0, law.low + law.spacing * np.minimum(np.maximum(index + change, 0), law.top), goal)
-        goal = np.where(np.isnan(change), v, goal)
-        excess = v - goal
-        distances.append(s[..., None] + goal[..., None] * law.elapsed + excess[..., None] * law.summed)
-        reached.append(goal[..., None] + excess[..., None] * law.left)
-        s, v = distances[-1][..., -1], reached[-1][..., -1]
-    return np.concatenate(distances, axis=-1)[..., : steps + 1], np.concatenate(reached, axis=-1)[..., : steps + 1]
+    return every_step(model, speeds, targets, _known_changes(plans, -(-steps // model.substeps)), steps)
 
 
 def travelled(
@@ -168,35 +140,14 @@ def travelled(
 
     Where vehicles have limits and are not paired, the lowest and the highest bound of all plans follow as two more.
     """
-    substeps, decisions = model.substeps, -(-samples * stride // model.substeps)
-    bounds = model.limits is not None and not paired
+    decisions, bounds = -(-samples * stride // model.substeps), model.limits is not None and not paired
     steps_of = _target_steps if paired else _known_target_steps
     changes = steps_of(model, plans, decisions, len(speeds), paired, bounds)
     found = np.empty((samples + 1, *changes.shape))
     if model.limits is not None:
         limited(model, model.limits, speeds, targets, changes, stride, along, found)
         return _by_state(found)
-    law, shape = _law(model), changes.shape
-    v, place, goal, kept, part = (np.empty(shape) for _ in range(5))
-    v.T[...], goal.T[...], place[...], found[0] = speeds, targets, 0.0, 0.0
-    left, elapsed, summed = (np.array(each[-1]) for each in (law.left, law.elapsed, law.summed))
-    for k in range(decisions):
-        goal, kept = kept, goal
-        changes.apply(k, v, goal, kept, v)
-        over = np.subtract(v, goal, v)
-        # Samples until the next decision, and the steps since this one at each of them.
-        first, last = k * substeps // stride, min((k + 1) * substeps // stride, samples)
-        since = (np.arange(first + 1, last + 1) * stride - 1 - k * substeps).reshape(-1, *(1,) * len(shape))
-        # Distances add up in the order of `rollout`: what the target gives, then what the excess gives.
-        moved = np.multiply(goal, law.elapsed[since], out=found[first + 1 : last + 1])
-        moved += place
-        moved += over * law.summed[since]
-        np.multiply(goal, elapsed, part)
-        np.add(place, part, place)
-        np.multiply(over, summed, part)
-        np.add(place, part, place)
-        np.multiply(over, left, v)
-        np.add(v, goal, v)
+    unlimited(model, speeds, targets, changes, stride, found)
     return _by_state(found)
 
 

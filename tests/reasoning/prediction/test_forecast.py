@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from codriving.datatypes.world import Action, DrivingModel
 from codriving.reasoning.prediction.forecast import BRAKE, GO, Forecast, likely_distances
-from codriving.reasoning.prediction.rollout import rollout
+from codriving.reasoning.prediction.rollout import PLANS, Library, rollout
 
 HORIZON = 10.0
 
@@ -51,6 +51,16 @@ def test_reach_grows_with_time_and_its_bounds_are_ordered(speed: float, is_cav: 
         assert (np.diff(distance) >= -1e-9).all()
     assert (reach.least <= reach.steady + 1e-9).all()
     assert (reach.steady <= reach.most + 1e-9).all()
+
+
+def test_a_library_is_given_whole_and_no_prediction_may_be_written_to() -> None:
+    library, forecast, other = Library(PLANS), Forecast(MODEL, (*PLANS, WAITS)), Forecast(MODEL, (WAITS, *PLANS))
+    assert hash(library) == hash(tuple(library))
+    whole, rows = (each.travel(4.2, 6.0, library) for each in (forecast, other))
+    assert np.array_equal(whole, rows)
+    assert np.shares_memory(whole, forecast.travel(4.2, 6.0, library))
+    with pytest.raises(ValueError, match="read-only"):
+        whole[0, 0] = 1.0
 
 
 FIVE = [action for action in Action if action is not Action.HOLD]
