@@ -1,7 +1,7 @@
 """Which places on two paths cannot be taken at the same time (the collision set)."""
 
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,9 @@ IntArray = NDArray[np.intp]
 # Footprints that overlap by no more than this only touch [m]; rounding must not decide over a whole row of cells.
 TOUCH = 1e-9
 
-_BLOCK = 16  # Path points that are first compared as one disc, so that long paths need little memory
+_BLOCK = 8  # Path points that are first compared as one box, so that few cells are looked at one by one
+
+_SAFE = 1e-3  # What is decided without a test is clear by this much [m]; rounding is far less
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,28 +27,37 @@ class Cells:
     i: IntArray  # Indices on the first path (n,)
     j: IntArray  # Indices on the second path (n,)
 
-    def only(self, mask: NDArray[np.bool_]) -> "Cells":
-        """Return the cells for which a mask (n,) is true."""
-        return Cells(self.i[mask], self.j[mask])
-
-    def ordered(self, count: int) -> "Cells":
-        """Return the cells ordered by j and then by i; the first path has `count` points."""
-        j, i = np.divmod(np.sort(self.j * count + self.i), count)
-        return Cells(i, j)
+    def only(self, chosen: NDArray[np.bool_] | IntArray) -> "Cells":
+        """Return the cells that a mask (n,) or their numbers choose."""
+        return Cells(self.i[chosen], self.j[chosen])
 
 
 def collision_set(path_i: Path, path_j: Path, footprint: Footprint) -> Cells:
     """Return all pairs of path points at which two footprints overlap, ordered by j and then by i."""
-    near = _near_cells(path_i.points, path_j.points, float(np.hypot(footprint.length, footprint.width)))
-    return near.only(cell_separation(path_i, path_j, near, footprint) < -TOUCH).ordered(len(path_i.points))
+    return overlapping(path_i, path_j, footprint)[0]
+
+
+def overlapping(path_i: Path, path_j: Path, footprint: Footprint) -> tuple[Cells, FloatArray]:
+    """Return the collision set, and the squared distance between the points of each cell (n,) [m2]."""
+    near, square = _near_cells(path_i, path_j, footprint)
+    overlap = np.ones(len(square), dtype=np.bool_)
+    unsure = np.flatnonzero(square >= surely(footprint, TOUCH))
+    overlap[unsure] = cell_separation(path_i, path_j, near.only(unsure), footprint) < -TOUCH
+    kept = np.flatnonzero(overlap)
+    return near.only(kept), square[kept]
+
+
+def surely(footprint: Footprint, depth: float) -> float:
+    """Return the squared distance [m2] below which boxes overlap by more than a depth [m], however they are turned."""
+    return max(min(footprint.length, footprint.width) - depth - _SAFE, 0.0) ** 2
 
 
 def cell_separation(path_i: Path, path_j: Path, cells: Cells, footprint: Footprint) -> FloatArray:
     """Return the signed separation of the two footprints at every cell (n,) [m]; negative if they overlap."""
-    heading = path_i.headings[cells.i]
-    turn = path_j.headings[cells.j] - heading
-    dx, dy = (path_j.points[cells.j] - path_i.points[cells.i]).T
-    cos, sin = np.cos(heading), np.sin(heading)
+    i, j = cells.i, cells.j
+    dx, dy = (axis_j.take(j) - axis_i.take(i) for axis_i, axis_j in zip(path_i.axes, path_j.axes, strict=True))
+    cos, sin = path_i.directions[0].take(i), path_i.directions[1].take(i)
+    turn = path_j.headings.take(j) - path_i.headings.take(i)
     return separation(cos * dx + sin * dy, cos * dy - sin * dx, np.cos(turn), np.sin(turn), footprint)
 
 
@@ -57,16 +68,19 @@ def components(cells: Cells) -> IntArray:
     breaks = np.flatnonzero((np.diff(cells.j) != 0) | (np.diff(cells.i) != 1)) + 1
     first = np.concatenate(([0], breaks))
     last = np.concatenate((breaks, [len(cells.i)])) - 1
-    roots = _join_runs(cells.j[first].tolist(), cells.i[first].tolist(), cells.i[last].tolist())
-    _, number = np.unique(roots, return_inverse=True)
+    rows, starts, ends = cells.j[first], cells.i[first], cells.i[last]
+    step = np.diff(rows)
+    if step.all():
+        # One run a row, so that only neighbours can be connected.
+        apart = (step > 1) | (starts[1:] > ends[:-1] + 1) | (ends[1:] < starts[:-1] - 1)
+        number = np.concatenate(([0], np.cumsum(apart)))
+    else:
+        number = np.unique(_join_runs(rows.tolist(), starts.tolist(), ends.tolist()), return_inverse=True)[1]
     return np.repeat(number, last - first + 1)
 
 
 def _join_runs(rows: list[int], starts: list[int], ends: list[int]) -> list[int]:
     """Return for each run of cells in a row the first run that it is connected with."""
-    runs = zip(pairwise(rows), pairwise(starts), pairwise(ends), strict=True)
-    if all(r[1] == r[0] + 1 and s[1] <= e[0] + 1 and e[1] >= s[0] - 1 for r, s, e in runs):
-        return [0] * len(rows)
     parent = list(range(len(rows)))
 
     def root(k: int) -> int:
@@ -88,33 +102,77 @@ def _join_runs(rows: list[int], starts: list[int], ends: list[int]) -> list[int]
     return [root(k) for k in range(len(rows))]
 
 
-def _near_cells(points_i: FloatArray, points_j: FloatArray, reach: float) -> Cells:
-    """Return all cells whose points are at most `reach` [m] apart."""
-    centres_i, radii_i = _discs(points_i)
-    centres_j, radii_j = _discs(points_j)
-    between = np.hypot(*(centres_i[:, None] - centres_j[None]).transpose(2, 0, 1))
-    blocks_i, blocks_j = np.nonzero(between <= radii_i[:, None] + radii_j[None] + reach)
-    # Block by block, so that only what is near is ever numbered.
-    square = np.zeros((len(blocks_i), _BLOCK, _BLOCK))
-    for x_i, x_j in zip(_blocks(points_i), _blocks(points_j), strict=True):
-        offset = x_i[blocks_i][:, :, None] - x_j[blocks_j][:, None, :]
+def _near_cells(path_i: Path, path_j: Path, footprint: Footprint) -> tuple[Cells, FloatArray]:
+    """Return the cells that may overlap, ordered by j and then by i, and the squared distances of their points [m2]."""
+    blocks_i, blocks_j = _blocks(path_i), _blocks(path_j)
+    many_j, many_i = _near_blocks(blocks_j, blocks_i, footprint)
+    # Each point of j with the blocks of i that are near its block, in the order of the points.
+    rows = (many_j[:, None] * _BLOCK + np.arange(_BLOCK)).ravel()
+    order = rows.argsort(kind="stable")
+    rows, many_i = rows[order], many_i[order // _BLOCK]
+    square = np.zeros((len(rows), _BLOCK))
+    for axis_i, axis_j in zip(blocks_i.points, blocks_j.points, strict=True):
+        offset = axis_i.take(many_i, axis=0)
+        offset -= axis_j.take(rows)[:, None]
         offset *= offset
         square += offset
-    block, i, j = np.nonzero(square <= reach**2)
-    return Cells(blocks_i[block] * _BLOCK + i, blocks_j[block] * _BLOCK + j)
+    flat = square.ravel()
+    near = np.flatnonzero(flat <= footprint.length**2 + footprint.width**2 + _SAFE)
+    row = near // _BLOCK
+    return Cells(near + ((many_i - np.arange(len(rows))) * _BLOCK).take(row), rows.take(row)), flat.take(near)
 
 
-def _blocks(points: FloatArray) -> FloatArray:
-    """Return both coordinates of all points, block by block (2, m, block); where there is no point, not a number."""
-    padded = np.full((-(-len(points) // _BLOCK) * _BLOCK, 2), np.nan)
-    padded[: len(points)] = points
-    return padded.T.reshape(2, -1, _BLOCK)
+def _near_blocks(one: "_Blocks", other: "_Blocks", footprint: Footprint) -> tuple[IntArray, IntArray]:
+    """Return the pairs of blocks in which footprints may overlap, in order."""
+    half_long, half_wide = footprint.length / 2, footprint.width / 2
+    reach = one.radii[:, None] + (other.radii + 2 * np.hypot(half_long, half_wide) + _SAFE)
+    square = np.zeros(reach.shape)
+    for axis, axis_b in zip(one.boxes[:2], other.boxes[:2], strict=True):
+        offset = axis_b - axis[:, None]
+        offset *= offset
+        square += offset
+    a, b = np.divmod(np.flatnonzero(square <= reach * reach), len(other.radii))
+    x_a, y_a, cos_a, sin_a, long_a, wide_a, swing_a = one.boxes.take(a, axis=1)
+    x_b, y_b, cos_b, sin_b, long_b, wide_b, swing_b = other.boxes.take(b, axis=1)
+    # A footprint that is turned against the box around the points reaches out less than this.
+    for long, wide, swing in ((long_a, wide_a, swing_a), (long_b, wide_b, swing_b)):
+        long += half_long + _SAFE + half_wide * swing
+        wide += half_wide + _SAFE + half_long * swing
+    dx, dy = x_b - x_a, y_b - y_a
+    c, s = np.abs(cos_a * cos_b + sin_a * sin_b), np.abs(cos_a * sin_b - sin_a * cos_b)
+    meet = np.abs(cos_a * dx + sin_a * dy) <= long_a + long_b * c + wide_b * s
+    meet &= np.abs(cos_a * dy - sin_a * dx) <= wide_a + wide_b * c + long_b * s
+    meet &= np.abs(cos_b * dx + sin_b * dy) <= long_b + long_a * c + wide_a * s
+    meet &= np.abs(cos_b * dy - sin_b * dx) <= wide_b + wide_a * c + long_a * s
+    kept = np.flatnonzero(meet)
+    return a.take(kept), b.take(kept)
 
 
-def _discs(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return centre (m, 2) and radius (m,) of a disc around every block of points."""
-    short = -len(points) % _BLOCK
-    blocks = np.concatenate((points, np.repeat(points[-1:], short, axis=0))).reshape(-1, _BLOCK, 2)
-    centres = (blocks.min(axis=1) + blocks.max(axis=1)) / 2
-    radii: FloatArray = np.hypot(*(blocks - centres[:, None]).transpose(2, 0, 1)).max(axis=1)
-    return centres, radii
+@dataclass(frozen=True, slots=True, eq=False)
+class _Blocks:
+    """Stretches of a path and the boxes around their points."""
+
+    points: FloatArray  # x and y of the points, block by block (2, m, block) [m]; where there is none, not a number
+    # Of each box the centre, the unit vector along it, half its length and width, and the sine of the largest turn of
+    # the path against it (7, m) [m].
+    boxes: FloatArray
+    radii: FloatArray  # Half the diagonal of each box (m,) [m]
+
+
+@lru_cache(maxsize=64)
+def _blocks(path: Path) -> _Blocks:
+    """Divide a path into blocks, once."""
+    count = len(path.headings)
+    numbers = np.arange(-(-count // _BLOCK) * _BLOCK).reshape(-1, _BLOCK)
+    inside = np.minimum(numbers, count - 1)
+    points, headings = path.axes[:, inside], path.headings[inside]
+    middle = headings[:, _BLOCK // 2]
+    swing = np.sin(np.minimum(np.abs(headings - middle[:, None]).max(axis=1), np.pi / 2))
+    cos, sin = np.cos(middle), np.sin(middle)
+    x, y = points.transpose(0, 2, 1)
+    places = np.array((cos * x + sin * y, cos * y - sin * x))
+    low, high = places.min(axis=1), places.max(axis=1)
+    (along, across), (long, wide) = (low + high) / 2, (high - low) / 2
+    points[:, numbers >= count] = np.nan
+    boxes = np.array((cos * along - sin * across, sin * along + cos * across, cos, sin, long, wide, swing))
+    return _Blocks(points, boxes, np.hypot(long, wide))

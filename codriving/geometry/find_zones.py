@@ -6,7 +6,7 @@ import numpy as np
 
 from codriving.datatypes import Relation
 from codriving.geometry.box import Footprint
-from codriving.geometry.collision_set import Cells, IntArray, cell_separation, collision_set, components
+from codriving.geometry.collision_set import Cells, IntArray, cell_separation, components, overlapping, surely
 from codriving.geometry.curve import FloatArray
 from codriving.geometry.path import Path
 from codriving.geometry.zone import Band, ConflictZone
@@ -36,52 +36,69 @@ class Coincidence:
 
 def find_zones(path_i: Path, path_j: Path, footprint: Footprint) -> tuple[ConflictZone, ...]:
     """Return every conflict zone of two different routes, in the order in which route i meets them."""
-    cells = collision_set(path_i, path_j, footprint)
-    depth = -cell_separation(path_i, path_j, cells, footprint)
+    cells, square = overlapping(path_i, path_j, footprint)
     part = components(cells)
-    zones = [
-        _zone(path_i, path_j, cells.only(part == k), footprint)
-        for k in range(int(part.max(initial=-1)) + 1)
-        if depth[part == k].max() > _GRAZE
-    ]
+    zones = []
+    for k in range(int(part.max(initial=-1)) + 1):
+        mine = np.flatnonzero(part == k)
+        zone, apart = cells.only(mine), square[mine]
+        if _meets(path_i, path_j, zone, apart, footprint):
+            zones.append(_zone(path_i, path_j, zone, apart, footprint))
     return tuple(sorted(zones, key=lambda zone: (zone.entry_i, zone.entry_j)))
 
 
-def _zone(path_i: Path, path_j: Path, cells: Cells, footprint: Footprint) -> ConflictZone:
-    over_j = _band(path_i, path_j, cells, footprint)
-    over_i = _band(path_j, path_i, Cells(cells.j, cells.i).ordered(len(path_j.points)), footprint)
-    offset = path_i.points[cells.i] - path_j.points[cells.j]
-    nearest = int(np.einsum("nc,nc->n", offset, offset).argmin())
-    coincidence = classify(path_i, path_j, cells)
+def _meets(path_i: Path, path_j: Path, zone: Cells, square: FloatArray, footprint: Footprint) -> bool:
+    """Whether the footprints more than graze in a connected part of the collision set."""
+    if square.min() < surely(footprint, _GRAZE):
+        return True
+    return bool((-cell_separation(path_i, path_j, zone, footprint)).max() > _GRAZE)
+
+
+def _zone(path_i: Path, path_j: Path, cells: Cells, square: FloatArray, footprint: Footprint) -> ConflictZone:
+    over_j = _band(path_i, path_j, *_rows(cells), footprint)
+    over_i = _band(path_j, path_i, *_columns(cells, len(path_i.points)), footprint)
+    side_by_side = square <= _beside(path_i, path_j) ** 2 + 2 * _OFFSET**2  # These and some more
+    coincidence = classify(path_i, path_j, cells.only(np.flatnonzero(side_by_side)))
     merge_i, merge_j = coincidence.merge or (None, None)
     split_i, split_j = coincidence.split or (None, None)
     entry_i, exit_i, entry_j, exit_j = (
         float(s) for s in (over_j.low.min(), over_j.high.max(), over_i.low.min(), over_i.high.max())
     )
+    nearest = int(square.argmin())
     point_i = float(cells.i[nearest] * path_i.spacing) if merge_i is None else merge_i
     point_j = float(cells.j[nearest] * path_j.spacing) if merge_j is None else merge_j
     places = (entry_i, exit_i, entry_j, exit_j, point_i, point_j)
     return ConflictZone(coincidence.relation, *places, merge_i, merge_j, split_i, split_j, over_i, over_j)
 
 
-def _band(path_i: Path, path_j: Path, cells: Cells, footprint: Footprint) -> Band:
-    """Tabulate over path j what a connected zone, ordered by j and then by i, blocks on path i."""
+def _rows(cells: Cells) -> tuple[IntArray, IntArray, IntArray]:
+    """Return the points of j in a connected zone, and the first and the last cell on i of each."""
     first = np.concatenate(([0], np.flatnonzero(np.diff(cells.j)) + 1))
     last = np.concatenate((first[1:], [len(cells.i)])) - 1
-    rows = cells.j[first]
-    low = _limit(path_i, path_j, cells.i[first], rows, -1, footprint)
-    high = _limit(path_i, path_j, cells.i[last], rows, 1, footprint)
-    return Band(float(rows[0] * path_j.spacing), path_j.spacing, low, high)
+    return cells.j[first], cells.i[first], cells.i[last]
 
 
-def _limit(path_i: Path, path_j: Path, i: IntArray, j: IntArray, step: int, footprint: Footprint) -> FloatArray:
-    """Return the arc length on path i at which the overlap ends [m], interpolated beyond the last overlapping point."""
+def _columns(cells: Cells, count: int) -> tuple[IntArray, IntArray, IntArray]:
+    """Return the points of i, of which there are `count`, and the first and the last cell on j of each."""
+    first, last = np.full(count, -1), np.empty(count, dtype=np.intp)
+    # Cells are ordered by j, and of several values that are assigned to one place the last one stays.
+    first[cells.i[::-1]] = cells.j[::-1]
+    last[cells.i] = cells.j
+    columns = np.flatnonzero(first >= 0)
+    return columns, first[columns], last[columns]
+
+
+def _band(path_i: Path, path_j: Path, j: IntArray, first: IntArray, last: IntArray, footprint: Footprint) -> Band:
+    """Tabulate over path j what a connected zone blocks on path i, from the first to the last cell of each point."""
+    # Where the overlap ends, interpolated between the last overlapping point and the one beyond.
+    i, step = np.concatenate((first, last)), np.repeat((-1, 1), len(j))
     beyond = np.clip(i + step, 0, len(path_i.points) - 1)
-    inner = cell_separation(path_i, path_j, Cells(i, j), footprint)
-    outer = cell_separation(path_i, path_j, Cells(beyond, j), footprint)
+    cells = Cells(np.concatenate((i, beyond)), np.concatenate((j, j, j, j)))
+    inner, outer = cell_separation(path_i, path_j, cells, footprint).reshape(2, -1)
     # At the end of the path there is nothing beyond: the last point itself is the limit.
     share = np.where(beyond == i, 0.0, inner / np.where(beyond == i, 1.0, inner - outer))
-    return np.asarray((i + step * share) * path_i.spacing)
+    low, high = ((i + step * share) * path_i.spacing).reshape(2, -1)
+    return Band(float(j[0] * path_j.spacing), path_j.spacing, low, high)
 
 
 def classify(path_i: Path, path_j: Path, zone: Cells) -> Coincidence:
@@ -114,5 +131,10 @@ def _coincident(path_i: Path, path_j: Path, zone: Cells) -> Cells:
     dx, dy = (path_j.points[parallel.j] - path_i.points[parallel.i]).T
     along = np.abs(np.cos(heading) * dx + np.sin(heading) * dy)
     across = np.abs(np.cos(heading) * dy - np.sin(heading) * dx)
+    return parallel.only((along <= _beside(path_i, path_j)) & (across < _OFFSET))
+
+
+def _beside(path_i: Path, path_j: Path) -> float:
+    """How far apart two points are at most along the road that lie side by side [m]."""
     # The two grids are shifted against each other by up to half a spacing.
-    return parallel.only((along <= 0.55 * max(path_i.spacing, path_j.spacing)) & (across < _OFFSET))
+    return 0.55 * max(path_i.spacing, path_j.spacing)

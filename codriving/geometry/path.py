@@ -24,9 +24,9 @@ class Path:
     _y: FloatArray = field(init=False, repr=False)
     _places: list[list[float]] = field(init=False, repr=False)
     _turns: list[float] = field(init=False, repr=False)
-    _axes: FloatArray = field(init=False, repr=False)  # x and y of the points (2, n) [m]
+    axes: FloatArray = field(init=False, repr=False)  # x and y of the points (2, n) [m]
     _squares: FloatArray = field(init=False, repr=False)  # Their squared distances from the origin (n,) [m2]
-    _directions: FloatArray = field(init=False, repr=False)  # Unit vectors along the path (2, n)
+    directions: FloatArray = field(init=False, repr=False)  # Unit vectors along the path (2, n)
 
     def __post_init__(self) -> None:
         x, y = self.points.T
@@ -36,9 +36,9 @@ class Path:
             ("_y", np.ascontiguousarray(y)),
             ("_places", self.points.tolist()),
             ("_turns", self.headings.tolist()),
-            ("_axes", np.array((x, y))),
+            ("axes", np.array((x, y))),
             ("_squares", x * x + y * y),
-            ("_directions", np.array((np.cos(self.headings), np.sin(self.headings)))),
+            ("directions", np.array((np.cos(self.headings), np.sin(self.headings)))),
         ):
             object.__setattr__(self, name, value)
 
@@ -146,10 +146,10 @@ def progress(path: Path, x: FloatArray, y: FloatArray, heading: FloatArray) -> F
     Returns:
         Arc length (n,) that never falls [m].
     """
-    (px, py), (ux, uy) = path._axes, path._directions
+    (px, py), (ux, uy) = path.axes, path.directions
     # Squared distance, but for what is the same at all points of the path.
-    square = path._squares - 2 * (np.column_stack((x, y)) @ path._axes)
-    towards = np.column_stack((np.cos(heading), np.sin(heading))) @ path._directions
+    square = path._squares - 2 * (np.column_stack((x, y)) @ path.axes)
+    towards = np.column_stack((np.cos(heading), np.sin(heading))) @ path.directions
     square[towards < math.cos(math.pi / 3)] += 1e6
     nearest = square.argmin(axis=1)
     # Linear refinement: how far past the nearest point, along the path there.

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from codriving.datatypes.road import Lane, Straight
-from codriving.geometry.box import PLANNING, corners, overlaps
-from codriving.geometry.collision_set import Cells, collision_set, components
+from codriving.geometry.box import PLANNING, TRUE, Footprint, corners, overlaps
+from codriving.geometry.collision_set import TOUCH, Cells, cell_separation, collision_set, components
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.road_map import RoadMap
 
@@ -25,6 +25,18 @@ def test_it_holds_exactly_the_overlapping_pairs(intersection: RoadMap, one: str,
     assert found.sum() > 100
     assert (found & ~expected).sum() == 0
     assert sorted(zip(cells.j, cells.i, strict=True)) == list(zip(cells.j, cells.i, strict=True))
+
+
+@pytest.mark.parametrize("footprint", [PLANNING, TRUE, Footprint(12.0, 2.6)])
+@pytest.mark.parametrize("pair", [("s-w", "e-n"), ("s-w", "n-e"), ("s-e", "w-s"), ("e-w", "w-e")])
+def test_what_is_decided_without_a_test_is_decided_right(
+    roundabout: RoadMap, pair: tuple[str, str], footprint: Footprint
+) -> None:
+    i, j = (roundabout.paths[name] for name in pair)
+    all_j, all_i = np.indices((len(j.points), len(i.points))).reshape(2, -1)
+    overlap = cell_separation(i, j, Cells(all_i, all_j), footprint) < -TOUCH
+    cells = collision_set(i, j, footprint)
+    assert (cells.i.tolist(), cells.j.tolist()) == (all_i[overlap].tolist(), all_j[overlap].tolist())
 
 
 def test_memory_grows_with_the_length_not_its_square() -> None:
