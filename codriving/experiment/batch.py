@@ -20,7 +20,7 @@ from codriving.experiment.cells import Cell, with_metrics
 from codriving.experiment.film import FilmEpisode
 from codriving.experiment.flows import is_flow
 from codriving.experiment.launchers import Account
-from codriving.experiment.objects import BuildObjects, modules_to_preload
+from codriving.experiment.objects import BuildObjects, given_back, modules_to_preload
 from codriving.experiment.places import FailuresInARow, places
 from codriving.experiment.plan import Plan
 from codriving.experiment.progress import show_progress
@@ -243,7 +243,11 @@ def driving(plan: Plan, build: _Build | None = None) -> Iterator[_DrivenBatch]:
         todo = missing + unfilmed
         try:
             usage = models.usage if models.models else None
-            with stopped_by_signals(), show_progress(Counter(unit.cell for unit in todo), usage) as update:
+            with (
+                given_back(),
+                stopped_by_signals(),
+                show_progress(Counter(unit.cell for unit in todo), usage) as update,
+            ):
                 for part, launcher, workers in places(missing, unfilmed, replace(plan, cells=tuple(cells)), models):
                     failures = FailuresInARow(models.names, models.patience)
                     account = Account(part, launcher, partial(_is_saved, folder))

@@ -1,6 +1,8 @@
 """A resolved config to the objects that drive; done once a process and cell."""
 
-from collections.abc import Iterable, Mapping
+import gc
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -67,7 +69,7 @@ class BuildObjects:
 
     def __call__(self, cell: str) -> Objects:
         """Build them."""
-        return make_objects(self.configs[cell])
+        return _settled(make_objects(self.configs[cell]))
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,28 @@ class BuildWithGiven:
         """Build them."""
         for one in self.given:
             one.offer()
-        return make_objects(self.configs[cell])
+        return _settled(make_objects(self.configs[cell]))
+
+
+def _settled(objects: Objects) -> Objects:
+    """Once a process, take what is there from the garbage collector, modules above all.
+
+    A full collection looks through all of it, for 50 ms in the middle of a decision.
+    """
+    if not gc.get_freeze_count():
+        gc.freeze()
+    return objects
+
+
+@contextmanager
+def given_back() -> Iterator[None]:
+    """Give back to the garbage collector what was taken from it meanwhile: the process may have other work to do."""
+    taken = gc.get_freeze_count()
+    try:
+        yield
+    finally:
+        if not taken:
+            gc.unfreeze()
 
 
 def modules_to_preload(configs: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """Which places on two paths cannot be taken at the same time (the collision set)."""
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -27,7 +28,7 @@ class Cells:
     i: IntArray  # Indices on the first path (n,)
     j: IntArray  # Indices on the second path (n,)
 
-    def only(self, chosen: NDArray[np.bool_] | IntArray) -> "Cells":
+    def only(self, chosen: NDArray[np.bool_] | IntArray | slice) -> "Cells":
         """Return the cells that a mask (n,) or their numbers choose."""
         return Cells(self.i[chosen], self.j[chosen])
 
@@ -65,22 +66,32 @@ def components(cells: Cells) -> IntArray:
     """Number the connected parts of a set of cells; cells that touch at a side or a corner are connected."""
     if not len(cells.i):
         return np.empty(0, dtype=np.intp)
-    breaks = np.flatnonzero((np.diff(cells.j) != 0) | (np.diff(cells.i) != 1)) + 1
+    breaks = np.flatnonzero((cells.j[1:] != cells.j[:-1]) | (cells.i[1:] != cells.i[:-1] + 1)) + 1
     first = np.concatenate(([0], breaks))
     last = np.concatenate((breaks, [len(cells.i)])) - 1
-    rows, starts, ends = cells.j[first], cells.i[first], cells.i[last]
-    step = np.diff(rows)
-    if step.all():
-        # One run a row, so that only neighbours can be connected.
-        apart = (step > 1) | (starts[1:] > ends[:-1] + 1) | (ends[1:] < starts[:-1] - 1)
-        number = np.concatenate(([0], np.cumsum(apart)))
-    else:
-        number = np.unique(_join_runs(rows.tolist(), starts.tolist(), ends.tolist()), return_inverse=True)[1]
-    return np.repeat(number, last - first + 1)
+    roots = _join_runs(cells.j[first], cells.i[first], cells.i[last])
+    number = np.cumsum(roots == np.arange(len(roots))) - 1
+    return np.repeat(number[roots], last - first + 1)
 
 
-def _join_runs(rows: list[int], starts: list[int], ends: list[int]) -> list[int]:
+def _join_runs(rows: IntArray, starts: IntArray, ends: IntArray) -> IntArray:
     """Return for each run of cells in a row the first run that it is connected with."""
+    roots = own = np.arange(len(rows))
+    above, here = rows.searchsorted(rows - 1), rows.searchsorted(rows)
+    for k in range(int((here - above).max())):
+        other = np.minimum(above + k, here - 1)
+        touches = (other >= above) & (starts <= ends[other] + 1) & (ends >= starts[other] - 1)
+        if (touches & (roots != own)).any():
+            return np.array(_join_forks(rows.tolist(), starts.tolist(), ends.tolist()), dtype=np.intp)
+        roots = np.where(touches, other, roots)
+    # Each run hangs on one above it at most: what that one hangs on, until nothing changes.
+    while ((further := roots[roots]) != roots).any():
+        roots = further
+    return roots
+
+
+def _join_forks(rows: list[int], starts: list[int], ends: list[int]) -> list[int]:
+    """Do the same where several runs lead to one."""
     parent = list(range(len(rows)))
 
     def root(k: int) -> int:
@@ -125,13 +136,14 @@ def _near_cells(path_i: Path, path_j: Path, footprint: Footprint) -> tuple[Cells
 def _near_blocks(one: "_Blocks", other: "_Blocks", footprint: Footprint) -> tuple[IntArray, IntArray]:
     """Return the pairs of blocks in which footprints may overlap, in order."""
     half_long, half_wide = footprint.length / 2, footprint.width / 2
-    reach = one.radii[:, None] + (other.radii + 2 * np.hypot(half_long, half_wide) + _SAFE)
-    square = np.zeros(reach.shape)
-    for axis, axis_b in zip(one.boxes[:2], other.boxes[:2], strict=True):
-        offset = axis_b - axis[:, None]
-        offset *= offset
-        square += offset
-    a, b = np.divmod(np.flatnonzero(square <= reach * reach), len(other.radii))
+    # Squared distance of two centres less the square of what their discs reach, as one product.
+    (x_a, y_a, r_a), (x_b, y_b, r_b) = (
+        (*blocks.boxes[:2], blocks.radii + math.hypot(half_long, half_wide) + _SAFE) for blocks in (one, other)
+    )
+    ones_a, ones_b = np.ones(len(r_a)), np.ones(len(r_b))
+    left = np.stack((-2 * x_a, -2 * y_a, -2 * r_a, x_a * x_a + y_a * y_a - r_a * r_a, ones_a), axis=1)
+    right = np.stack((x_b, y_b, r_b, ones_b, x_b * x_b + y_b * y_b - r_b * r_b))
+    a, b = np.divmod(np.flatnonzero(left @ right <= 0), len(r_b))
     x_a, y_a, cos_a, sin_a, long_a, wide_a, swing_a = one.boxes.take(a, axis=1)
     x_b, y_b, cos_b, sin_b, long_b, wide_b, swing_b = other.boxes.take(b, axis=1)
     # A footprint that is turned against the box around the points reaches out less than this.

@@ -38,9 +38,10 @@ def find_zones(path_i: Path, path_j: Path, footprint: Footprint) -> tuple[Confli
     """Return every conflict zone of two different routes, in the order in which route i meets them."""
     cells, square = overlapping(path_i, path_j, footprint)
     part = components(cells)
+    count = int(part.max(initial=-1)) + 1
     zones = []
-    for k in range(int(part.max(initial=-1)) + 1):
-        mine = np.flatnonzero(part == k)
+    for k in range(count):
+        mine = np.flatnonzero(part == k) if count > 1 else slice(None)
         zone, apart = cells.only(mine), square[mine]
         if _meets(path_i, path_j, zone, apart, footprint):
             zones.append(_zone(path_i, path_j, zone, apart, footprint))
