@@ -31,8 +31,7 @@ class Recorder:
             log = self.logs.get(v.id)
             if log is None:
                 log = self.logs[v.id] = _Log(step, v.kind, v.route_path.route.id, v.style)
-            x, y = v.position
-            log.rows.append((float(x), float(y), float(v.heading), float(v.speed), acceleration(v)))
+            log.rows.append((*v.position.tolist(), float(v.heading), float(v.speed), acceleration(v)))
             log.actions.append(actions.get(v.id, ""))
 
     def trajectory(self, step: float, arrivals: dict[str, float]) -> Trajectory:

@@ -13,6 +13,12 @@ from codriving.geometry.curve import FloatArray
 from codriving.geometry.lane_path import lane_path
 from codriving.geometry.path import Path
 
+_STRAIGHT = (
+    1e-7  # Points no farther from a straight line than this are on it [m], and its headings no farther apart [rad]
+)
+
+_ROUNDING = 1e-5  # More than what a place beside such a line [m] or a heading against it [rad] may be wrong by
+
 CELL = 8.0  # Side of the squares in which it is remembered which points are near [m]
 
 
@@ -40,19 +46,33 @@ class Nearby:
         self, x: float, y: float, heading: float | None, tolerance: float = 2.0, angle: float = math.pi / 3
     ) -> tuple[tuple[str, float], ...]:
         """Return the routes that pass by a place, as far as the place and heading of a vehicle tell."""
-        cell, found = self._around(x, y, tolerance + 1.0), []
-        if cell.paths:
-            dx, dy = cell.x - x, cell.y - y
+        cell = self._around(x, y, tolerance + 1.0)
+        found: list[tuple[str, float]] = []
+        curved = cell.curved
+        for stretch in cell.straight:
+            index = stretch.nearest(x, y, heading, tolerance, angle)
+            if index is None:
+                continue
+            if index < 0:
+                # Too close to the angle to tell it from one heading.
+                curved = cell.all
+                found.clear()
+                break
+            s, lateral = stretch.path.project_at(index, x, y)
+            if abs(lateral) <= tolerance and -tolerance <= s <= stretch.path.length + tolerance:
+                found.append((stretch.name, s))
+        if curved.paths:
+            dx, dy = curved.x - x, curved.y - y
             square = dx * dx + dy * dy
             if heading is not None:
-                towards = cell.cos * math.cos(heading) + cell.sin * math.sin(heading)
+                towards = curved.cos * math.cos(heading) + curved.sin * math.sin(heading)
                 square[towards < math.cos(angle)] = np.inf
-            nearest = np.minimum.reduceat(square, cell.bounds[:-1]).tolist()
-            for k, (name, path) in enumerate(cell.paths):
+            nearest = np.minimum.reduceat(square, curved.bounds[:-1]).tolist()
+            for k, (name, path) in enumerate(curved.paths):
                 if nearest[k] > (tolerance + 1.0) ** 2:
                     continue
-                first, last = cell.bounds[k : k + 2]
-                index = int(cell.numbers[first + int(square[first:last].argmin())])
+                first, last = curved.bounds[k : k + 2]
+                index = int(curved.numbers[first + int(square[first:last].argmin())])
                 s, lateral = path.project_at(index, x, y)
                 if abs(lateral) <= tolerance and -tolerance <= s <= path.length + tolerance:
                     found.append((name, s))
@@ -72,17 +92,29 @@ class Nearby:
             dx, dy = self._x - (key[0] + 0.5) * CELL, self._y - (key[1] + 0.5) * CELL
             rows = np.flatnonzero(np.hypot(dx, dy) <= reach + CELL)
             owners = np.searchsorted(self._first, rows, side="right") - 1
-            numbers, begins = np.unique(owners, return_index=True)
-            paths = tuple((self._names[k], self._paths[self._names[k]]) for k in numbers.tolist())
-            places = self._x[rows], self._y[rows], self._cos[rows], self._sin[rows]
-            bounds = (*begins.tolist(), len(rows))
-            self._cells[key] = Square(paths, bounds, *places, rows - self._first[owners])
+            numbers = rows - self._first[owners]
+            straight = {}
+            for k in np.unique(owners).tolist():
+                name = self._names[k]
+                stretch = straight_stretch(name, self._paths[name], numbers[owners == k])
+                if stretch is not None:
+                    straight[k] = stretch
+            curved = ~np.isin(owners, list(straight))
+            self._cells[key] = Square(
+                tuple(straight.values()), self._points(rows[curved], owners[curved]), self._points(rows, owners)
+            )
         return self._cells[key]
+
+    def _points(self, rows: NDArray[np.intp], owners: NDArray[np.intp]) -> "Points":
+        names, begins = np.unique(owners, return_index=True)
+        paths = tuple((self._names[k], self._paths[self._names[k]]) for k in names.tolist())
+        places = self._x[rows], self._y[rows], self._cos[rows], self._sin[rows]
+        return Points(paths, (*begins.tolist(), len(rows)), *places, rows - self._first[owners])
 
 
 @dataclass(frozen=True, slots=True)
-class Square:
-    """The points of paths near a square, path by path."""
+class Points:
+    """Points of paths, path by path."""
 
     paths: tuple[tuple[str, Path], ...]
     bounds: tuple[int, ...]  # Where the points of each path begin, and where those of the last one end
@@ -91,6 +123,68 @@ class Square:
     cos: FloatArray  # Of the heading (n,)
     sin: FloatArray  # (n,)
     numbers: NDArray[np.intp]  # What number each is on its path (n,)
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Points of a path that lie on a straight line."""
+
+    name: str
+    path: Path
+    first: int
+    places: tuple[tuple[float, float], ...]  # (n,) [m]
+    heading: float  # [rad]
+    cos: float
+    sin: float
+
+    def nearest(self, x: float, y: float, heading: float | None, tolerance: float, angle: float) -> int | None:
+        """Return the number of the nearest point; None if the place is too far or turned against it, -1 in doubt."""
+        if heading is not None:
+            turned = abs(math.remainder(heading - self.heading, math.tau)) - angle
+            if turned > _ROUNDING:
+                return None
+            if turned > -_ROUNDING:
+                return -1
+        places = self.places
+        dx, dy = x - places[0][0], y - places[0][1]
+        if abs(dy * self.cos - dx * self.sin) > tolerance + _ROUNDING:
+            return None
+        last = len(places) - 1
+        k = min(max(round((dx * self.cos + dy * self.sin) / self.path.spacing), 0), last)
+        here = _square(places[k], x, y)
+        while k < last and (there := _square(places[k + 1], x, y)) < here:
+            k, here = k + 1, there
+        # Of two that are as near the first one.
+        while k > 0 and (there := _square(places[k - 1], x, y)) <= here:
+            k, here = k - 1, there
+        return None if here > (tolerance + 1.0) ** 2 else self.first + k
+
+
+@dataclass(frozen=True, slots=True)
+class Square:
+    """The points of paths near a square: those on straight lines, the others, and all."""
+
+    straight: tuple[Stretch, ...]
+    curved: Points
+    all: Points
+
+
+def straight_stretch(name: str, path: Path, numbers: NDArray[np.intp]) -> Stretch | None:
+    """Return some points of a path as a stretch, or None if they are not one after another on a straight line."""
+    first, last = int(numbers[0]), int(numbers[-1])
+    points, headings = path.points[first : last + 1], path.headings[first : last + 1]
+    if last - first + 1 != len(numbers) or np.ptp(headings) > _STRAIGHT:
+        return None
+    cos, sin = math.cos(headings[0]), math.sin(headings[0])
+    along = np.arange(len(numbers))[:, None] * path.spacing * (cos, sin)
+    if np.abs(points[0] + along - points).max() > _STRAIGHT:
+        return None
+    return Stretch(name, path, first, tuple((x, y) for x, y in points.tolist()), float(headings[0]), cos, sin)
+
+
+def _square(place: tuple[float, float], x: float, y: float) -> float:
+    dx, dy = place[0] - x, place[1] - y
+    return dx * dx + dy * dy
 
 
 def _ending_lanes(

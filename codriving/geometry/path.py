@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,6 +10,9 @@ from numpy.typing import ArrayLike
 from codriving.geometry.curve import FloatArray
 
 _BEHIND, _AHEAD = 5.0, 30.0  # How far around the expected place a projection looks [m]
+
+
+_Segment = tuple[float, float, float, float, float]  # Where it begins, its way [m] and its squared length [m2]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,6 +28,7 @@ class Path:
     _y: FloatArray = field(init=False, repr=False)
     _places: list[list[float]] = field(init=False, repr=False)
     _turns: list[float] = field(init=False, repr=False)
+    _segments: list[_Segment] = field(init=False, repr=False)
     axes: FloatArray = field(init=False, repr=False)  # x and y of the points (2, n) [m]
     _squares: FloatArray = field(init=False, repr=False)  # Their squared distances from the origin (n,) [m2]
     directions: FloatArray = field(init=False, repr=False)  # Unit vectors along the path (2, n)
@@ -36,6 +41,7 @@ class Path:
             ("_y", np.ascontiguousarray(y)),
             ("_places", self.points.tolist()),
             ("_turns", self.headings.tolist()),
+            ("_segments", [_segment(*ends) for ends in pairwise(self.points.tolist())]),
             ("axes", np.array((x, y))),
             ("_squares", x * x + y * y),
             ("directions", np.array((np.cos(self.headings), np.sin(self.headings)))),
@@ -114,22 +120,33 @@ class Path:
             along = dx * cos + dy * sin
             if along < 0 if k == 0 else along > 0:
                 return (self.length if k else 0.0) + along, cos * dy - sin * dx
+        if k in (0, last):
+            k = min(k, last - 1)
+            return self._along(k, _on_segment(self._segments[k], x, y))
         # What is nearest along either segment; if both are as near, the one before wins.
-        if k == 0:
-            return self._on_segment(0, x, y)[1:]
-        if k == last:
-            return self._on_segment(k - 1, x, y)[1:]
-        return min(self._on_segment(k - 1, x, y), self._on_segment(k, x, y))[1:]
+        before, after = _on_segment(self._segments[k - 1], x, y), _on_segment(self._segments[k], x, y)
+        if before[0] == after[0]:
+            return min(self._along(k - 1, before), self._along(k, after))
+        return self._along(k - 1, before) if before[0] < after[0] else self._along(k, after)
 
-    def _on_segment(self, k: int, x: float, y: float) -> tuple[float, float, float]:
-        """Return squared distance, arc length and lateral offset against the k-th segment."""
-        (x0, y0), (x1, y1) = self._places[k], self._places[k + 1]
-        dx, dy, px, py = x1 - x0, y1 - y0, x - x0, y - y0
-        square = dx * dx + dy * dy
-        t = min(max((px * dx + py * dy) / square, 0.0), 1.0)
-        distance = (px - t * dx) ** 2 + (py - t * dy) ** 2
-        side = dx * py - dy * px
-        return distance, (k + t) * self.spacing, math.copysign(math.sqrt(distance), side)
+    def _along(self, k: int, nearest: tuple[float, float, float]) -> tuple[float, float]:
+        """Return arc length and lateral offset [m] of a place by what is nearest to it on the k-th segment."""
+        square, t, side = nearest
+        return (k + t) * self.spacing, math.copysign(math.sqrt(square), side)
+
+
+def _segment(begin: list[float], end: list[float]) -> _Segment:
+    dx, dy = end[0] - begin[0], end[1] - begin[1]
+    return begin[0], begin[1], dx, dy, dx * dx + dy * dy
+
+
+def _on_segment(segment: _Segment, x: float, y: float) -> tuple[float, float, float]:
+    """Return squared distance [m2], how far along a segment the nearest place is (0 to 1), and a sign for the side."""
+    x0, y0, dx, dy, length = segment
+    px, py = x - x0, y - y0
+    t = (px * dx + py * dy) / length
+    t = 0.0 if t < 0.0 else 1.0 if t > 1.0 else t
+    return (px - t * dx) ** 2 + (py - t * dy) ** 2, t, dx * py - dy * px
 
 
 def progress(path: Path, x: FloatArray, y: FloatArray, heading: FloatArray) -> FloatArray:

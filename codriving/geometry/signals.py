@@ -45,7 +45,10 @@ class Signals:
 
     def shown(self, route: str, s: float) -> str:
         """Return the side that is signalled at an arc length [m]: ``left``, ``right`` or nothing."""
-        return next((side for begin, end, side in self._shown[route] if begin <= s < end), NONE)
+        for begin, end, side in self._shown[route]:
+            if begin <= s < end:
+                return side
+        return NONE
 
     def agreeing(self, ways: Sequence[tuple[str, float]], signal: str) -> tuple[tuple[str, float], ...]:
         """Return the routes, each with an arc length [m], on which a vehicle would signal as it does."""

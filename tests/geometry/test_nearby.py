@@ -52,6 +52,22 @@ def test_no_route_is_missed_and_none_is_added(name: str, tolerance: float, angle
     assert hits > 40
 
 
+def test_at_the_very_angle_and_between_two_points_nothing_is_different() -> None:
+    config = compose([])
+    road_map = build(config["environment"], Environment, "environment", config["plugins"]).road_map
+    hits = 0
+    for path in road_map.paths.values():
+        for row in range(10, 90, 7):
+            (x0, y0), (x1, y1) = path.points[row : row + 2].tolist()
+            x, y = (x0 + x1) / 2, (y0 + y1) / 2
+            for turned in (0.35, -0.35, 0.35 - 1e-12, 0.35 + 1e-12, 3 * math.tau, math.pi):
+                heading = float(path.headings[row]) + turned
+                found = dict(road_map.nearby.routes(x, y, heading, 1.5, 0.35))
+                assert found == plain(road_map, x, y, heading, 1.5, 0.35)
+                hits += bool(found)
+    assert hits > 100
+
+
 def test_far_from_every_road_there_is_none() -> None:
     config = compose([])
     road_map = build(config["environment"], Environment, "environment", config["plugins"]).road_map

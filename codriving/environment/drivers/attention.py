@@ -1,5 +1,6 @@
 """What a driver with a style sees of the others, how late, and at which line it waits for them."""
 
+from bisect import bisect_right
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,11 +12,10 @@ from codriving.environment.drivers.style import DriverTraits
 from codriving.environment.traffic.hidden import Hidden
 from codriving.environment.traffic.right_of_way import (
     OVERSHOOT,
-    Array,
+    Ahead,
     Spot,
     can_wait,
-    meet_on,
-    motions,
+    meet,
     occupied_by,
     stops_before_junction,
 )
@@ -103,20 +103,13 @@ class DriverJudgement:
         self.hesitates = self.hesitates and self.stood < self.traits.hesitation
         self._waits_on = self._waits_on and self.stood < self.traits.patience
 
-    def line(
-        self,
-        driver: RouteFollower,
-        others: Sequence[tuple[RouteFollower, Spot, Array]],
-        road_map: RoadMap,
-        every: float,
-    ) -> float | None:
+    def line(self, driver: RouteFollower, others: Sequence[Ahead], road_map: RoadMap, every: float) -> float | None:
         """Look, as it does from time to time [s], and return the arc length at which it waits for what it saw [m]."""
-        around = [other for other in others if other[0] is not driver]
+        around = [other for other in others if other.vehicle is not driver]
         if not self._waits_on:
-            around = [other for other in around if other[0].speed >= STANDS]
-        self._looks.append(
-            Look(self._waits(driver, around, road_map), occupied_by(road_map, driver, (spot for _, spot, _ in around)))
-        )
+            around = [other for other in around if other.vehicle.speed >= STANDS]
+        occupied = occupied_by(road_map, driver, ((other.route, other.s) for other in around))
+        self._looks.append(Look(self._waits(driver, around, road_map), occupied))
         late = round((self.traits.reaction + self.traits.distraction) / every)
         while len(self._looks) > late + 1:
             self._looks.popleft()
@@ -130,16 +123,14 @@ class DriverJudgement:
             return occupied + float(driver.DISTANCE_WANTED) - float(driver.LENGTH) / 2
         return None
 
-    def _waits(
-        self, driver: RouteFollower, others: Sequence[tuple[RouteFollower, Spot, Array]], road_map: RoadMap
-    ) -> bool:
+    def _waits(self, driver: RouteFollower, others: Sequence[Ahead], road_map: RoadMap) -> bool:
         if self.traits.gives_way == "never" or not driver.s < driver.route_path.route.entry:
             return False
-        ahead = int(np.searchsorted(TIMES, self.traits.horizon, "right"))
-        own, here = motions(driver, TIMES[:ahead]), (driver.route_path.route.id, driver.s)
+        count, own = bisect_right(TIMES, self.traits.horizon), Ahead(driver, TIMES)
         return any(
-            meet_on(road_map, here, spot, own, places[:, :ahead]) and self._gives_way(driver, other, spot, road_map)
-            for other, spot, places in others
+            meet(road_map, own, other, count)
+            and self._gives_way(driver, other.vehicle, (other.route, other.s), road_map)
+            for other in others
         )
 
     def _gives_way(self, driver: RouteFollower, other: RouteFollower, spot: Spot, road_map: RoadMap) -> bool:
@@ -173,15 +164,14 @@ def look_round(road_map: RoadMap, vehicles: Sequence[RouteFollower], every: floa
     """Let every driver with a style look round, as they do from time to time [s], and decide where it waits."""
     around = []
     for vehicle in vehicles:
-        spot = believed(road_map, vehicle)
-        around.append((vehicle, spot, motions(vehicle, TIMES) - vehicle.s + spot[1]))
+        around.append(Ahead(vehicle, TIMES, believed(road_map, vehicle)))
     for vehicle in vehicles:
         judgement: DriverJudgement | None = getattr(vehicle, "judgement", None)
         if judgement is None:
             continue
         waited = vehicle.waits_at is not None
         unseen = hidden.get(vehicle, frozenset())
-        seen = [other for other in around if other[0] not in unseen] if unseen else around
+        seen = [other for other in around if other.vehicle not in unseen] if unseen else around
         vehicle.waits_at = judgement.line(vehicle, seen, road_map, every)
         if waited and vehicle.waits_at is None:
             vehicle.target_speed = vehicle.lane.speed_limit * judgement.traits.speed

@@ -30,6 +30,7 @@ ROOM = 4.0
 class HumanDriver(RouteFollower, IDMVehicle):
     """An uncontrolled vehicle that shares nothing and follows its own route."""
 
+    by_idm = True
     waits_at: float | None = None  # Arc length of the line at which the driver has to wait [m], or None
     sight: float  # How far ahead along the route it looks for bodies [m]
     stands: float = 0.0  # How long it still stands before it drives [s]

@@ -42,7 +42,6 @@ class RoutePath:
     spacing: float  # Arc length between two points [m]
     cells: frozenset[tuple[int, int]]
     directions: tuple[tuple[float, float], ...]  # Cosine and sine of the heading at each point
-    segments: tuple[tuple[float, float, float, float, float], ...]  # Begin, way [m] and squared length of each [m2]
     is_straight: bool  # Whether the heading is the same everywhere
     lane_end: float = math.inf  # Arc length at which a lane ends that has to be left before [m]; inf if there is none
     ending: LaneId | None = None  # That lane, or None
@@ -101,15 +100,6 @@ class RoutePath:
         for direction in (1, -1):
             while 0 <= k + direction <= last and (there := square(points[k + direction], x, y)) < here:
                 k, here = k + direction, there
-        if k in (0, last):
-            return self.path.project_at(k, x, y)
-        # As `path.project_at` does, from what is known of the two segments.
-        before, t, side = _on_segment(self.segments[k - 1], x, y)
-        after, t_after, side_after = _on_segment(self.segments[k], x, y)
-        if before < after:
-            return (k - 1 + t) * self.spacing, math.copysign(math.sqrt(before), side)
-        if after < before:
-            return (k + t_after) * self.spacing, math.copysign(math.sqrt(after), side_after)
         return self.path.project_at(k, x, y)
 
 
@@ -117,15 +107,6 @@ def square(point: tuple[float, float], x: float, y: float) -> float:
     """Return the squared distance of a place from a point [m2]."""
     dx, dy = point[0] - x, point[1] - y
     return dx * dx + dy * dy
-
-
-def _on_segment(segment: tuple[float, float, float, float, float], x: float, y: float) -> tuple[float, float, float]:
-    """Return the squared distance from a segment [m2], the nearest place on it (0 to 1), and a sign for the side."""
-    x0, y0, dx, dy, length = segment
-    px, py = x - x0, y - y0
-    t = (px * dx + py * dy) / length
-    t = 0.0 if t < 0.0 else min(t, 1.0)
-    return (px - t * dx) ** 2 + (py - t * dy) ** 2, t, dx * py - dy * px
 
 
 def route_path(road_map: RoadMap, route: str, profile: SpeedProfile | None = None) -> RoutePath:
@@ -144,8 +125,7 @@ def route_path(road_map: RoadMap, route: str, profile: SpeedProfile | None = Non
         ((s + found.taper / 2, lane) for (lane, other), s in changes if beside(lane, other)), (math.inf, None)
     )
     directions = tuple(zip(np.cos(path.headings).tolist(), np.sin(path.headings).tolist(), strict=True))
-    segments = tuple(_segment(*pair) for pair in pairwise(points))
-    shape = points, headings, path.spacing, _cells(x, y), directions, segments, _is_straight(path)
+    shape = points, headings, path.spacing, _cells(x, y), directions, _is_straight(path)
     return RoutePath(found, path, starts, x, y, *shape, left[0], left[1], profile)
 
 
@@ -154,11 +134,6 @@ def _is_straight(path: Path) -> bool:
     along = np.arange(len(x)) * path.spacing
     aside = np.hypot(x0 + along * np.cos(heading) - x, y0 + along * np.sin(heading) - y)
     return bool((path.headings == heading).all() and aside.max() < STRAIGHT)
-
-
-def _segment(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float, float, float, float]:
-    dx, dy = other[0] - one[0], other[1] - one[1]
-    return (*one, dx, dy, dx * dx + dy * dy)
 
 
 def _cells(x: NDArray[np.float64], y: NDArray[np.float64]) -> frozenset[tuple[int, int]]:
@@ -177,6 +152,7 @@ class RouteFollower(PlainMotion):
     """Mixin over highway-env's controlled vehicles."""
 
     kind = Kind.HDV
+    by_idm = False  # Whether it is driven by IDM
     target_lane_index: LaneId
     id: str
     route_path: RoutePath

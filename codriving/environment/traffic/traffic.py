@@ -19,7 +19,7 @@ from codriving.environment.network import connected
 from codriving.environment.settings import Corrections
 from codriving.environment.traffic.hidden import Hidden, hidden_vehicles
 from codriving.environment.traffic.human_driver import HumanDriver
-from codriving.environment.traffic.right_of_way import can_wait, meet, motions, occupied_ahead, will_meet
+from codriving.environment.traffic.right_of_way import Ahead, can_wait, meet, occupied_ahead
 from codriving.environment.traffic.route_following import RouteFollower
 from codriving.geometry import RoadMap
 
@@ -111,14 +111,14 @@ class Traffic(RegulatedRoad):
                     vehicle.target_speed = vehicle.lane.speed_limit
                 vehicle.waits_at = None
         # Where each may be soon is worked out once, since nothing below changes it.
-        soon = {vehicle: motions(vehicle) for vehicle in self.vehicles} if self.corrections.route_prediction else {}
+        soon = {vehicle: Ahead(vehicle) for vehicle in self.vehicles} if self.corrections.route_prediction else {}
         for one, other in combinations(self.vehicles, 2):
             if not (isinstance(one, HumanDriver) or isinstance(other, HumanDriver)):
                 continue
             if other in self.hidden.get(one, ()):
                 continue
             if soon:
-                if not meet(self.road_map, one, other, soon[one], soon[other]):
+                if not meet(self.road_map, soon[one], soon[other]):
                     continue
             elif not self.is_conflict_possible(one, other):
                 continue
@@ -140,7 +140,7 @@ class Traffic(RegulatedRoad):
     def is_conflict_possible(self, v1: RouteFollower, v2: RouteFollower) -> bool:
         """Whether two vehicles would meet within three seconds at constant speed, along their routes if corrected."""
         if self.corrections.route_prediction:
-            return will_meet(self.road_map, v1, v2)
+            return meet(self.road_map, Ahead(v1), Ahead(v2))
         return bool(RegulatedRoad.is_conflict_possible(v1, v2))
 
     def neighbour_vehicles(

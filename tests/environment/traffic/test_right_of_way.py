@@ -13,11 +13,11 @@ from codriving.environment.traffic.right_of_way import (
     HORIZON,
     OVERSHOOT,
     STARTING,
+    Ahead,
     can_wait,
-    motions,
+    meet,
     occupied_ahead,
     pace,
-    will_meet,
 )
 from codriving.environment.traffic.route_following import RouteFollower
 
@@ -87,7 +87,7 @@ def test_a_driver_who_stands_means_to_start_and_a_cav_does_not(by_hand: Build) -
     env, road = placed(
         by_hand, Start("HDV1", HDV, "south-north", 99.0, 0.0), Start("HDV2", HDV, "west-east", 101.0, 0.0)
     )
-    assert will_meet(env.road_map, road["HDV1"], road["HDV2"])
+    assert meet(env.road_map, Ahead(road["HDV1"]), Ahead(road["HDV2"]))
 
 
 def test_who_has_braked_to_wait_is_not_let_go_for_its_low_speed(by_hand: Build) -> None:
@@ -95,10 +95,10 @@ def test_who_has_braked_to_wait_is_not_let_go_for_its_low_speed(by_hand: Build) 
     starts = [Start("HDV1", HDV, "north-east", 93.0, 5.3), Start("HDV2", HDV, "west-east", 99.8, 6.6)]
     env, road = placed(by_hand, *starts)
     road["HDV1"].target_speed = 10.0
-    assert will_meet(env.road_map, road["HDV1"], road["HDV2"])
-    assert will_meet(env.road_map, road["HDV2"], road["HDV1"])
+    assert meet(env.road_map, Ahead(road["HDV1"]), Ahead(road["HDV2"]))
+    assert meet(env.road_map, Ahead(road["HDV2"]), Ahead(road["HDV1"]))
     road["HDV1"].target_speed = 5.3
-    assert not will_meet(env.road_map, road["HDV1"], road["HDV2"]), "it means to stay as slow"
+    assert not meet(env.road_map, Ahead(road["HDV1"]), Ahead(road["HDV2"])), "it means to stay as slow"
     env._traffic.enforce_road_rules()
     assert road["HDV1"].waits_at is None
     road["HDV1"].target_speed = 10.0
@@ -142,9 +142,9 @@ def test_motions_are_constant_speed_and_speeding_up(speed: float, wish: float, b
     starts = [Start("CAV1", CAV, "west-east", 50.0, speed), Start("HDV1", HDV, "south-north", 60.0, speed)]
     _, road = placed(by_hand, *starts)
     road["HDV1"].target_speed = wish
-    (steady,) = motions(road["CAV1"])
+    (steady,) = Ahead(road["CAV1"]).places(len(HORIZON))
     np.testing.assert_allclose(steady, 50.0 + speed * HORIZON)
-    slower, faster = motions(road["HDV1"])
+    slower, faster = Ahead(road["HDV1"]).places(len(HORIZON))
     np.testing.assert_allclose(slower, 60.0 + max(speed, STARTING) * HORIZON)
     assert (faster >= slower).all()
     # Never faster than it wants, nor than the speed limit, unless it is already.
@@ -155,6 +155,18 @@ def test_motions_are_constant_speed_and_speeding_up(speed: float, wish: float, b
             60.0 + speed * 0.25 + 1.5 * min(0.25, (min(wish, 10.0) - speed) / 3) ** 2, abs=0.3
         )
         assert faster[-1] > slower[-1]
+
+
+@given(speed=st.floats(0, 14), wish=st.floats(0, 14), place=st.floats(0, 150))
+@settings(deadline=None, max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_the_reach_is_the_last_of_the_places(speed: float, wish: float, place: float, by_hand: Build) -> None:
+    starts = Start("CAV1", CAV, "west-east", 50.0, speed), Start("HDV1", HDV, "south-north", 60.0, speed)
+    _, road = placed(by_hand, *starts)
+    road["HDV1"].target_speed = wish
+    for vehicle in road.values():
+        for spot in (None, ("north-south", place)):
+            for count in (1, 5, len(HORIZON)):
+                assert Ahead(vehicle, spot=spot).reach(count) == Ahead(vehicle, spot=spot).places(count)[-1, -1]
 
 
 def test_drivers_look_more_often_than_highway_env_lets_them(by_hand: Build) -> None:
