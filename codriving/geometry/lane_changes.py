@@ -21,6 +21,15 @@ class LaneChanges:
         self, lanes: Mapping[LaneId, Lane], routes: Mapping[str, Route], starts: Mapping[tuple[str, LaneId], float]
     ) -> None:
         self.lanes, self.routes, self._starts = lanes, routes, starts
+        # Lane, arc length at which it has to be begun at the latest and at which it is done [m], of each change.
+        self._changes = {
+            route.id: [
+                (other, starts[route.id, other], starts[route.id, other] + route.taper / 2)
+                for lane, other in pairwise(route.lanes)
+                if beside(lane, other)
+            ]
+            for route in routes.values()
+        }
         self._lane_paths: dict[LaneId, Path] = {}
         self._on_lanes: dict[tuple[LaneId, float, float], tuple[float, float]] = {}
         self._beside: dict[tuple[str, LaneId], tuple[tuple[str, LaneId], ...]] = {}
@@ -28,12 +37,7 @@ class LaneChanges:
 
     def ahead(self, route_id: str, s: float) -> tuple[LaneId, float, float] | None:
         """Return the next lane change that a route asks for."""
-        route = self.routes[route_id]
-        for lane, other in pairwise(route.lanes):
-            latest = self._starts[route_id, other]
-            if beside(lane, other) and s < latest + route.taper / 2:
-                return other, latest, latest + route.taper / 2
-        return None
+        return next((change for change in self._changes[route_id] if s < change[2]), None)
 
     def action(self, route_id: str, lane: LaneId) -> Action:
         """Return the action by which a route changes onto one of its lanes."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
+from math import inf
 
 import numpy as np
 
@@ -83,6 +84,7 @@ def limited(
     v, goal, kept, s, pedal = np.empty(shape), np.empty(shape), np.empty(shape), np.zeros(shape), np.empty(shape)
     v.T[...], goal.T[...] = np.multiply(speeds, model.step), np.multiply(targets, model.step)
     tables = _Tables(along, shape, model.step) if along else None
+    bends = _comes_to_bends(model, speeds, along)
     aim, travelled = np.empty(shape), s[:here]
     told = aim[:here]
     places[0] = s
@@ -101,8 +103,8 @@ def limited(
             if tables is None:
                 aim = goal
             else:
-                aim[here:] = goal[here:]
-        if tables is not None:
+                aim[...] = goal
+        if tables is not None and n >= bends:
             np.minimum(wanted, tables.reference(travelled), out=told)
         np.subtract(aim, v, pedal)
         np.multiply(pedal, gain, pedal)
@@ -116,6 +118,13 @@ def limited(
                 reached[(n + 1) // stride] = v
     if reached is not None:
         reached /= step
+
+
+def _comes_to_bends(model: DrivingModel, speeds: Sequence[float], along: Sequence[Along]) -> float:
+    """Return the simulation step before which no state comes to where its profile is slower than it can be."""
+    fastest = [max(speed, model.top_speed) for speed, _ in zip(speeds, along, strict=False)]
+    room = (profile.free(fast, s) / (fast * model.step) for fast, (profile, s) in zip(fastest, along, strict=True))
+    return min(room, default=inf) - 1
 
 
 def driven(along: Along, speed: float, most: float, pedal: float, times: Array) -> Array:

@@ -31,6 +31,7 @@ class Path:
     _segments: list[_Segment] = field(init=False, repr=False)
     axes: FloatArray = field(init=False, repr=False)  # x and y of the points (2, n) [m]
     _squares: FloatArray = field(init=False, repr=False)  # Their squared distances from the origin (n,) [m2]
+    _straight: bool = field(init=False, repr=False)
     directions: FloatArray = field(init=False, repr=False)  # Unit vectors along the path (2, n)
 
     def __post_init__(self) -> None:
@@ -44,6 +45,7 @@ class Path:
             ("_segments", [_segment(*ends) for ends in pairwise(self.points.tolist())]),
             ("axes", np.array((x, y))),
             ("_squares", x * x + y * y),
+            ("_straight", _is_straight(self.points, self.headings, self.length)),
             ("directions", np.array((np.cos(self.headings), np.sin(self.headings)))),
         ):
             object.__setattr__(self, name, value)
@@ -107,9 +109,19 @@ class Path:
 
     def project_all(self, x: FloatArray, y: FloatArray) -> list[tuple[float, float]]:
         """Return what `project` returns for each of several points (m,) [m]."""
+        if self._straight:
+            return [self.project_at(self._nearest(*one), *one) for one in zip(x.tolist(), y.tolist(), strict=True)]
         dx, dy = self._x - x[:, None], self._y - y[:, None]
         nearest = (dx * dx + dy * dy).argmin(axis=1)
         return [self.project_at(*one) for one in zip(nearest.tolist(), x.tolist(), y.tolist(), strict=True)]
+
+    def _nearest(self, x: float, y: float) -> int:
+        """Return the point of a straight path that is nearest to a place; the first one of two."""
+        (x0, y0), cos, sin = self._places[0], math.cos(self._turns[0]), math.sin(self._turns[0])
+        last = len(self._places) - 1
+        k = min(max(round(((x - x0) * cos + (y - y0) * sin) / self.spacing), 0), last)
+        around = range(max(k - 2, 0), min(k + 2, last) + 1)
+        return min(around, key=lambda i: _square(self._places[i], x, y))
 
     def project_at(self, k: int, x: float, y: float) -> tuple[float, float]:
         """Return arc length and lateral offset [m] of a point whose nearest path point is the k-th."""
@@ -147,6 +159,17 @@ def _on_segment(segment: _Segment, x: float, y: float) -> tuple[float, float, fl
     t = (px * dx + py * dy) / length
     t = 0.0 if t < 0.0 else 1.0 if t > 1.0 else t
     return (px - t * dx) ** 2 + (py - t * dy) ** 2, t, dx * py - dy * px
+
+
+def _is_straight(points: FloatArray, headings: FloatArray, length: float) -> bool:
+    """Whether points lie on one line, as far apart as they ought to."""
+    along = np.linspace(0.0, length, len(points))[:, None] * [math.cos(headings[0]), math.sin(headings[0])]
+    return bool((headings == headings[0]).all() and np.abs(points - points[0] - along).max() < 1e-6)
+
+
+def _square(point: list[float], x: float, y: float) -> float:
+    dx, dy = point[0] - x, point[1] - y
+    return dx * dx + dy * dy
 
 
 def progress(path: Path, x: FloatArray, y: FloatArray, heading: FloatArray) -> FloatArray:

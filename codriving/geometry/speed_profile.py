@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import ceil
+from math import ceil, inf
 
 import numpy as np
 
@@ -19,6 +19,8 @@ _ALONG = 4.0  # Length over which curvature is measured [m]; a kink where lanes 
 _AROUND = 1.5  # How far before and past a curve its curvature counts [m]; headings follow with a delay
 
 _STRAIGHT = 1e-6  # Less curvature is none [1/m]
+
+_ROUNDING = 1e-6  # Speeds that differ by less are taken to be the same [m/s]
 
 # How far past its end the profile of a route is tabulated [m]; no prediction looks farther.
 _BEYOND = 600.0
@@ -70,6 +72,14 @@ class SpeedProfile:
         """Whether a speed [m/s] is kept for some distance [m] from an arc length on [m]."""
         first = min(max(int(s / self.spacing), 0), len(self.values) - 1)
         return bool(self.values[first : first + int(distance / self.spacing) + 3].min() >= speed)
+
+    def free(self, speed: float, s: float) -> float:
+        """Return how far the reference speed surely is no less than a speed [m/s] from an arc length on [m]."""
+        first = min(int(max(s, 0.0) / self.spacing), len(self.values) - 1)
+        # Between two rows it is as low as the lower one, but for rounding.
+        below = self.values[first:] < speed + _ROUNDING
+        k = int(below.argmax())
+        return max((first + k - 1) * self.spacing - s, 0.0) if below[k] else inf
 
     def kept(self, s: float, count: int) -> FloatArray:
         """Return the speed that is kept at an arc length and at so many rows' distances from it (count,) [m/s]."""

@@ -75,6 +75,20 @@ def test_many_projections_are_those_one_by_one(places: list[tuple[float, float]]
     assert TURN.project_all(x, y) == [TURN.project(*place) for place in places]
 
 
+@given(st.floats(0.0, 6.3), st.lists(st.tuples(st.floats(-90, 90), st.floats(-90, 90)), min_size=1, max_size=5))
+def test_on_a_straight_path_the_nearest_point_is_that_of_a_full_search(
+    heading: float, places: list[tuple[float, float]]
+) -> None:
+    end = 60.0 * math.cos(heading), 60.0 * math.sin(heading)
+    path = lane_path(Lane(("a", "b", 0), Straight((0.0, 0.0), end)))
+    (mx, my), (nx, ny) = path.points[40], path.points[41]
+    x, y = np.array([*places, ((mx + nx) / 2, (my + ny) / 2)]).T
+    dx, dy = path.points[:, 0] - x[:, None], path.points[:, 1] - y[:, None]
+    nearest = (dx * dx + dy * dy).argmin(axis=1).tolist()
+    expected = [path.project_at(*one) for one in zip(nearest, x.tolist(), y.tolist(), strict=True)]
+    assert path.project_all(x, y) == expected
+
+
 @given(st.floats(-10.0, TURN.length + 10.0) | st.sampled_from([0.0, TURN.length]))
 def test_a_single_place_is_that_of_the_arrays(s: float) -> None:
     x, y = TURN.position(s)

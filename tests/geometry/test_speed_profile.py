@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.road import Arc, Lane, Road, Route, Straight, Turn
@@ -30,6 +32,7 @@ CHANGE = Road(
     ),
     (Route("over", (("a", "b", 1), ("a", "b", 0), ("b", "c", 0)), Turn.STRAIGHT, entry=200.0, goal=280.0, taper=15.0),),
 )
+PROFILE = RoadMap(BEND).speed_profiles(MODEL)["round"]
 
 
 def test_without_limits_there_is_no_profile() -> None:
@@ -78,3 +81,12 @@ def test_a_speed_is_allowed_where_no_curve_comes() -> None:
     assert profile.allows(15.0, 0.0, 50.0)
     assert not profile.allows(15.0, 0.0, 150.0)
     assert profile.allows(15.0, 180.0, 500.0)
+
+
+@given(st.floats(0.0, 16.0), st.floats(-5.0, 220.0))
+def test_a_speed_is_free_until_the_profile_is_slower(speed: float, place: float) -> None:
+    room = min(PROFILE.free(speed, place), 300.0)
+    assert not room or all(PROFILE.reference(s) >= speed for s in np.linspace(place, place + room, 200).tolist())
+    if PROFILE.free(speed, place) < np.inf:
+        rows = np.arange(place + room, place + room + 3 * PROFILE.spacing, PROFILE.spacing)
+        assert min(PROFILE.reference(s) for s in rows.tolist()) < speed + 1e-6

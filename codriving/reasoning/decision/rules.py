@@ -52,19 +52,19 @@ def decide_one(situation: Situation) -> Decision:
 
     Lanes are changed where the route asks for it as soon as that is allowed, and elsewhere to get clearly farther.
     """
-    scene, ego = situation.scene, situation.scene.ego.id
-    allowed = [action for action in EAGERNESS if action in situation.allowed]
+    scene, ego, left_over = situation.scene, situation.scene.ego.id, situation.allowed
+    allowed = [action for action in EAGERNESS if action in left_over]
     allowed.sort(key=lambda action: scene.speed_rank(action) or 0.0, reverse=True)
     if any(a.safe and a.reasons for a in situation.assessments):
-        least = situation.allowed[0]
+        least = left_over[0]
         return Decision(ego, least, f"no action is safe, and {least} is the least dangerous")
-    left = [a for a in situation.assessments if a.action in situation.allowed]
+    left = [a for a in situation.assessments if a.action in left_over]
     reached = {a.action: a.progress for a in left if a.progress is not None}
     change = _lane_change(situation, reached)
     if change is not None:
         return change
     if not allowed:
-        return Decision(ego, situation.allowed[0], "the only action that the safety check left")
+        return Decision(ego, left_over[0], "the only action that the safety check left")
     waits_for = ", ".join(dict.fromkeys(p.first for p in situation.order.precedences if p.second == ego))
     ahead = {action: gain for action, gain in reached.items() if action in allowed}
     if not ahead:

@@ -252,9 +252,13 @@ def bounds_of(
 
 def valued(moment: Moment, vehicle: TrackedVehicle, travels: Array) -> Array:
     """Return what each plan of the library is worth to a vehicle, its reversals counted [m]."""
-    model = moment.forecast.model
-    gained = worth(travels)
-    return gained - price(vehicle.speed, vehicle.target, plan_library(model)) if model.steady else gained
+    forecast = moment.forecast
+    model, state = forecast.model, forecast.state(vehicle.speed, vehicle.target, vehicle.routes[0])
+    if state not in forecast.values:
+        gained = worth(travels)
+        prices = price(vehicle.speed, vehicle.target, plan_library(model)) if model.steady else 0.0
+        forecast.values[state] = gained - prices
+    return forecast.values[state]
 
 
 def worth(travels: Array) -> Array:

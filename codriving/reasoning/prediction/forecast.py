@@ -82,6 +82,7 @@ class Forecast:
         sample: Time between two samples of a prediction [s].
         times: Time of each sample from now (steps + 1,) [s].
         clears: Samples until a vehicle that changes lanes is off the lane that it leaves.
+        values: What each plan of the library is worth to a CAV in this step, as far as it was asked [m].
     """
 
     def __init__(self, model: DrivingModel, library: tuple[Plan, ...] = (), road_map: RoadMap | None = None) -> None:
@@ -110,6 +111,7 @@ class Forecast:
         self._rows: NDArray[np.intp] | slice = slice(0)
         self._along: dict[tuple[float, Where], tuple[Along, ...]] = {}
         self._travel: dict[State, Array] = {}
+        self.values: dict[State, Array] = {}
         self._reach: dict[tuple[bool, float, Where], Reach] = {}
         self._likely: dict[tuple[float, Where], tuple[Array, Array]] = {}
 
@@ -117,11 +119,12 @@ class Forecast:
         """Forget the predictions of the step before, and predict the CAVs of this one."""
         self._along.clear()
         self._travel.clear()
+        self.values.clear()
         self._reach.clear()
         self._likely.clear()
-        self._predict([self._state(speed, target, (route, place)) for speed, target, route, place in states])
+        self._predict([self.state(speed, target, (route, place)) for speed, target, route, place in states])
 
-    def _state(self, speed: float, target: float, where: Where) -> State:
+    def state(self, speed: float, target: float, where: Where) -> State:
         """Leave out where a CAV is if that makes no difference to it."""
         route, place = where if self._limited and self.along(speed, where) else NOWHERE
         return speed, target, route, place
@@ -171,7 +174,7 @@ class Forecast:
 
     def _travels(self, speed: float, target: float, where: Where) -> Array:
         """Distances for every plan of the library."""
-        state = self._state(speed, target, where)
+        state = self.state(speed, target, where)
         if state not in self._travel:
             self._predict([state])
         return self._travel[state]
@@ -225,7 +228,7 @@ class Forecast:
         steady = partial(self._steady, speed, where)
         if is_cav:
             # Without limits neither depends on the present target, so that of any state with this speed will do.
-            here = self._state(speed, speed, where)[2:]
+            here = self.state(speed, speed, where)[2:]
             target = next((goal for v, goal, *there in self._travel if v == speed and (*there,) == here), speed)
             travels = self._travels(speed, target, where)
             rows = (self._index[BRAKE], self._index[GO]) if self.model.limits is None else (-2, -1)

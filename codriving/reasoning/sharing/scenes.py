@@ -96,7 +96,7 @@ def with_roles(
     road_map.project_all(route, [(n.x, n.y) for n in others])
     roles = _roles(others, ego, route, place, road_map)
     wanted = ((n, *roles.get(n.id, NO_ROLE)) for n in others)
-    return tuple(n if (n.role, n.gap) == (role, gap) else replace(n, role=role, gap=gap) for n, role, gap in wanted)
+    return tuple(n if (n.role, n.gap) == (role, gap) else n.in_role(role, gap) for n, role, gap in wanted)
 
 
 def _roles(
@@ -141,7 +141,7 @@ def with_conflicts(scene: SceneDescription, conflicts: tuple[Conflict, ...], roa
     others = {c.other for c in conflicts}
     lanes = {road_map.lane_at(c.routes[1], road_map.zones(*c.routes)[c.zone].point_j) for c in conflicts}
     neighbours = tuple(
-        replace(n, role=Role.CONFLICT) if n.id in others and n.role is Role.OTHER else n for n in scene.neighbours
+        n.in_role(Role.CONFLICT, n.gap) if n.id in others and n.role is Role.OTHER else n for n in scene.neighbours
     )
     return replace(scene, neighbours=neighbours, conflict_lanes=tuple(sorted(lanes)))
 

@@ -63,6 +63,13 @@ def test_a_library_is_given_whole_and_no_prediction_may_be_written_to() -> None:
         whole[0, 0] = 1.0
 
 
+def test_what_plans_are_worth_is_forgotten_with_the_step() -> None:
+    forecast = Forecast(MODEL)
+    forecast.values[forecast.state(4.2, 6.0, ("", 0.0))] = forecast.times
+    forecast.begin_step()
+    assert forecast.values == {}
+
+
 FIVE = [action for action in Action if action is not Action.HOLD]
 """Those of a model that is not steady, as in these tests."""
 

@@ -1,14 +1,14 @@
 """Scene descriptions: who is what to whom, lane by lane."""
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import pytest
 from worlds import Junction, car
 
 from codriving.datatypes.road import Lane, LaneId, Road, Route, Straight, Turn
 from codriving.datatypes.situation import Role, SceneDescription
-from codriving.datatypes.world import Action
+from codriving.datatypes.world import Action, Told
 from codriving.geometry.road_map import RoadMap
 from codriving.reasoning.sharing.scenes import adjacent_lanes, with_roles
 from codriving.reasoning.sharing.sharing import SensedStates
@@ -16,6 +16,14 @@ from codriving.reasoning.sharing.sharing import SensedStates
 
 def roles(scene: SceneDescription) -> dict[str, Role]:
     return {n.id: n.role for n in scene.neighbours}
+
+
+def test_a_vehicle_in_another_role_is_the_same_vehicle(junction: Junction) -> None:
+    scene = junction.thoughts(car("CAV1", "south-north", 60.0, 8.0), car("CAV2", "south-west", 75.0, 8.0)).scenes[
+        "CAV1"
+    ]
+    told = replace(scene.neighbours[0], standing=3.0, told=Told(0.5, None))
+    assert told.in_role(Role.REARING, 4.5) == replace(told, role=Role.REARING, gap=4.5)
 
 
 def test_roles_and_gaps(junction: Junction) -> None:
