@@ -68,6 +68,10 @@ class Reach:
         return self._most()
 
 
+def _known(distance: Array) -> Array:
+    return distance
+
+
 # Route and arc length of a vehicle [m]; where vehicles have no limits they make no difference.
 Where = tuple[str, float]
 
@@ -218,7 +222,7 @@ class Forecast:
         farther = self.reach(fast, is_cav, (where[0], where[1] + told.ahead)).most
         most = np.maximum(self.reach(fast, is_cav, where).most, farther) + told.ahead
         steady = self.reach(speed, is_cav, where).steady
-        return Reach(lambda: least, lambda: steady, lambda: most)
+        return Reach(partial(_known, least), partial(_known, steady), partial(_known, most))
 
     def fastest(self, is_cav: bool) -> float:
         """Return the highest speed that a vehicle is expected to have [m/s]."""
@@ -234,8 +238,8 @@ class Forecast:
             rows = (self._index[BRAKE], self._index[GO]) if self.model.limits is None else (-2, -1)
             least, most = travels[rows[0]], travels[rows[1]]
             if self.model.limits is None:
-                return Reach(lambda: least, steady, lambda: most)
-            return Reach(lambda: self._astray(least), steady, lambda: self._ahead(most, where))
+                return Reach(partial(_known, least), steady, partial(_known, most))
+            return Reach(partial(self._astray, least), steady, partial(self._ahead, most, where))
         return Reach(partial(self._human_least, speed), steady, partial(self._human_most, speed, where))
 
     def _human_least(self, speed: float) -> Array:
