@@ -11,11 +11,7 @@ from numpy.typing import NDArray
 from codriving.datatypes import Lane, LaneId, Route, beside
 from codriving.geometry.curve import FloatArray
 from codriving.geometry.lane_path import lane_path
-from codriving.geometry.path import Path
-
-_STRAIGHT = (
-    1e-7  # Points no farther from a straight line than this are on it [m], and its headings no farther apart [rad]
-)
+from codriving.geometry.path import STRAIGHT, Path, nearest_from, squared_distance
 
 _ROUNDING = 1e-5  # More than what a place beside such a line [m] or a heading against it [rad] may be wrong by
 
@@ -149,15 +145,9 @@ class Stretch:
         dx, dy = x - places[0][0], y - places[0][1]
         if abs(dy * self.cos - dx * self.sin) > tolerance + _ROUNDING:
             return None
-        last = len(places) - 1
-        k = min(max(round((dx * self.cos + dy * self.sin) / self.path.spacing), 0), last)
-        here = _square(places[k], x, y)
-        while k < last and (there := _square(places[k + 1], x, y)) < here:
-            k, here = k + 1, there
-        # Of two that are as near the first one.
-        while k > 0 and (there := _square(places[k - 1], x, y)) <= here:
-            k, here = k - 1, there
-        return None if here > (tolerance + 1.0) ** 2 else self.first + k
+        k = round((dx * self.cos + dy * self.sin) / self.path.spacing)
+        k = nearest_from(places, k, x, y, 0, len(places) - 1)
+        return None if squared_distance(places[k], x, y) > (tolerance + 1.0) ** 2 else self.first + k
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,18 +163,13 @@ def straight_stretch(name: str, path: Path, numbers: NDArray[np.intp]) -> Stretc
     """Return some points of a path as a stretch, or None if they are not one after another on a straight line."""
     first, last = int(numbers[0]), int(numbers[-1])
     points, headings = path.points[first : last + 1], path.headings[first : last + 1]
-    if last - first + 1 != len(numbers) or np.ptp(headings) > _STRAIGHT:
+    if last - first + 1 != len(numbers) or np.ptp(headings) > STRAIGHT:
         return None
     cos, sin = math.cos(headings[0]), math.sin(headings[0])
     along = np.arange(len(numbers))[:, None] * path.spacing * (cos, sin)
-    if np.abs(points[0] + along - points).max() > _STRAIGHT:
+    if np.abs(points[0] + along - points).max() > STRAIGHT:
         return None
     return Stretch(name, path, first, tuple((x, y) for x, y in points.tolist()), float(headings[0]), cos, sin)
-
-
-def _square(place: tuple[float, float], x: float, y: float) -> float:
-    dx, dy = place[0] - x, place[1] - y
-    return dx * dx + dy * dy
 
 
 def _ending_lanes(

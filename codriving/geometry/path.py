@@ -1,6 +1,7 @@
 """A centre line as a polyline, measured by arc length, and places and tracks projected on it."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -11,6 +12,7 @@ from codriving.geometry.curve import FloatArray
 
 _BEHIND, _AHEAD = 5.0, 30.0  # How far around the expected place a projection looks [m]
 
+STRAIGHT = 1e-7  # Points no farther from a straight line than this are on it [m]; headings no farther apart [rad]
 
 _Segment = tuple[float, float, float, float, float]  # Where it begins, its way [m] and its squared length [m2]
 
@@ -31,7 +33,7 @@ class Path:
     _segments: list[_Segment] = field(init=False, repr=False)
     axes: FloatArray = field(init=False, repr=False)  # x and y of the points (2, n) [m]
     _squares: FloatArray = field(init=False, repr=False)  # Their squared distances from the origin (n,) [m2]
-    _straight: bool = field(init=False, repr=False)
+    is_straight: bool = field(init=False, repr=False)
     directions: FloatArray = field(init=False, repr=False)  # Unit vectors along the path (2, n)
 
     def __post_init__(self) -> None:
@@ -45,7 +47,7 @@ class Path:
             ("_segments", [_segment(*ends) for ends in pairwise(self.points.tolist())]),
             ("axes", np.array((x, y))),
             ("_squares", x * x + y * y),
-            ("_straight", _is_straight(self.points, self.headings, self.length)),
+            ("is_straight", _is_straight(self.points, self.headings, self.length)),
             ("directions", np.array((np.cos(self.headings), np.sin(self.headings)))),
         ):
             object.__setattr__(self, name, value)
@@ -101,6 +103,8 @@ class Path:
             and the offset from it, positive on the right hand of the direction of travel on screen.
         """
         first, last = 0, len(self.points)
+        if near is None and self.is_straight:
+            return self.project_at(self.nearest_on_straight(x, y, 0, last - 1), x, y)
         if near is not None:
             first = min(max(math.floor((near - _BEHIND) / self.spacing), 0), last - 2)
             last = min(max(math.ceil((near + _AHEAD) / self.spacing) + 1, 2), last)
@@ -109,19 +113,17 @@ class Path:
 
     def project_all(self, x: FloatArray, y: FloatArray) -> list[tuple[float, float]]:
         """Return what `project` returns for each of several points (m,) [m]."""
-        if self._straight:
-            return [self.project_at(self._nearest(*one), *one) for one in zip(x.tolist(), y.tolist(), strict=True)]
+        if self.is_straight:
+            return [self.project(*one) for one in zip(x.tolist(), y.tolist(), strict=True)]
         dx, dy = self._x - x[:, None], self._y - y[:, None]
         nearest = (dx * dx + dy * dy).argmin(axis=1)
         return [self.project_at(*one) for one in zip(nearest.tolist(), x.tolist(), y.tolist(), strict=True)]
 
-    def _nearest(self, x: float, y: float) -> int:
-        """Return the point of a straight path that is nearest to a place; the first one of two."""
+    def nearest_on_straight(self, x: float, y: float, first: int, last: int) -> int:
+        """Return which of some points of a straight path is the nearest to a place [m]."""
         (x0, y0), cos, sin = self._places[0], math.cos(self._turns[0]), math.sin(self._turns[0])
-        last = len(self._places) - 1
-        k = min(max(round(((x - x0) * cos + (y - y0) * sin) / self.spacing), 0), last)
-        around = range(max(k - 2, 0), min(k + 2, last) + 1)
-        return min(around, key=lambda i: _square(self._places[i], x, y))
+        k = round(((x - x0) * cos + (y - y0) * sin) / self.spacing)
+        return nearest_from(self._places, k, x, y, first, last)
 
     def project_at(self, k: int, x: float, y: float) -> tuple[float, float]:
         """Return arc length and lateral offset [m] of a point whose nearest path point is the k-th."""
@@ -161,15 +163,27 @@ def _on_segment(segment: _Segment, x: float, y: float) -> tuple[float, float, fl
     return (px - t * dx) ** 2 + (py - t * dy) ** 2, t, dx * py - dy * px
 
 
+def nearest_from(places: Sequence[Sequence[float]], k: int, x: float, y: float, first: int, last: int) -> int:
+    """Return which of some points of a straight line is the nearest to a place, the first one of two; k is about it."""
+    k = min(max(k, first), last)
+    here = squared_distance(places[k], x, y)
+    while k < last and (there := squared_distance(places[k + 1], x, y)) < here:
+        k, here = k + 1, there
+    while k > first and (there := squared_distance(places[k - 1], x, y)) <= here:
+        k, here = k - 1, there
+    return k
+
+
+def squared_distance(point: Sequence[float], x: float, y: float) -> float:
+    """Return the squared distance of a place from a point [m2]."""
+    dx, dy = point[0] - x, point[1] - y
+    return dx * dx + dy * dy
+
+
 def _is_straight(points: FloatArray, headings: FloatArray, length: float) -> bool:
     """Whether points lie on one line, as far apart as they ought to."""
     along = np.linspace(0.0, length, len(points))[:, None] * [math.cos(headings[0]), math.sin(headings[0])]
-    return bool((headings == headings[0]).all() and np.abs(points - points[0] - along).max() < 1e-6)
-
-
-def _square(point: list[float], x: float, y: float) -> float:
-    dx, dy = point[0] - x, point[1] - y
-    return dx * dx + dy * dy
+    return bool((headings == headings[0]).all() and np.abs(points - points[0] - along).max() < STRAIGHT)
 
 
 def progress(path: Path, x: FloatArray, y: FloatArray, heading: FloatArray) -> FloatArray:

@@ -135,11 +135,20 @@ def _has(row: Mapping[str, Value], key: str, value: str) -> bool:
     return (str(row.get(key.removesuffix("!"))) == value) != key.endswith("!")
 
 
+def worlds_of(spec: Mapping[str, Any]) -> dict[str, list[Numbers]]:
+    """Read the runs of a table, by world."""
+    return {world: [rows_of(run) for run in runs] for world, runs in spec["runs"].items()}
+
+
+def shown_rows(worlds: Mapping[str, Sequence[Numbers]], spec: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield the rows that a table shows."""
+    return joined(worlds, spec.get("only", {}), spec.get("by", KEYS))
+
+
 def markdown(name: str, spec: Mapping[str, Any]) -> str:
     """Write a table with the commands and versions that made it, between its two marks."""
-    worlds = {world: [rows_of(run) for run in runs] for world, runs in spec["runs"].items()}
-    columns, cells, only, keys = spec["columns"], Cells(), spec.get("only", {}), spec.get("by", KEYS)
-    found = [[cells.cell(template, row) for template in columns.values()] for row in joined(worlds, only, keys)]
+    worlds, columns, cells = worlds_of(spec), spec["columns"], Cells()
+    found = [[cells.cell(template, row) for template in columns.values()] for row in shown_rows(worlds, spec)]
     if not found:
         raise TableError(f"table {name} has no rows: look at its runs and at only: in tables.yaml")
     found += [list(map(str, line)) for line in spec.get("more", [])]
@@ -156,9 +165,8 @@ def draw(name: str, spec: Mapping[str, Any], file: Path) -> None:
     """Draw the figure of a table from the rows that it shows."""
     from figure import drawn  # Beside this file
 
-    worlds = {world: [rows_of(run) for run in runs] for world, runs in spec["runs"].items()}
-    rows = list(joined(worlds, spec.get("only", {}), spec.get("by", KEYS)))
-    file.write_bytes(drawn(rows, list(worlds)))
+    worlds = worlds_of(spec)
+    file.write_bytes(drawn(list(shown_rows(worlds, spec)), list(worlds)))
 
 
 def _sentences(made: Sequence[str]) -> list[str]:

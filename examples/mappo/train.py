@@ -159,6 +159,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--updates", type=int, default=80, help="each after 2,048 decisions of each CAV")
     chosen = parser.parse_args()
+    chosen.folder.mkdir(parents=True, exist_ok=True)
     torch.set_num_threads(1)
     config = ExperimentConfig.get_from_yaml()
     config.max_n_iters, config.max_n_frames, config.loggers, config.create_json = chosen.updates, None, [], False

@@ -1,6 +1,5 @@
 """A body as a driver sees it."""
 
-import numpy as np
 from highway_env.vehicle.objects import RoadObject
 
 # What is seen, where it is taken to be [m, m], its heading [rad] and its speed [m/s].
@@ -11,8 +10,3 @@ def body(thing: RoadObject) -> Body:
     """Return a body as it is."""
     x, y = thing.position.tolist()
     return thing, x, y, float(thing.heading), float(thing.speed)
-
-
-def facing(thing: RoadObject, heading: float) -> tuple[float, float]:
-    """Return cosine and sine of the heading of a body [rad]."""
-    return float(np.cos(heading)), float(np.sin(heading))

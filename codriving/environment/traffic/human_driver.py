@@ -12,7 +12,7 @@ from highway_env.vehicle.objects import Obstacle, RoadObject
 
 from codriving.datatypes import BLOCKER, LaneId, Manner, Start
 from codriving.environment.drivers.attention import DriverJudgement
-from codriving.environment.drivers.body import Body, facing
+from codriving.environment.drivers.body import Body
 from codriving.environment.drivers.style import DriverMix, DriverTraits
 from codriving.environment.motion import STANDSTILL, clip
 from codriving.environment.settings import Corrections, DriverProfile
@@ -137,16 +137,16 @@ class HumanDriver(RouteFollower, IDMVehicle):
 
     def gap_behind(self, leader: Body) -> float:
         """Return the gap that the driver wants behind a body, by how fast it is coming closer [m]."""
-        thing, _, _, heading, speed = leader
+        *_, heading, speed = leader
         cos, sin = self.facing()
-        ahead, aside = facing(thing, heading)
-        x = self.speed * cos - speed * ahead
-        return self._gap_at(x * cos + (self.speed * sin - speed * aside) * sin)
+        x, y = self.speed * cos - speed * float(np.cos(heading)), self.speed * sin - speed * float(np.sin(heading))
+        return self._gap_at(x * cos + y * sin)
 
-    def _gap_at(self, closing: float) -> float:
-        """IDM's desired gap [m] at a closing speed [m/s]."""
+    def _gap_at(self, closing: float, speed: float | None = None) -> float:
+        """IDM's desired gap [m] at a closing speed [m/s]; of another vehicle than this one if its speed is given."""
+        speed = self.speed if speed is None else speed
         comfort = 2 * math.sqrt(-self.COMFORT_ACC_MAX * self.COMFORT_ACC_MIN)
-        return float(self.DISTANCE_WANTED + self.speed * self.TIME_WANTED + self.speed * closing / comfort)
+        return float(self.DISTANCE_WANTED + speed * self.TIME_WANTED + speed * closing / comfort)
 
     def desired_gap(self, ego_vehicle: Vehicle, front_vehicle: RoadObject, projected: bool = True) -> float:
         """Return IDM's desired gap [m], as highway-env works it out."""
@@ -155,8 +155,7 @@ class HumanDriver(RouteFollower, IDMVehicle):
         # The dot product of numpy, since plain products may be rounded differently from its fused ones.
         direction = ego_vehicle.direction
         closing = float((ego_vehicle.speed * direction - front_vehicle.velocity).dot(direction))
-        speed, comfort = ego_vehicle.speed, 2 * math.sqrt(-self.COMFORT_ACC_MAX * self.COMFORT_ACC_MIN)
-        return float(self.DISTANCE_WANTED + speed * self.TIME_WANTED + speed * closing / comfort)
+        return self._gap_at(closing, ego_vehicle.speed)
 
     def acceleration(
         self,
@@ -260,13 +259,13 @@ def _ahead_on_straight(
         # No box reaches farther to the side than this: the sine of an angle is no more than the angle.
         reach = driver.WIDTH / 2 + min(abs(turned - heading), 1.0) * half + side + BODY_MARGIN
         if along > driver.s - ROUNDING and abs(dy * cos - dx * sin - driver.shift) <= reach + ROUNDING:
-            near.append((along - half - side, number, along))
+            near.append((along - half - side, number))
     best, ahead, found = math.inf, -1, None
-    for least, number, along in sorted(near):
+    for least, number in sorted(near):
         if least - driver.s - driver.LENGTH / 2 > best + ROUNDING:
             break
         one = seen[number]
-        k = route_path.nearest_on_straight(one[1], one[2], along, first, last + 1)
+        k = route_path.path.nearest_on_straight(one[1], one[2], first, last + 1)
         if first < k == last + 1 and last < end:
             continue
         gap = _gap(driver, one, k)

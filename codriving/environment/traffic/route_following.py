@@ -17,13 +17,11 @@ from codriving.datatypes import Kind, LaneId, Route, Start, beside
 from codriving.environment.motion import PlainMotion, move
 from codriving.environment.settings import Corrections
 from codriving.errors import ScenarioError
-from codriving.geometry import Path, RoadMap, SpeedProfile
+from codriving.geometry import Path, RoadMap, SpeedProfile, squared_distance
 
 SINK_MARGIN = 8.0  # A vehicle leaves the road this far before the end of its route [m]
 
 CELL = 8.0  # Side of the squares in which a route notes where it passes [m]
-
-STRAIGHT = 1e-7  # Points no farther from a straight line than this are on it [m]
 
 NEARBY = 10.0  # From a square that a route does not note, every point of it is farther than this [m]
 
@@ -70,25 +68,6 @@ class RoutePath:
         """Whether a point [m] may be within 10 m of the centre line; the answer is quick and errs towards yes."""
         return (x // CELL, y // CELL) in self.cells
 
-    def nearest_on_straight(self, x: float, y: float, near: float, first: int, last: int) -> int:
-        """Return which of some points is the nearest to a place, about so far along a straight route [m]."""
-        k = min(max(round(near / self.spacing), first), last)
-        here = square(self.points[k], x, y)
-        while k < last and (there := square(self.points[k + 1], x, y)) < here:
-            k, here = k + 1, there
-        # Of two that are as near the first one.
-        while k > first and (there := square(self.points[k - 1], x, y)) <= here:
-            k, here = k - 1, there
-        return k
-
-    def project(self, x: float, y: float) -> tuple[float, float]:
-        """Return what `path.project` does; on a straight route sooner."""
-        if not self.is_straight:
-            return self.path.project(x, y)
-        (x0, y0), (cos, sin) = self.points[0], self.directions[0]
-        along = (x - x0) * cos + (y - y0) * sin
-        return self.path.project_at(self.nearest_on_straight(x, y, along, 0, len(self.points) - 1), x, y)
-
     def follow(self, x: float, y: float, near: float) -> tuple[float, float]:
         """Return arc length and lateral offset [m] of a point that has moved on a little.
 
@@ -96,17 +75,11 @@ class RoutePath:
         """
         points, last = self.points, len(self.points) - 1
         k = min(max(round(near / self.spacing), 0), last)
-        here = square(points[k], x, y)
+        here = squared_distance(points[k], x, y)
         for direction in (1, -1):
-            while 0 <= k + direction <= last and (there := square(points[k + direction], x, y)) < here:
+            while 0 <= k + direction <= last and (there := squared_distance(points[k + direction], x, y)) < here:
                 k, here = k + direction, there
         return self.path.project_at(k, x, y)
-
-
-def square(point: tuple[float, float], x: float, y: float) -> float:
-    """Return the squared distance of a place from a point [m2]."""
-    dx, dy = point[0] - x, point[1] - y
-    return dx * dx + dy * dy
 
 
 def route_path(road_map: RoadMap, route: str, profile: SpeedProfile | None = None) -> RoutePath:
@@ -125,15 +98,8 @@ def route_path(road_map: RoadMap, route: str, profile: SpeedProfile | None = Non
         ((s + found.taper / 2, lane) for (lane, other), s in changes if beside(lane, other)), (math.inf, None)
     )
     directions = tuple(zip(np.cos(path.headings).tolist(), np.sin(path.headings).tolist(), strict=True))
-    shape = points, headings, path.spacing, _cells(x, y), directions, _is_straight(path)
+    shape = points, headings, path.spacing, _cells(x, y), directions, path.is_straight
     return RoutePath(found, path, starts, x, y, *shape, left[0], left[1], profile)
-
-
-def _is_straight(path: Path) -> bool:
-    (x, y), (x0, y0), heading = path.points.T, path.points[0], path.headings[0]
-    along = np.arange(len(x)) * path.spacing
-    aside = np.hypot(x0 + along * np.cos(heading) - x, y0 + along * np.sin(heading) - y)
-    return bool((path.headings == heading).all() and aside.max() < STRAIGHT)
 
 
 def _cells(x: NDArray[np.float64], y: NDArray[np.float64]) -> frozenset[tuple[int, int]]:
@@ -276,4 +242,4 @@ class RouteFollower(PlainMotion):
         """Return the distance to another vehicle, positive if it is ahead [m]; along the route if corrected."""
         if other is None or lane is not None or not self.corrections.route_leader:
             return float(super().lane_distance_to(other, lane))
-        return self.route_path.project(*other.position.tolist())[0] - self.s
+        return self.route_path.path.project(*other.position.tolist())[0] - self.s

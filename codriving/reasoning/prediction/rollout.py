@@ -7,7 +7,7 @@ from math import nan
 import numpy as np
 
 from codriving.datatypes import Action, DrivingModel
-from codriving.geometry import Along, Array, TargetSteps, every_step, limited, unlimited
+from codriving.geometry import Along, Array, TargetSteps, limited, unlimited
 
 Plan = tuple[Action, ...]  # Actions, one a decision; the last one is repeated for ever
 
@@ -44,6 +44,9 @@ class Library(tuple[Plan, ...]):
 
     def __hash__(self) -> int:
         return self._hash
+
+    def __reduce__(self) -> tuple[type, tuple[tuple[Plan, ...]]]:
+        return Library, (tuple(self),)  # Texts have another hash in another process
 
     @cached_property
     def _hash(self) -> int:
@@ -84,9 +87,6 @@ def _changes(plans: tuple[Plan, ...], decisions: int) -> Array:
     return found
 
 
-_known_changes = lru_cache(maxsize=64)(_changes)  # The same for libraries, which are asked for at every step
-
-
 def _target_steps(
     model: DrivingModel, plans: tuple[Plan, ...], decisions: int, states: int, paired: bool, bounds: bool
 ) -> TargetSteps:
@@ -118,12 +118,13 @@ def rollout(
     Returns:
         Distance travelled [m] and speed [m/s], each (n, len(plans), steps + 1), the first column being now.
     """
-    if model.limits is not None:
-        changes = _known_target_steps(model, plans, -(-steps // model.substeps), len(speeds), False, False)
-        places, paces = (np.empty((steps + 1, *changes.shape)) for _ in range(2))
+    changes = _known_target_steps(model, plans, -(-steps // model.substeps), len(speeds), False, False)
+    places, paces = (np.empty((steps + 1, *changes.shape)) for _ in range(2))
+    if model.limits is None:
+        unlimited(model, speeds, targets, changes, 1, places, paces)
+    else:
         limited(model, model.limits, speeds, targets, changes, 1, along, places, paces)
-        return _by_state(places), _by_state(paces)
-    return every_step(model, speeds, targets, _known_changes(plans, -(-steps // model.substeps)), steps)
+    return _by_state(places), _by_state(paces)
 
 
 def travelled(

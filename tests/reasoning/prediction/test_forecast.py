@@ -1,12 +1,16 @@
 """Bounds and expectations of how far each vehicle comes."""
 
 import math
+import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from worlds import Junction
 
+from codriving.datatypes.limits import VehicleLimits
 from codriving.datatypes.world import Action, DrivingModel
 from codriving.reasoning.prediction.forecast import BRAKE, GO, Forecast, likely_distances
 from codriving.reasoning.prediction.rollout import PLANS, Library, rollout
@@ -41,6 +45,28 @@ def test_predicting_together_changes_nothing() -> None:
     assert np.array_equal(alone.reach(8.0, True).most, together.reach(8.0, True).most)
     together.begin_step()
     assert np.array_equal(alone.reach(8.0, True).least, together.reach(8.0, True).least)
+
+
+@pytest.mark.parametrize("limits", [None, VehicleLimits(4.0, 8.0, 4.0, 3.0, 2.0)])
+@pytest.mark.parametrize("is_cav", [False, True])
+def test_copy_holds_what_is_still_to_be_worked_out(
+    limits: VehicleLimits | None, is_cav: bool, junction: Junction
+) -> None:
+    forecast = Forecast(replace(MODEL, limits=limits), (WAITS,), junction.road_map)
+    where = "south-west", 70.0
+    reach = forecast.reach(4.2, is_cav, where)
+    copied = pickle.loads(pickle.dumps(forecast)).reach(4.2, is_cav, where)
+    for name in ("least", "steady", "most"):
+        assert np.array_equal(getattr(copied, name), getattr(reach, name))
+
+
+def test_library_leaves_its_hash_to_its_process() -> None:
+    library = Library([WAITS, GO])
+    assert hash(library) == hash((WAITS, GO))
+    copied = pickle.loads(pickle.dumps(library))
+    assert copied == library
+    assert vars(library)
+    assert not vars(copied)
 
 
 @given(SPEEDS, st.booleans())
