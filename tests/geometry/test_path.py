@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from codriving.datatypes.road import Arc, Lane, Straight
 from codriving.geometry.lane_path import lane_path, route_path
-from codriving.geometry.path import Path, progress
+from codriving.geometry.path import Path, nearest_from, progress
 from codriving.geometry.road_map import RoadMap
 
 TURN = route_path(
@@ -87,6 +87,13 @@ def test_on_a_straight_path_the_nearest_point_is_that_of_a_full_search(
     nearest = (dx * dx + dy * dy).argmin(axis=1).tolist()
     expected = [path.project_at(*one) for one in zip(nearest, x.tolist(), y.tolist(), strict=True)]
     assert path.project_all(x, y) == expected
+
+
+@pytest.mark.parametrize("begin", [0, 1, 2, 9])
+def test_of_two_points_that_are_as_near_the_first_one_is_taken(begin: int) -> None:
+    places = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]
+    assert nearest_from(places, begin, 0.5, 1.0, 0, 2) == 0
+    assert nearest_from(places, begin, 0.5, 1.0, 1, 2) == 1
 
 
 @given(st.floats(-10.0, TURN.length + 10.0) | st.sampled_from([0.0, TURN.length]))
